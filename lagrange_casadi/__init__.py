@@ -17,15 +17,16 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .export import export
+from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .optimise import Front, Optimum, optimise
 from .store.runs import check, load, save
-from .study.holding import holding
 from .study.peaks import refine
 from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
 from .study.tool import tool_deflection
 from .sweep import Sweep, best, read_designs, sweep
+from .system.symbolic import symbolic
 from .version import __version__
 
 __all__ = [
@@ -67,6 +68,7 @@ __all__ = [
     "shaking",
     "strength",
     "sweep",
+    "symbolic",
     "table",
     "tolerances",
     "tool_deflection",

@@ -10,17 +10,19 @@ import re
 import sys
 import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal, DecimalException
 from numbers import Integral
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, TypeVar
 
+import casadi as ca
 import numpy as np
 
 from .errors import DeclarationError, NumberError, shown
 from .system.numerals import real
+from .system.room import MOST_THREADS
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.radians(1.0), "turn": math.tau},
@@ -39,6 +41,49 @@ _OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
 
 Number: TypeAlias = float | str
 """A number, or a text of one with its unit."""
+
+
+class Within(NamedTuple):
+    """What an annotation says of a number beside its type: that it is finite, and from ``low`` to ``high``, or ``above`` low."""
+
+    low: float = -math.inf
+    high: float = math.inf
+    above: bool = False
+
+    def admits(self, value: float) -> bool:
+        """Whether a number is in this range."""
+        return -math.inf < value < math.inf and (self.low < value if self.above else self.low <= value) and value <= self.high
+
+    @property
+    def words(self) -> str:
+        """The range, to be said after what is in it."""
+        if self.high < math.inf:
+            return f" from {self.low:.17g} to {self.high:.17g}"
+        return f" above {self.low:g}" if self.above and self.low else f" of at least {self.low:g}" if self.low > -math.inf else ""
+
+
+Finite: TypeAlias = Annotated[float, Within()]
+"""A number that is not infinite."""
+
+Positive: TypeAlias = Annotated[float, Within(0.0, above=True)]
+NotNegative: TypeAlias = Annotated[float, Within(0.0)]
+Share: TypeAlias = Annotated[float, Within(0.0, 1.0)]
+Count: TypeAlias = Annotated[int, Within(1)]
+Index: TypeAlias = Annotated[int, Within(0)]
+
+ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
+
+Numeric: TypeAlias = Annotated[Any, "numeric"]
+"""A number, or an array of numbers of any shape."""
+
+Symbolic: TypeAlias = Annotated[Any, "symbolic"]
+"""A number, a text of one with its unit, or an expression in parameters: of what is told before it has a mechanism."""
+
+Outputs: TypeAlias = Annotated[Sequence[str], "outputs"]
+"""Names of outputs that are wanted."""
+
+Graph: TypeAlias = Annotated[Any, "graph"]
+"""A ``casadi.SX`` expression."""
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
@@ -87,10 +132,10 @@ def in_words(unit: str) -> str:
     return f"number{'' if unit == '1' else f' [{unit}]'}{f', or a text such as {example}' if example else ''}"
 
 
-def count(what: str, value: object, least: int = 1) -> int:
-    """A whole number that is large enough. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
-    if not _is_whole(value) or value < least:  # type: ignore[operator]
-        raise DeclarationError(f"{what}: expected a whole number of at least {least}, got {shown(value)}")
+def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
+    """A whole number in a range. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
+    if not _is_whole(value) or not least <= value <= most:  # type: ignore[operator]
+        raise DeclarationError(f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}")
     return int(value)  # type: ignore[call-overload, no-any-return]
 
 
@@ -113,16 +158,19 @@ def public(thing: Thing) -> Thing:
     for name, method in list(vars(thing).items()):
         if isinstance(method, classmethod | staticmethod) and not name.startswith("_"):
             setattr(thing, name, type(method)(_looking(method.__func__)))
-        elif inspect.isfunction(method) and (not name.startswith("_") or name == "__init__"):
+        elif inspect.isfunction(method) and (not name.startswith("_") or name in ("__init__", "__getitem__", "__call__")):
             setattr(thing, name, _looking(method))
     return thing
 
 
 class _Kind(NamedTuple):
-    """A kind of values, in words."""
+    """A kind of values, in words; ``read`` makes of one what the function takes, and ``_NONE`` of what is of another kind."""
 
     words: str
-    admits: Callable[[Any], bool]
+    read: Callable[[Any], Any]
+
+
+_NONE: Any = object()
 
 
 def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -137,14 +185,28 @@ def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
             known.update(_kinds(function, signature))
             looked.append(True)
         try:
-            bound = signature.bind(*given, **named).arguments
+            bound = signature.bind(*given, **named)
         except TypeError as wrong:
             raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
-        for name, kind in known.items():
-            if name in bound and not kind.admits(bound[name]):
+        told = bound.arguments
+
+        def read(kind: _Kind, name: str, value: Any) -> Any:
+            found = kind.read(value)
+            if found is _NONE:
                 what = f"{_called(function)}{_part(signature, given)}: {name}"
-                raise DeclarationError(f"{what}: expected {kind.words}, got {shown(bound[name])}")
-        return function(*given, **named)
+                raise DeclarationError(f"{what}: expected {kind.words}, got {shown(value)}")
+            return found
+
+        for name, kind in known.items():
+            if name not in told or (value := told[name]) is signature.parameters[name].default:
+                continue
+            if signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL:
+                told[name] = tuple(read(kind, name, each) for each in value)
+            elif signature.parameters[name].kind is inspect.Parameter.VAR_KEYWORD:
+                told[name] = {key: read(kind, key, each) for key, each in value.items()}
+            else:
+                told[name] = read(kind, name, value)
+        return function(*bound.args, **bound.kwargs)
 
     return called
 
@@ -184,34 +246,47 @@ def _kinds(function: Callable[..., Any], signature: inspect.Signature) -> dict[s
         hint = parameter.annotation
         with suppress(NameError, TypeError, AttributeError):  # names that only type checkers see
             hint = eval(hint, scope) if isinstance(hint, str) else hint
-            several = parameter.kind in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-            if not several and hint is not inspect.Parameter.empty and (kind := _kind(hint)):
+            if hint is not inspect.Parameter.empty and (kind := _kind(hint)):
                 found[name] = kind
     return found
 
 
 def _kind(hint: Any) -> _Kind | None:
     """The kind that an annotation says; None for one that its function looks at itself."""
-    origin = typing.get_origin(hint) or hint
+    origin, of = typing.get_origin(hint) or hint, typing.get_args(hint)
+    if origin is Annotated:
+        return _ranged(*of) if isinstance(of[1], Within) else _NAMED.get(of[1])
     if origin in (typing.Union, types.UnionType):
-        return _one_of(typing.get_args(hint))
+        return _one_of(of)
     if origin is Literal:
-        return _SIMPLE[str] if all(isinstance(one, str) for one in typing.get_args(hint)) else None
+        return _SIMPLE[str] if all(isinstance(one, str) for one in of) else None
     if hint in (None, type(None)):
-        return _Kind("None", lambda value: value is None)
+        return _if("None", lambda value: value is None)
     if isinstance(origin, type) and origin in _SIMPLE:
         return _SIMPLE[origin]
-    if origin is Mapping:
-        by_name = typing.get_args(hint) == (str, float)
+    if origin in (Sequence, Iterable, Collection) or (origin is tuple and of[1:] == (...,)):
+        return _row(of[0])
+    if origin is np.ndarray:
+        return _Kind("an array of numbers", _array) if of[-1] == np.dtype[np.float64] else None
+    if origin is Mapping or origin is dict:
+        by_name = of == (str, float)
         words = "values by name, as {'l': 0.25}" if by_name else "a mapping by name"
-        return _Kind(words, lambda value: isinstance(value, Mapping))
+        return _if(words, lambda value: isinstance(value, Mapping))
     if origin is Callable:
-        return _Kind("a function", callable)
+        return _if("a function", callable)
     ours = isinstance(origin, type) and origin.__module__.startswith("lagrange_casadi")
     if not ours or origin.__name__ in _OWN or getattr(origin, "_is_protocol", False):
         return None
-    name = origin.__name__
-    return _Kind(f"a{'n' if name[0] in 'AEIO' else ''} {name}", lambda value: isinstance(value, origin))
+    return _if(_with_article(origin.__name__), lambda value: isinstance(value, origin))
+
+
+def _if(words: str, admits: Callable[[Any], bool]) -> _Kind:
+    """A kind of which values are taken as they are."""
+    return _Kind(words, lambda value: value if admits(value) else _NONE)
+
+
+def _with_article(name: str) -> str:
+    return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
 
 
 def _one_of(hints: tuple[Any, ...]) -> _Kind | None:
@@ -219,11 +294,90 @@ def _one_of(hints: tuple[Any, ...]) -> _Kind | None:
     found = [kind for hint in hints if (kind := _kind(hint))]
     if len(found) < len(hints):
         return None
+    if _SIMPLE[Path] in found:  # may be a text
+        found = [kind for kind in found if kind is not _SIMPLE[str]]
     words = list(dict.fromkeys(kind.words for kind in found if kind.words != "None")) or ["None"]
-    if "a path" in words:
-        words = ["a path", *(word for word in words if word not in ("a path", "a text"))]
     listed = f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else words[0]
-    return _Kind(listed, lambda value: any(kind.admits(value) for kind in found))
+    return _Kind(listed, lambda value: next((got for kind in found if (got := kind.read(value)) is not _NONE), _NONE))
+
+
+def _ranged(of: type, span: Within) -> _Kind:
+    """The kind of numbers in a range."""
+    simple = _SIMPLE[of]
+
+    def read(value: Any) -> Any:
+        found = simple.read(value)
+        return found if found is not _NONE and span.admits(found) else _NONE
+
+    sign = "positive " if span == Within(0.0, above=True) else "finite " if span == Within() else ""
+    return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
+
+
+def _row(of: Any) -> _Kind | None:
+    """The kind of rows of something: of numbers, of names, of parts."""
+    if of is float:
+        return _Kind("a row of numbers", lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE)
+    kind = _SIMPLE[str] if of is str else _kind(of)
+    if kind is None:
+        return None
+
+    def read(value: Any) -> Any:
+        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+            return _NONE
+        with suppress(Exception):  # of a class that is not ours, when it is walked over
+            found = [kind.read(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
+            return tuple(found) if all(one is not _NONE for one in found) else _NONE
+        return _NONE
+
+    return _Kind("a list of texts" if of is str else f"a list, each {kind.words}", read)
+
+
+def _array(value: Any) -> Any:
+    """A value as an array of doubles."""
+    if isinstance(value, str | bytes | memoryview | Mapping | set | frozenset | ca.SX | ca.MX):
+        return _NONE
+    with suppress(TypeError, ValueError, OverflowError, RuntimeError, NotImplementedError):
+        found = np.asarray(value)
+        whole = found.dtype.kind in "iuf" or (found.dtype.kind == "O" and all(_double(one) is not None for one in found.flat))
+        return found.astype(float) if whole else _NONE
+    return _NONE
+
+
+def texts(value: Any) -> list[str] | None:
+    """Texts of a list, an array or what else is walked over; None of anything else, as a text."""
+    if isinstance(value, Iterable) and not isinstance(value, str | Mapping):
+        with suppress(Exception):  # of a class that is not ours, when it is walked over
+            found = value.tolist() if isinstance(value, np.ndarray) else list(value)
+            return found if all(isinstance(one, str) for one in found) else None
+    return None
+
+
+def _graph(value: Any) -> Any:
+    if isinstance(value, ca.SX | ca.DM):
+        return ca.SX(value)
+    return _NONE if (found := _double(value)) is None else ca.SX(found)
+
+
+def _symbolic(value: Any) -> Any:
+    """A scalar expression, a number, or a text of one with its unit, as it is; its size is looked at where it is used."""
+    if isinstance(value, ca.SX):
+        return value if value.is_scalar() else _NONE
+    if isinstance(value, str):
+        return value if typed(value)[1] else _NONE
+    found = _double(value)
+    return _NONE if found is None else value if isinstance(value, int | float) else found
+
+
+def _is_path(value: Any) -> bool:
+    """Whether the system could have a file of this name."""
+    with suppress(UnicodeEncodeError):
+        return (
+            isinstance(value, str | os.PathLike)
+            and isinstance(name := os.fspath(value), str)
+            and name != ""
+            and b"\0" not in os.fsencode(name)
+        )
+    return False
 
 
 def _is_whole(value: object) -> bool:
@@ -232,6 +386,8 @@ def _is_whole(value: object) -> bool:
 
 def _double(value: Any) -> float | None:
     """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and symbols."""
+    if isinstance(value, ca.SX | ca.DM):
+        return float(value) if value.is_scalar() and value.is_constant() else None
     value = value.item() if isinstance(value, np.ndarray) and not value.shape else value
     strange = isinstance(value, bool | complex | np.ndarray) or not hasattr(type(value), "__float__")
     if not strange and not (isinstance(value, np.generic) and value.dtype.kind not in "iuf"):
@@ -241,10 +397,17 @@ def _double(value: Any) -> float | None:
 
 
 _SIMPLE: dict[type, _Kind] = {
-    str: _Kind("a text", lambda value: isinstance(value, str)),
-    bool: _Kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
-    int: _Kind("a whole number", lambda value: isinstance(value, Integral) and not isinstance(value, bool)),
-    float: _Kind("a number", lambda value: _double(value) is not None),
-    Path: _Kind("a path", lambda value: isinstance(value, os.PathLike)),
-    os.PathLike: _Kind("a path", lambda value: isinstance(value, os.PathLike)),
+    str: _if("a text", lambda value: isinstance(value, str)),
+    bool: _Kind("True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE),
+    int: _Kind("a whole number", lambda value: int(value) if _is_whole(value) else _NONE),
+    float: _Kind("a number", lambda value: _NONE if (found := _double(value)) is None else found),
+    Path: _if("a path", _is_path),
+}
+_SIMPLE[os.PathLike] = _SIMPLE[Path]
+_NAMED = {
+    "numeric": _Kind("a number or an array of numbers", _array),
+    "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
+    # What is none is told by who knows which outputs there are.
+    "outputs": _Kind("a list of texts", lambda value: value if (found := texts(value)) is None else found),
+    "graph": _Kind("a casadi.SX expression", _graph),
 }

@@ -9,11 +9,16 @@ from __future__ import annotations
 import difflib
 import errno
 import re
+import sys
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pickle import PicklingError
 
 _LONG = 300
 """Characters of names that a message takes at most."""
+
+_MOST = 2000
+"""Characters of a message at most, whatever it quotes."""
 
 _SHOWN = 120
 """Characters of a value that a message takes at most."""
@@ -30,7 +35,13 @@ def escaped(text: str) -> str:
 
 def one_line(error: BaseException) -> str:
     """What an error says, in one line that may be shown."""
-    return escaped(" ".join(str(error).split()))
+    return _line(str(error))
+
+
+def _line(text: str) -> str:
+    """A text in one line, the middle left out where it quotes too much."""
+    text = escaped(" ".join(text.split()))
+    return text if len(text) <= _MOST else f"{text[: _MOST // 2]} ... {text[-_MOST // 2 :]}"
 
 
 def check_kind(what: str, value: object, expected: str, *kinds: type) -> None:
@@ -48,6 +59,14 @@ def shown(value: object) -> str:
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
+def warn(words: str, category: type[Warning] = UserWarning) -> None:
+    """Warn of something: at the line of the user's that led to it, however many functions of this package are between."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(words, category, stacklevel=level)
+
+
 def lacking(error: OSError) -> bool:
     """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
     return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
@@ -62,7 +81,7 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
 
     def __str__(self) -> str:
-        return escaped(" ".join(super().__str__().split()))
+        return _line(super().__str__())
 
 
 class DeclarationError(LagrangeCasadiError):

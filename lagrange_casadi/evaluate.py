@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import functools
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from .arguments import public
+from .arguments import Outputs, ThreadCount, public
 from .arithmetic.compensated import Precision
 from .declare.corners import Corners
 from .declare.density import Array
@@ -27,24 +26,25 @@ from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.described import described
 from .equations.scene_graph import SceneGraph
-from .errors import CertificateWarning, DeclarationError
+from .errors import CertificateWarning, DeclarationError, warn
 from .instants.backends import Evaluated
 from .instants.cost import seconds
 from .instants.derivatives import Derivatives
 from .instants.determinacy import determinate, undetermined
 from .instants.elasticity import Elasticity
 from .instants.from_table import columns
+from .instants.holding import holding
 from .instants.ordering import in_order
 from .instants.phases import phases
 from .instants.refusal import refuse
-from .instants.rung import Backend, Rung
+from .instants.rung import Backend, Rung, Steps
 from .instants.solution import Solution
 from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
 from .quantities import Output
 from .sensitivity.series import series_slopes
-from .system.room import MOST_THREADS, cores, in_words, require
+from .system.room import cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""
@@ -62,13 +62,13 @@ def evaluate(
     t: Times | None = None,
     over: Over | None = None,
     xi: EvenPoints | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     table: float | None = None,
     flags: str = "",
-    threads: int | None = None,
+    threads: ThreadCount | None = None,
     certificate: bool = True,
     elastic: Elastic | None = None,
 ) -> Solution:
@@ -107,8 +107,6 @@ def evaluate(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    if threads is not None and (type(threads) is not int or not 1 <= threads <= MOST_THREADS):
-        raise DeclarationError(f"threads: expected a whole number from 1 to {MOST_THREADS}, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     timing = scene.timing(t, over)
@@ -149,10 +147,13 @@ def evaluate(
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
+    if solution.resting.any():
+        open_ = {name: held for name, held in holding(scene, solution).items() if np.isnan(solution.effort(name)).any()}
+        solution = replace(solution, held=open_)
     if certificate:
         solution = _certified(graph, found, solution, out, p, within, done)
         if solution.failed:
-            warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
+            warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
     return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
 
 
@@ -203,7 +204,7 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
     takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
     if takes > _LONG:
         many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
-        warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
+        warn(f"{many} instants{each} take about {in_words(takes)}")
 
 
 def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:

@@ -113,6 +113,9 @@ class Output:
                 direction, power, end = found.groups()
                 return cls("spread", part, end or direction, station, None if end else int(power))
             return cls("station", part, member, station)
+        if group == "holding":
+            part, _, member = text.rpartition(":")
+            return cls(group, part, member)
         if group == "certificate" and not rest:
             return cls(group, "", part)
         if len(rest) > 1:

@@ -79,6 +79,10 @@ _PLACE = (
     Quantity("pose", "y", ("t",), LENGTH, "place of the base, y"),
 )
 _EFFORT = Quantity("effort", "", ("t",), "{Q}", "effort of the drive", _ALONG)
+_HOLDING = (
+    Quantity("holding", "least", ("t",), "{Q}", "least effort that the drive may need, where joints that rub are at rest", _ALONG),
+    Quantity("holding", "largest", ("t",), "{Q}", "largest effort that the drive may need there", _ALONG),
+)
 _REACTION = (
     Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
     Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
@@ -145,6 +149,7 @@ QUANTITIES = (
     *_PLACE,
     Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time", "counter-clockwise from x"),
     _EFFORT,
+    *_HOLDING,
     *_REACTION,
     Quantity("reaction", "mz", ("t",), MOMENT, _ABOUT, _ON_CHILD),
     _MULTIPLIER,
@@ -172,6 +177,7 @@ SPATIAL_QUANTITIES = (
     Quantity("pose", "z", ("t",), LENGTH, "place of the base, z"),
     *(Quantity("pose", f"{axis}{of}", ("t",), "1", f"direction of the body's axis {axis}, {of}") for axis in "xyz" for of in "xyz"),
     _EFFORT,
+    *_HOLDING,
     *_REACTION,
     Quantity("reaction", "fz", ("t",), FORCE, "reaction of the joint, z", _ON_CHILD),
     *(Quantity("reaction", f"m{x}", ("t",), MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),

@@ -1,13 +1,15 @@
 """Numbers and texts with units, wherever a declaration takes a number; and what solutions give to NumPy, notebooks and printers."""
 
 import math
+import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, evaluate, save
-from lagrange_casadi.arguments import number, typed
-from lagrange_casadi.errors import DeclarationError, ParameterError, PathError
+from lagrange_casadi import Mechanism, Scene, evaluate, optimise, prepare, save
+from lagrange_casadi.arguments import number, public, typed
+from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, warn
 from lagrange_casadi.motion import harmonic, polynomial, samples
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
@@ -68,3 +70,25 @@ def test_what_a_solution_gives(tmp_path):
     with pytest.raises(PathError, match="a run is kept as HDF5"):
         save(solution, tmp_path / "x.csv")
     assert "<img" in solution.animate(tmp_path / "a.svg")._repr_html_()
+
+
+def test_a_warning_is_at_the_users_line(monkeypatch):
+    """However many functions of the package are between, as those that look at arguments."""
+    monkeypatch.setitem(sys.modules, "lagrange_casadi.made", made := ModuleType("lagrange_casadi.made"))
+    inner = vars(made)
+    inner.update(warn=warn, public=public)
+    exec("@public\ndef outer(n: int):\n    inside()\ndef inside():\n    warn('so it is')", inner)
+    with pytest.warns(UserWarning, match="so it is") as caught:
+        inner["outer"](3)
+    assert caught[0].filename == __file__
+
+
+def test_arrays_of_names_and_huge_counts():
+    scene = swing(polynomial(0.0, 1.0))
+    assert prepare(scene, wanted=np.array(["effort"]), backend="vm").outputs == ("effort:O",)
+    with pytest.raises(DeclarationError, match=r"wanted: expected a list of output names, got array"):
+        prepare(scene, wanted=np.array([1.0, 2.0]), backend="vm")
+    m = Mechanism("m")
+    m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.1, "m"), mass=0.5))
+    with pytest.raises(DeclarationError, match="starts: expected a whole number from 1 to 16777216"):
+        optimise(Scene(m, {"O": polynomial(0.0, 1.0)}), minimise="l", over={"l": (0.1, 0.2)}, starts=10**40)

@@ -109,7 +109,7 @@ def test_the_narrow_side_of_a_step_has_the_stress():
         ),
         (lambda: beams.hole(0.5, 0.02, 0.02), "hole: diameter must be less than height"),
         (lambda: beams.sensitivity(0.001, 100e6), "ultimate strength of 345 to 1724 MPa, got 100 MPa"),
-        (lambda: beams.keyway(1.5), "notch: expected a ratio xi/l from 0 to 1"),
+        (lambda: beams.keyway(1.5), "Notch: at: expected a number from 0 to 1"),
     ],
 )
 def test_what_is_no_notch(make, told):

@@ -5,12 +5,15 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.report.contents import contents
+from lagrange_casadi.report.live import Live
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -20,10 +23,10 @@ def bend(x, k):
     return 0.02 * (ca.sin(x) + k * ca.fabs(ca.sin(x - 0.5)))
 
 
-def slide(law):
+def slide(law, default=0.0):
     """A slide that follows a law of the time and of a parameter k."""
     m = Mechanism("slide")
-    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    body, k = m.point_mass("body", 2.0), m.parameter("k", default)
     m.prismatic("way", m.ground, body, axis=(1, 0))
     return Scene(m, {"way": expression(lambda t: law(t, k))}, t=(0.0, 1.0, 101))
 
@@ -33,36 +36,36 @@ def jump(t, k):
     return ca.atan2(k * ca.sin(7 * t), 1 - k + k * ca.cos(7 * t))
 
 
-def motion():
-    return slide(lambda t, k: bend(t, k))
+def motion(default=0.0):
+    return slide(bend, default)
 
 
-def cut():
-    return slide(jump)
+def cut(default=0.0):
+    return slide(jump, default)
 
 
-def constraint():
+def constraint(default=0.0):
     """A slide whose place is a function of a crank's angle."""
     m = Mechanism("constraint")
-    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", default)
     turn = m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - bend(m.coordinate(turn), k))
     return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
 
 
-def disc():
+def disc(default=0.0):
     m = Mechanism("disc")
-    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", 0.0)
+    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", default)
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
     disc_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k), base_radius=0.1, roller=0.01)
     return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
 
 
-def drum():
+def drum(default=0.0):
     m = SpatialMechanism("drum")
-    wheel, cart, k = m.link("wheel", length=0.1, mass=1.0), m.point_mass("cart", 1.0), m.parameter("k", 0.0)
+    wheel, cart, k = m.link("wheel", length=0.1, mass=1.0), m.point_mass("cart", 1.0), m.parameter("k", default)
     main = m.revolute("turn", m.ground, wheel, axis=(1, 0, 0))
     lead = m.prismatic("lead", m.ground.at(0.0, 0.0, 0.05), cart, axis=(1, 0, 0))
     cylindrical_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k))
@@ -130,3 +133,49 @@ def test_a_search_does_not_take_a_jump_for_the_best_design():
     """Beyond k = 0.5 the law jumps; at k = 1 it is straight elsewhere, and its effort would be zero."""
     found = optimise(cut(), minimise="peak:effort:way", over={"k": (0.2, 1.0)}, starts=3)
     assert abs(found.values["k"] - 0.2) < 1e-6
+
+
+@SCENES
+def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(scene, tmp_path):
+    made = scene(1.0)
+    with pytest.raises(DeclarationError, match=PLACES[scene]):
+        evaluate(made)
+    assert evaluate(made, parameters={"k": 0.0}).certified
+    f = prepare(made, wanted=["effort"])
+    np.testing.assert_array_equal(*(next(iter(one(k=0.0).values())) for one in (f, prepare(scene(), wanted=["effort"]))))
+    with pytest.raises(DeclarationError, match=PLACES[scene]):
+        f()
+    assert sweep(made, {"k": [0.0, 1.0]}, wanted=["effort"])["status"].tolist() == [Status.OK, Status.CORNER]
+    export(made, tmp_path / "c", parameters={"k": 0.0}, wanted=["effort"])
+
+
+def test_what_is_exported_says_that_corners_were_looked_for_with_the_defaults(tmp_path):
+    export(motion(), tmp_path / "c", wanted=["effort"])
+    for name in ("README.md", "slide.h"):
+        assert "looked for with the defaults alone" in (tmp_path / "c" / name).read_text()
+
+
+def test_a_live_page_says_that_sliders_go_by_corners(monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.report.live.check_zig", lambda what: None)
+    monkeypatch.setattr(Live, "entry", lambda *_: {})
+    m = Mechanism("plain")
+    m.prismatic("way", m.ground, m.point_mass("body", m.parameter("mass", 2.0)), axis=(1, 0))
+    plain = Scene(m, {"way": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 11))
+    for made, many in ((constraint(), 1), (plain, 0)):
+        found = contents(evaluate(made), Live(made, made.timing(), None, "run"))["notes"]
+        assert sum("Corners" in note for note in found) == many
+
+
+def test_kinks_of_a_motion_are_looked_for_once_for_what_designs_share(monkeypatch):
+    m = Mechanism("shared")
+    body, k = m.point_mass("body", m.parameter("mass", 2.0)), m.parameter("k", 0.0)
+    m.prismatic("way", m.ground, body, axis=(1, 0))
+    made = Scene(m, {"way": expression(lambda t: bend(t, k))}, t=(0.0, 1.0, 11))
+    seen, look = [], Smooth.broken
+    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    f = prepare(made, wanted=["effort"])
+    for mass in (1.0, 2.0, 3.0):
+        f(mass=mass)
+    found = f.designs([[mass, k] for mass in (1.0, 2.0, 3.0) for k in (0.0, 1.0)])
+    assert found.status.tolist() == [Status.OK, Status.CORNER] * 3
+    assert seen == [1, 2]

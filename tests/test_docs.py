@@ -90,7 +90,13 @@ def rows(quantities, *axes):
     yield "| dataset | axes | unit | is | sign |"
     yield "| --- | --- | --- | --- | --- |"
     yield from axes
-    places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
+    places = {
+        "motion": "/motion/JOINT",
+        "pose": "/pose/BODY/",
+        "effort": "/effort/JOINT",
+        "holding": "/holding/JOINT/",
+        "reaction": "/reaction/JOINT/",
+    }
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "friction": "/friction/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/", "stress": "/stress/LINK/", "utilisation": "/utilisation/LINK/"}
     places |= {

@@ -5,10 +5,14 @@ import pytest
 from click.testing import CliRunner
 from packer import CASE, scene
 
-from lagrange_casadi import evaluate, optimise, prepare, sweep
+from lagrange_casadi import Scene, evaluate, optimise, prepare, sweep, tolerances
+from lagrange_casadi.animation import Film
 from lagrange_casadi.cli import program
+from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import check, load
+from lagrange_casadi.study.trade import trade
 from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.sweep.resting import resting_note
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -53,3 +57,38 @@ def test_sweeps_and_searches_see_the_same(tmp_path):
     best = optimise(scene(), minimise="peak:effort:O", over={"r": (0.06, 0.1)}, screen=4, starts=1)
     assert best.parameters["r"] == pytest.approx(0.06, abs=1e-6)
     assert prepare(scene()).gradient()["effort:O"]["r"] != 0.0
+
+
+def test_tolerances_and_deflections_see_the_same():
+    solution = evaluate(scene(), wanted=["effort", "motion", "deflection:rod", "section:rod"])
+    moving = solution.during(~solution.resting)
+    assert solution.deflection("rod").peak() == moving.deflection("rod").peak()
+    found = tolerances(scene(), {"r": 0.001}, wanted=["effort"], samples=32)
+    assert found.failed == 0
+    assert np.isfinite([found.peaks["effort:O"].nominal, found.peaks["effort:O"].sigma]).all()
+
+
+def test_pages_and_films_are_drawn(tmp_path):
+    """With arrows of forces that are no numbers at rest, and ribbons along the rod."""
+    solution = evaluate(scene())
+    solution.report(tmp_path / "page.html")
+    for name, force in (("film.gif", "bending"), ("film.svg", "bending"), ("film.glb", "")):
+        solution.animate(tmp_path / name, Film(width=120, rate=4.0, seconds=1.0, forces=True, section=force))
+    assert all((tmp_path / name).stat().st_size for name in ("page.html", "film.gif", "film.svg", "film.glb"))
+
+
+def test_ways_of_evaluation_are_traded():
+    found = trade(scene(), wanted=["effort", "motion", "friction"], rungs=(Rung(), Rung("vm"), Rung("c")))
+    assert not found.refused
+    assert all(0.0 <= one.largest < 1e-9 for one in found.measurements)
+
+
+def test_a_sweep_tells_of_designs_that_rest_though_the_first_does_not(tmp_path):
+    """The instants of the first end before it rests."""
+    drawn = scene()
+    m = drawn.mechanism
+    lasts = Scene(m, drawn.laws, drawn.wanted, t=(0.05, 10.0 * m.parameters["r"].symbol - 0.5, 21), posture={"rod": 0.0})
+    found = sweep(lasts, {"r": [0.06, 0.08, 0.1]}, wanted=["effort"], out=tmp_path / "s.h5")
+    told = resting_note(lasts, found, {}, wanted=["effort"])
+    assert told.startswith("in design 1 a joint that rubs is at rest at ")
+    assert told.endswith("; so it is in 2 of 3 designs that were looked at")

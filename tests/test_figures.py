@@ -222,7 +222,7 @@ def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
 
 
 def test_what_is_no_spec_is_named(solution, tmp_path):
-    with pytest.raises(DeclarationError, match="expected specs of lagrange_casadi"):
+    with pytest.raises(DeclarationError, match="draw: specs: expected a list, each a TimePlot"):
         list(figures.draw(solution, ["fig"], tmp_path))
     with pytest.raises(UnknownNameError, match=r"unknown part in figure 'x' 'Q'; valid: crank"):
         list(figures.draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))

@@ -10,11 +10,12 @@ from click.testing import CliRunner
 from packer import CASE
 from packer import scene as packer
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive, evaluate, holding
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, check, derive, evaluate, holding, load, save
 from lagrange_casadi.actuators import duty_of
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
+from lagrange_casadi.report.contents import contents
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -157,6 +158,7 @@ def test_what_is_not_exact_is_not_told(scene, joint, why):
     solution = evaluate(scene)
     ranges = holding(scene, solution)
     assert ranges[joint].untold == why
+    assert f"held at rest: effort:{joint} is not told: {why}" in solution.notes
     open_ = np.isnan(solution.effort(joint))
     assert open_.any()
     assert np.isnan(ranges[joint].least[open_]).all()
@@ -173,8 +175,9 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     rests = np.isnan(solution.effort("O"))
     assert duty.torque[rests] == pytest.approx(held.worst[rests] / 0.8, rel=1e-12)
     assert duty.torque[~rests] == pytest.approx(duty_of(solution.during(~rests), "O", efficiency=0.8).torque)
+    assert duty_of(solution, "O", efficiency=0.8).torque.tolist() == duty.torque.tolist()
     with pytest.raises(DeclarationError, match=r"give what holding\(\) tells"):
-        duty_of(solution, "O")
+        duty_of(replace(solution, held={}), "O")
     told = f"held at rest: effort:O may be anything from {held.least[rests].min():.5g} to {held.largest[rests].max():.5g} N m"
     out = ["--no-figures", "--out", str(tmp_path / "packer.h5")]
     for command in (["drive"], ["run", *out]):
@@ -186,6 +189,32 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     assert found.exit_code == 0, found.output
     line = f"note: in design 0 a joint that rubs is at rest at {np.count_nonzero(rests)} of {rests.size} instants"
     assert found.output.count(line) == 1
+
+
+@pytest.mark.parametrize(
+    "scene", [packer(), carried_along(), in_space("bush"), drawn_scene(0, "four-bar")], ids=lambda s: s.mechanism.name
+)
+def test_ranges_are_in_the_file_and_on_the_page(scene, tmp_path):
+    solution = evaluate(scene)
+    assert solution.held
+    assert solution.held.keys() <= holding(scene, solution).keys()
+    save(solution, tmp_path / "held.h5")
+    assert check(tmp_path / "held.h5") == []
+    read = load(tmp_path / "held.h5")
+    assert read.notes == solution.notes
+    shown = solution.during(slice(1, None))
+    for name, held in solution.held.items():
+        again = read.held[name]
+        assert (again.unit, again.untold) == (held.unit, held.untold)
+        for end in ("least", "largest"):
+            np.testing.assert_array_equal(getattr(again, end), getattr(held, end))
+            np.testing.assert_array_equal(getattr(shown.held[name], end), getattr(held, end)[1:])
+    for found in (solution, read):
+        page = contents(found)
+        assert {f"holding:{name}:{end}" for name in solution.held for end in ("least", "largest")} <= {
+            one["name"] for one in page["series"]
+        }
+        assert set(solution.notes) <= set(page["notes"])
 
 
 @pytest.mark.parametrize("mistake", [(None, None), ("scene", None), (None, "solution")])

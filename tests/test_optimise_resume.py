@@ -1,6 +1,7 @@
 """Searches that are stopped or killed: what they leave, and how they go on. Real processes."""
 
 import importlib
+import json
 import signal
 import sys
 import zlib
@@ -12,7 +13,7 @@ import sweeps
 from lagrange_casadi import load_case, optimise
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import BusyError, PathError, StoreError
-from lagrange_casadi.optimise.journal import journal_of
+from lagrange_casadi.optimise.journal import journal_of, kept
 from lagrange_casadi.optimise.searching import Search
 from lagrange_casadi.system.seal import verify
 
@@ -155,6 +156,35 @@ def test_damaged_lines_are_done_again(here):
     with pytest.raises(StoreError, match="holds what no search wrote"):
         asked(out="x.h5", resume=True)
     assert asked(out="x.h5", force=True).converged
+
+
+def test_a_journal_whose_first_line_was_cut_holds_nothing(here):
+    """At every byte of it: the same command begins once more. What no search wrote is left alone."""
+    journal = here / "x.h5.journal"
+
+    def stop_later(start, _objective, _excess):
+        if start == 1:
+            raise KeyboardInterrupt
+
+    assert asked(out="x.h5", progress=stop_later).stopped
+    first = journal.read_bytes().splitlines(keepends=True)[0]
+    identity = json.loads(first[9:])["identity"]
+    for resume in (False, True):
+        for size in range(len(first)):
+            journal.write_bytes(first[:size])
+            with kept(here / "x.h5", identity, resume=resume, force=False) as begun:
+                assert not begun.known
+                assert journal.read_bytes().rstrip() == first.rstrip()
+            assert not journal.exists()
+    journal.write_bytes(first[:100])
+    assert asked(out="x.h5").objective == asked().objective
+    for other in (b"notes", b"x", first[:20] + b"\n", b"0123456z", b'01234567 {"of"', first[1:]):
+        journal.write_bytes(other)
+        with pytest.raises(PathError, match="is of an unfinished search"):
+            asked(out="x.h5")
+        with pytest.raises(StoreError, match="holds what no search wrote"):
+            asked(out="x.h5", resume=True)
+        assert journal.read_bytes().rstrip() == other.rstrip()
 
 
 ODD = ['["identity"]', '"identity"', '{"identity": 3}', "3", "null", '{"of": "x", "trail": {}}', '{"of": []}', "[" * 9999, "\\xff"]

@@ -6,10 +6,13 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sweeps
+from forging import edit
 
 from lagrange_casadi import Mechanism, Scene, evaluate, optimise, save
+from lagrange_casadi.cli import main
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.sweep import sweep
 
@@ -62,3 +65,42 @@ def test_damage_that_is_sealed_anew_is_noticed(tmp_path, slider_crank, monkeypat
     assert len(found) == count
     print(kind, Counter(found))
     assert not [word for word in found if word not in ENDINGS and not word.endswith(" told")]
+
+
+def renamed(attributes, old, new):
+    attributes[new] = attributes[old]
+    del attributes[old]
+
+
+CHANGES = {
+    "run": [
+        lambda file: file["t"].write_direct(np.full(5, np.nan)),
+        lambda file: renamed(file["section/rod/law/m0"].attrs, "error_estimate", "error_es+imate"),
+        lambda file: file.attrs.__setitem__("parameters", file.attrs["parameters"].replace("0.2", "0.3")),
+        lambda file: file.attrs.__setitem__("parameters", file.attrs["parameters"].replace(' "', ' `"')),
+        lambda file: file.attrs.__setitem__("mechanism", file.attrs["mechanism"].replace('"body": "slider"', '"body": "sli`er"')),
+        lambda file: file["t"].attrs.__setitem__("units", "ms"),
+    ],
+    "sweep": [lambda file: file["grid/l"].write_direct(np.array([0.2, np.nan]))],
+    "search": [
+        lambda file: file["starts/1/start"].write_direct(np.array([0.0])),
+        lambda file: file["starts/0"].attrs.__setitem__("objective", 1.6),
+        lambda file: file["starts/2"].attrs.__setitem__("ending", "conv\x01rged"),
+        lambda file: file["history"].attrs.__setitem__("columns", ["start", "ocjective", "excess", "result", "T"]),
+        lambda file: file["optima/designs"].write_direct(np.array([[0.6]])),
+        lambda file: renamed(file["starts/1"].attrs, "objective", "ocjective"),
+    ],
+}
+
+
+@pytest.mark.parametrize("kind", CHANGES)
+def test_what_is_told_twice_is_compared(tmp_path, slider_crank, monkeypatch, kind):
+    """What was accepted among some thousands of damaged files."""
+    file = source(kind, tmp_path, slider_crank, monkeypatch)
+    command = ["check", str(file)]
+    whole = file.read_bytes()
+    assert main(command) == 0
+    for change in CHANGES[kind]:
+        file.write_bytes(whole)
+        edit(file, change)
+        assert main(command) == 1

@@ -113,8 +113,8 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
     ("arguments", "error", "says"),
     [
         ({"profiles": []}, DeclarationError, "expected at least one profile"),
-        ({"safety": 0.0}, DeclarationError, r"expected a positive factor of safety, got 0\.0"),
-        ({"deflection": -0.1}, DeclarationError, r"expected a positive deflection over length, as 1/500, got -0\.1"),
+        ({"safety": 0.0}, DeclarationError, r"size: safety: expected a positive number, got 0\.0"),
+        ({"deflection": -0.1}, DeclarationError, r"size: deflection: expected a positive number, got -0\.1"),
         ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
         ({"links": ["plate"]}, DeclarationError, "link 'plate': diameter is no dimension of its rectangle"),
         ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError, "no link; upper: wall is no dimension of its round_bar"),

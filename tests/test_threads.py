@@ -12,13 +12,29 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import casadi as ca
+import constants
 import numpy as np
+import packer
 import pytest
+import spying
 import threaded
 from matplotlib import rcParams
 from stepped import pinned
 
-from lagrange_casadi import Mechanism, Scene, evaluate, prepare, sweep
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    evaluate,
+    export,
+    holding,
+    optimise,
+    prepare,
+    refine,
+    sensitivities,
+    sweep,
+    symbolic,
+    tolerances,
+)
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.declare.motion import samples
 from lagrange_casadi.draw import pictures
@@ -60,6 +76,51 @@ def test_no_switch_of_casadis_is_turned(fresh_cache):
         over.set()
         building.join()
     assert not lost
+
+
+@pytest.mark.parametrize("times", [200, pytest.param(5000, marks=pytest.mark.long)])
+def test_no_constant_is_dropped_while_another_thread_asks_for_it(times):
+    """CasADi crashes then, for its constants are those of the whole process."""
+    command = [sys.executable, constants.__file__, str(times)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+WAYS = {
+    "evaluate": lambda scene, folder: evaluate(scene, wanted=["effort", "sensitivity"]),
+    "interpreted": lambda scene, folder: evaluate(scene, backend="vm"),
+    "single": lambda scene, folder: evaluate(scene, precision="single"),
+    "newton": lambda scene, folder: evaluate(scene, newton=3),
+    "table": lambda scene, folder: evaluate(scene, table=32),
+    "refine": lambda scene, folder: refine(scene, evaluate(scene)),
+    "sensitivities": lambda scene, folder: sensitivities(scene, evaluate(scene)),
+    "slopes": lambda scene, folder: prepare(scene, wanted=["effort"]).gradient().mean,
+    "curvature": lambda scene, folder: prepare(scene, wanted=["effort"]).curvature(),
+    "tolerances": lambda scene, folder: tolerances(scene, {"l": 0.001}, wanted=["effort"]),
+    "sweep": lambda scene, folder: sweep(scene, {"l": (0.5, 0.6, 3)}, wanted=["effort", "sensitivity"], out=folder / "x.h5"),
+    "export": lambda scene, folder: export(scene, folder / "c", precision="single", wanted=["effort"]),
+    "optimise": lambda scene, folder: optimise(scene, minimise="peak:effort:O", over={"r": (0.08, 0.1)}, screen=4, starts=1),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_expressions_are_made_by_one_thread_at_a_time(way, fresh_cache, monkeypatch, tmp_path):
+    unlocked = spying.spied(monkeypatch)
+    with symbolic:
+        pin = pinned if way == "newton" else Mechanism.revolute
+        scene = threaded.press(1 + len(way) / 32, pin)  # as no other test has it
+    assert not unlocked
+    WAYS[way](Scene(scene.mechanism, {"O": scene.laws["O"]}, t=(0.0, 1.0, 9), posture=scene.posture), tmp_path)
+    assert not unlocked
+
+
+def test_at_rest_too(fresh_cache, monkeypatch):
+    with symbolic:
+        scene = packer.scene(0.21)
+    unlocked = spying.spied(monkeypatch)
+    solution = evaluate(scene)
+    assert holding(scene, solution)
+    assert not unlocked
 
 
 RODS = [0.5 + 0.01 * k for k in range(6)]

@@ -87,8 +87,8 @@ WRONG = {
     "parameters": (lambda s: s.mechanism.values([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
     "a sweep's": (lambda s: sweep(s, ONE, parameters=3), "parameters: expected values by name, as {'l': 0.25}, got 3"),
     "a search's": (lambda s: optimise(s, minimise="l", over=ONE, parameters=3), "parameters: expected values by name"),
-    "limits": (lambda s: optimise(s, minimise="l", over=ONE, subject_to=3), "subject_to: expected a list of constraints, got 3"),
-    "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number above 0, or values"),
+    "limits": (lambda s: optimise(s, minimise="l", over=ONE, subject_to=3), "subject_to: expected a list of texts, got 3"),
+    "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number from 1 to 16777216"),
     "sine": (lambda s: optimise(s, minimise="l", over=ONE, transmission="x"), "transmission: expected a number, got 'x'"),
     "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
     "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),
@@ -109,9 +109,9 @@ WRONG = {
     ),
     "table": (lambda s: table("x", [0, 1], [0, 1]), "table: expected a number or an expression, got 'x'"),
     "samples": (lambda s: motion.samples(1.0, [0, 1]), "expected a row of numbers, got 1.0"),
-    "along": (lambda s: beams.along(["a", 1], [RECT, RECT]), "along: expected numbers for ratios, got ['a', 1]"),
-    "stepped": (lambda s: beams.stepped(0.5, [RECT, RECT]), "stepped: expected a row of steps, and one cross-section more"),
-    "notches": (lambda s: beams.Beam(RECT, STEEL, notches=None), "beam: expected a list of notches, got None"),
+    "along": (lambda s: beams.along(["a", 1], [RECT, RECT]), "along: ratios: expected a row of numbers, got ['a', 1]"),
+    "stepped": (lambda s: beams.stepped(0.5, [RECT, RECT]), "stepped: steps: expected a row of numbers, got 0.5"),
+    "notches": (lambda s: beams.Beam(RECT, STEEL, notches=None), "Beam: notches: expected a list, each a Notch, got None"),
     "columns": (lambda s: beams.Beam(RECT, STEEL, columns=1.0), "beam: expected two effective lengths, positive, got 1.0"),
 }
 

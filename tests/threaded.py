@@ -13,7 +13,7 @@ from threading import Barrier
 import numpy as np
 from stepped import pinned
 
-from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep
+from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep, symbolic
 from lagrange_casadi.declare.motion import polynomial
 
 JOBS = 10
@@ -22,7 +22,11 @@ QUICK = "-O0"  # to compile
 
 def press(own, pin=Mechanism.revolute):
     """A press whose crank turns a hundred times; with ``own`` one that no other job has."""
-    m = Mechanism("press")
+    with symbolic:
+        return _press(Mechanism("press"), own, pin)
+
+
+def _press(m, own, pin):
     l, r = m.parameter("l", 0.5, "m", low=0.0), m.parameter("r", 0.1, "m", low=0.0)
     crank, rod = m.link("crank", length=r, mass=1.2 + own / 8), m.link("rod", length=2 * l - l, mass=l * 4)
     ram = m.point_mass("ram", 15.0)

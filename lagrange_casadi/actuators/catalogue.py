@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import NotNegative, Numeric, Positive, public
 from ..declare.density import Array
 from ..errors import DeclarationError
 from ..system.csv_rows import Row, read_rows
@@ -33,6 +33,7 @@ _UNITS = {
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
 
+@public
 @dataclass(frozen=True)
 class Motor:
     """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one forces in N, speeds in m/s, and
@@ -45,27 +46,27 @@ class Motor:
     """
 
     name: str
-    stall_torque: float
-    rated_torque: float
-    rated_speed: float
-    peak_torque: float
-    max_speed: float
-    inertia: float
-    knee_speed: float | None = None
-    end_torque: float | None = None
+    stall_torque: NotNegative
+    rated_torque: NotNegative
+    rated_speed: Positive
+    peak_torque: NotNegative
+    max_speed: Positive
+    inertia: Positive
+    knee_speed: NotNegative | None = None
+    end_torque: NotNegative | None = None
     time_constant: float = math.inf
     linear: bool = False
 
-    def lasting(self, speed: float | Array) -> Array:
+    def lasting(self, speed: Numeric) -> Array:
         """The torque that it bears continuously at a speed [N m], zero where there is none."""
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
-        return np.maximum(self.stall_torque - fall * np.abs(speed), 0.0)
+        return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
 
-    def at_most(self, speed: float | Array) -> Array:
+    def at_most(self, speed: Numeric) -> Array:
         """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
-        return np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque])
+        return np.asarray(np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque]))
 
     @property
     def rated_power(self) -> float:

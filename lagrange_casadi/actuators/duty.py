@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Finite, public
 from ..declare.density import Array
 from ..errors import DeclarationError, UnknownNameError
+from ..instants.held import Holding
 from ..instants.solution import Solution
-from ..study.holding import Holding
 
 _COARSE = 0.01
 """By how much every second instant may tell otherwise, where instants are enough."""
@@ -26,6 +26,7 @@ class InertiaRatio(NamedTuple):
     largest: float
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Duty:
     """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m], each (t,).
@@ -123,9 +124,9 @@ def duty_of(
     solution: Solution,
     joint: str,
     *,
-    ratio: float = 1.0,
+    ratio: Finite = 1.0,
     efficiency: float = 1.0,
-    inertia: float = 0.0,
+    inertia: Finite = 0.0,
     linear: bool = False,
     carried: Array | None = None,
     held: Holding | None = None,
@@ -135,8 +136,8 @@ def duty_of(
     ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in rad/m; a negative one turns it the
     other way. ``efficiency`` is that of the gearbox, ``inertia`` [kg m^2] that of the motor's rotor and what turns with it.
     A ``linear`` motor pushes a drive that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held`` is what
-    :func:`.holding` tells of it: where joints that rub are at rest the effort is the larger in size of its range.
+    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held`` is the range
+    of its efforts, by default the solution's: where joints that rub are at rest the effort is the larger in size of it.
 
     Raises :class:`.UnknownNameError` for what is no drive of the solution, :class:`.DeclarationError` for numbers that cannot be,
     for fewer than two instants, and where the effort is open, as where a joint that rubs is at rest.
@@ -158,6 +159,7 @@ def duty_of(
         raise DeclarationError(f"carried: expected an inertia at each of the {solution.t.size} instants")
     effort, motion = solution.effort(joint), solution.motion(joint)
     rests = np.isnan(effort)
+    held = solution.held.get(joint) if held is None else held
     if held is not None:
         effort = np.where(rests, held.worst, effort)
     open_ = int(np.count_nonzero(~np.isfinite(effort)))

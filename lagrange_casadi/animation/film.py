@@ -36,6 +36,7 @@ _KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
 _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 
 
+@public
 @dataclass(frozen=True)
 class Film:
     """How a cycle is shown: the picture's ``width`` [pixels], frames a second, and the ``seconds`` that a cycle takes.

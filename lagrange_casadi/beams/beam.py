@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
+from ..arguments import Share, Within, public
 from ..errors import DeclarationError, check_kind
 from .material import Material
 from .shape import Course, Shape, course_of
+
+Factor: TypeAlias = Annotated[float, Within(1.0)]
 
 SLIGHT = 1e-6
 """Of a column's critical load: less compression buckles nothing, as what rounding leaves at a free end."""
 
 
+@public
 @dataclass(frozen=True)
 class Notch:
     """A place where stress concentrates: the ratio ``at`` = xi/l, and the theoretical factors on nominal stress of axial force, of
@@ -23,23 +27,14 @@ class Notch:
     ``sensitivity``, from 0 to 1, is how much of it fatigue feels: K_f = 1 + q (K_t - 1).
     """
 
-    at: float
-    axial: float = 1.0
-    bending: float = 1.0
-    shear: float = 1.0
-    sensitivity: float = 1.0
-
-    def __post_init__(self) -> None:
-        if not (isinstance(self.at, (int, float)) and 0.0 <= self.at <= 1.0):
-            raise DeclarationError(f"notch: expected a ratio xi/l from 0 to 1, got {self.at!r}")
-        for name in ("axial", "bending", "shear"):
-            value = getattr(self, name)
-            if not (isinstance(value, (int, float)) and 1.0 <= value < math.inf):
-                raise DeclarationError(f"notch at xi/l = {self.at:g}: its {name} factor must be 1 or more, got {value!r}")
-        if not (isinstance(self.sensitivity, (int, float)) and 0.0 <= self.sensitivity <= 1.0):
-            raise DeclarationError(f"notch at xi/l = {self.at:g}: its sensitivity must be from 0 to 1, got {self.sensitivity!r}")
+    at: Share
+    axial: Factor = 1.0
+    bending: Factor = 1.0
+    shear: Factor = 1.0
+    sensitivity: Share = 1.0
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Beam:
     """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`; notches along the link.

@@ -10,6 +10,7 @@ from ..arguments import public
 from ..errors import DeclarationError, UnknownNameError
 
 
+@public
 @dataclass(frozen=True)
 class Material:
     """A material, in SI units; what is not known is None, and whatever needs it says so.

@@ -16,6 +16,7 @@ _UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
 """How many of each are a metre."""
 
 
+@public
 @dataclass(frozen=True)
 class Profile:
     """A profile: its name, and dimensions [m] by name."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..arguments import number, public
+from ..arguments import Symbolic, number, public
 from ..errors import DeclarationError, NumberError, check_kind
 from . import solid, walls
 from .properties import Fibre, Properties
@@ -21,6 +21,7 @@ Demand = tuple[Any, str]
 """What must be positive, and in words what it is."""
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A cross-section: its ``kind`` and its ``dimensions`` by name."""
@@ -82,49 +83,49 @@ def _length(what: str, value: Any) -> Any:
 
 
 @public
-def rectangle(height: Any, width: Any) -> Shape:
+def rectangle(height: Symbolic, width: Symbolic) -> Shape:
     """A rectangle."""
     return Shape("rectangle", {"height": height, "width": width})
 
 
 @public
-def round_bar(diameter: Any) -> Shape:
+def round_bar(diameter: Symbolic) -> Shape:
     """A round bar."""
     return Shape("round_bar", {"diameter": diameter})
 
 
 @public
-def tube(diameter: Any, wall: Any) -> Shape:
+def tube(diameter: Symbolic, wall: Symbolic) -> Shape:
     """A round tube, by its outer diameter and its wall."""
     return Shape("tube", {"diameter": diameter, "wall": wall})
 
 
 @public
-def ellipse(height: Any, width: Any) -> Shape:
+def ellipse(height: Symbolic, width: Symbolic) -> Shape:
     """An ellipse, by its two diameters."""
     return Shape("ellipse", {"height": height, "width": width})
 
 
 @public
-def i_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+def i_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
     """An I, by its height, the width of its flanges, and the thickness of its web and of its flanges."""
     return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
-def t_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+def t_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
     """A T, its flange on the side of +y."""
     return Shape("t_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
-def c_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+def c_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
     """A C, its web on the side of -z."""
     return Shape("c_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
-def box(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
     """A box, by its outer height and width, and the thickness of its two webs and of its two flanges."""
     return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
 
@@ -146,18 +147,18 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
 
 @public
 def given(
-    area: Any,
-    iz: Any,
-    iy: Any,
+    area: Symbolic,
+    iz: Symbolic,
+    iy: Symbolic,
     *,
-    top: Any,
-    side: Any,
-    bottom: Any = None,
-    iyz: Any = 0.0,
-    torsion: Any = None,
-    torsion_modulus: Any = None,
-    shear_y: Any = None,
-    shear_z: Any = None,
+    top: Symbolic,
+    side: Symbolic,
+    bottom: Symbolic | None = None,
+    iyz: Symbolic = 0.0,
+    torsion: Symbolic | None = None,
+    torsion_modulus: Symbolic | None = None,
+    shear_y: Symbolic | None = None,
+    shear_z: Symbolic | None = None,
 ) -> Shape:
     """A cross-section by its properties, as tables of standards have them.
 

@@ -19,7 +19,7 @@ from ..store.runs import load
 from ..store.untrusted import told_as
 from ..system.publish import check_writable
 from .echo import echo
-from .options import instants, parameters, settings_by
+from .options import PATH, instants, parameters, settings_by
 from .options import over as by_drive
 
 _FILES = (".h5", ".hdf5")
@@ -27,10 +27,10 @@ _PLAIN = Film()
 
 
 @click.command()
-@click.argument("target", metavar="FILE.h5|CASE", type=click.Path(path_type=Path))
+@click.argument("target", metavar="FILE.h5|CASE", type=PATH)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE.gif|FILE.mp4|FILE.svg|FILE.glb",
     help="The animation; default: <name>.gif here.",
 )

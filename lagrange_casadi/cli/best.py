@@ -15,17 +15,18 @@ from ..sweep.best import missed, tally
 from ..system.publish import check_writable
 from ..system.streams import is_standard_output
 from .echo import echo
+from .options import PATH
 from .rows import show, write_csv
 
 
 @click.command()
-@click.argument("file", metavar="FILE.h5", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.h5", type=PATH)
 @click.option("--minimise", multiple=True, metavar="COLUMN", help="The column to be least; with two objectives, their front.")
 @click.option("--maximise", multiple=True, metavar="COLUMN", help="The column to be largest.")
 @click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only designs like this: <, <=, >, >=, == or !=; repeatable.")
 @click.option("--count", type=click.IntRange(1), metavar="N", help="How many; default: the best one, or the whole front.")
 @click.option("--column", "columns", multiple=True, metavar="COLUMN", help="Show this column too; repeatable.")
-@click.option("--csv", type=click.Path(path_type=Path), metavar="OUT.csv", help="Write them as CSV too.")
+@click.option("--csv", type=PATH, metavar="OUT.csv", help="Write them as CSV too.")
 def best(
     file: Path,
     minimise: Sequence[str],

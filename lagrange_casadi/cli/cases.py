@@ -13,10 +13,11 @@ from ..errors import PathError
 from ..shipped_cases import shipped_cases
 from ..system.publish import filling
 from .echo import echo
+from .options import PATH
 
 
 @click.command()
-@click.option("--copy", type=click.Path(path_type=Path), metavar="FOLDER", help="Copy all of them into a new folder.")
+@click.option("--copy", type=PATH, metavar="FOLDER", help="Copy all of them into a new folder.")
 def cases(copy: Path | None) -> None:
     """List the cases that come with the package, or copy them. Each is run by its name, as in run four_bar."""
     found = shipped_cases()

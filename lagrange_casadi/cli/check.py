@@ -21,6 +21,7 @@ from ..sweep import is_sweep
 from ..sweep.checking import check_sweep, progress, unfinished
 from ..system.room import memory
 from .echo import echo
+from .options import PATH
 
 _PLACE = Path(__file__).parents[2]
 _PROGRAM = f"""
@@ -41,7 +42,7 @@ _LINES, _LENGTH = 100, 1000
 
 
 @click.command()
-@click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=PATH)
 @click.option("--untrusted", is_flag=True, help="Read it in a process of its own: forged files may crash or stall HDF5.")
 @click.option("--time-limit", type=float, metavar="SECONDS", help=f"What --untrusted may take; default: {_SECONDS:g}.")
 def check(file: Path, untrusted: bool, time_limit: float | None) -> int:

@@ -21,11 +21,9 @@ from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
-from ..study.holding import Holding, holding
 from ..system.numerals import real
 from .echo import echo
-from .holding_lines import holding_lines
-from .options import instants, parameters, separated, settings_by
+from .options import PATH, instants, length, parameters, separated, settings_by
 from .options import over as by_drive
 
 _BAR = 40
@@ -47,8 +45,8 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
 
 
 @click.command(name="drive")
-@click.argument("case", type=click.Path(path_type=Path))
-@click.option("--motors", type=click.Path(path_type=Path), metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
+@click.argument("case", type=PATH)
+@click.option("--motors", type=PATH, metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
 @click.option("--drive", "drives", multiple=True, metavar="JOINT", help="This drive; repeatable. Default: all.")
 @click.option(
     "--ratio",
@@ -58,13 +56,13 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
     metavar="NUMBER,...",
     help="Turns of the motor for one of the drive; of several the best is taken. Default: 1.",
 )
-@click.option("--lead", type=float, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
+@click.option("--lead", type=length, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
 @click.option("--efficiency", type=float, default=1.0, show_default=True, metavar="SHARE", help="That of the gearbox.")
 @click.option("--inertia", type=float, default=0.0, metavar="NUMBER", help="What turns with the motor's shaft [kg m^2].")
 @settings_by()
 @instants("Instants [s], over a whole cycle; default: the case's.")
 @by_drive
-@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
+@click.option("--plot", type=PATH, metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
 def drive_command(
     case: Path,
     motors: Path | None,
@@ -100,16 +98,14 @@ def drive_command(
     solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
     lines = [f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"]
     failed: LagrangeCasadiError | None = None
-    ranges = holding(scene, solution)
     for name in chosen:
         carried = inertia_at(scene, name, parameters=given, t=t, over=over)
-        held = ranges[name]
-        load = duty_of(solution, name, linear=slides(solution, name), carried=carried, held=held)
+        load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
         lines += _load_lines(load)
         found: Duty | Choice = load
         if catalogue:
             try:
-                found = _choose(solution, name, catalogue, ratios, lead, efficiency, inertia, carried, held)
+                found = _choose(solution, name, catalogue, ratios, lead, efficiency, inertia, carried)
             except LagrangeCasadiError as error:
                 if error.exit_status == 2:
                     raise
@@ -120,7 +116,6 @@ def drive_command(
         if plot is not None:
             plot_duty(*((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot)))
             lines.append(f"wrote {plot}")
-    lines += holding_lines(solution, ranges)
     lines += (f"note: {note}" for note in solution.notes)
     for line in (*lines, summary(solution.certificate)):
         echo(line)
@@ -139,7 +134,6 @@ def _choose(
     efficiency: float,
     inertia: float,
     carried: Array,
-    held: Holding,
 ) -> Choice:
     """The motor of a drive. Raises ``click.UsageError`` where its ratio is left open, and :class:`.NoDesignError`."""
     linear, slide = catalogue[0].linear, slides(solution, name)
@@ -152,7 +146,7 @@ def _choose(
 
     def asked(ratio: float, rotor: float) -> Duty:
         own = rotor + inertia
-        beside = partial(duty_of, solution, name, linear=linear, carried=carried, held=held)
+        beside = partial(duty_of, solution, name, linear=linear, carried=carried)
         return beside(ratio=ratio, efficiency=efficiency, inertia=own)
 
     return select(catalogue, asked, ratios=[turns * ratio for ratio in ratios or (1.0,)])

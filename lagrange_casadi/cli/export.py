@@ -12,12 +12,12 @@ from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..export import export as write
 from .echo import echo
-from .options import arithmetic, parameters, settings_by, wanted
+from .options import PATH, arithmetic, parameters, settings_by, wanted
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), required=True, metavar="DIR", help="The folder to write.")
+@click.argument("case", type=PATH)
+@click.option("--out", type=PATH, required=True, metavar="DIR", help="The folder to write.")
 @click.option("--name", metavar="NAME", help="What it is called in C; default: the case's name.")
 @settings_by("Give a parameter another default; repeatable.")
 @wanted()

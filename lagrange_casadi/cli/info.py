@@ -21,13 +21,14 @@ from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
 from ..sweep.instant_axis import in_words
 from .echo import echo
-from .options import wanted
+from .options import PATH, wanted
 from .report import asked_line, peak_line
 from .scene_lines import scene_lines
+from .strength_lines import untold_lines
 
 
 @click.command()
-@click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
+@click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=PATH)
 @wanted("Count the instructions of these outputs; default: the case's.")
 def info(target: Path, want: tuple[str, ...]) -> None:
     """Describe a case: its parts, drives, loads, posture, what is wanted, and its instruction count. Or a file of a run or a sweep,
@@ -82,6 +83,8 @@ def _describe_file(solution: Solution) -> None:
     echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     for note in solution.notes:
         echo(f"note: {note}")
+    for line in untold_lines(solution):
+        echo(line)
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
         echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")

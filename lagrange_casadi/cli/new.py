@@ -14,12 +14,13 @@ from ..errors import PathError, UnknownNameError
 from ..shipped_cases import shipped_cases
 from ..system.publish import filling
 from .echo import echo
+from .options import PATH
 
 _SIMPLE = "four_bar"
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("folder", type=PATH)
 @click.option("--like", default=_SIMPLE, show_default=True, metavar="NAME", help="Begin with this case of those that cases lists.")
 def new(folder: Path, like: str) -> None:
     """Begin a case of your own in the new FOLDER, as a copy of one that comes with the package, under the folder's name."""

@@ -25,7 +25,7 @@ from ..system.numerals import real
 from ..system.publish import check_writable, writing
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
-from .options import instants, parameters, settings_by
+from .options import PATH, instants, parameters, settings_by
 
 _BOUNDS = "NAME=LEAST:LARGEST"
 
@@ -41,7 +41,7 @@ def _bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @click.option(
     "--minimise",
     required=True,
@@ -69,8 +69,8 @@ def _bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
 @click.option("--dask", metavar="ADDRESS", help="Search on a cluster: its Dask scheduler, as tcp://HOST:8786.")
 @click.option("--resume", is_flag=True, help="Go on with a search that was stopped; start where there is nothing.")
 @click.option("--force", is_flag=True, help="Start anew, whatever is there.")
-@click.option("--out", type=click.Path(path_type=Path), help="History and result, as HDF5; default: <case>_optimum.h5 here.")
-@click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_optimum.png here.")
+@click.option("--out", type=PATH, help="History and result, as HDF5; default: <case>_optimum.h5 here.")
+@click.option("--figure", type=PATH, help="The picture; default: <case>_optimum.png here.")
 def optimise(
     case: Path,
     minimise: Sequence[str],

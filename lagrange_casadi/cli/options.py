@@ -6,11 +6,12 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from ..arguments import typed
+from ..arguments import number, typed
 from ..arithmetic.compensated import PRECISIONS
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
@@ -24,6 +25,19 @@ OVER = "JOINT=START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
+
+
+class _Path(click.Path):
+    """A path, which an empty text is not: that of a variable of the shell which is not set would be the folder where one is."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """The path that is told."""
+        if value == "":
+            self.fail("expected a path, got ''", parameter, context)
+        return super().convert(value, parameter, context)
+
+
+PATH = _Path(path_type=Path)
 
 
 def even_points(text: str) -> EvenPoints:
@@ -64,6 +78,14 @@ def axis(text: str) -> tuple[str, Axis]:
         return name, Range(start, stop, count, len(parts) == 4)
     except DeclarationError as error:
         raise click.BadParameter(f"{name}: {error}") from None
+
+
+def length(text: str) -> float:
+    """A length, which may have a unit, as 5mm."""
+    try:
+        return number(_value(text), "m", finite=False)
+    except ValueError:
+        raise click.BadParameter(f"expected a length [m], as in 0.005 or 5mm, got '{text}'") from None
 
 
 def setting(text: str) -> tuple[str, float | str]:

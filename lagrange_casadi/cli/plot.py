@@ -17,17 +17,18 @@ from ..store.untrusted import told_as
 from ..sweep import Sweep, is_sweep
 from ..sweep.default_figures import default_plots
 from ..sweep.plots import Spec, draw_sweep
-from ..system.publish import check_writable, filling
+from ..system.publish import check_writable
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import place
+from .options import PATH, place
+from .strength_lines import untold_lines
 
 _UNDRAWN = "cannot be drawn"
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="The figures' folder.")
+@click.argument("file", type=PATH)
+@click.option("--out", type=PATH, required=True, help="The figures' folder.")
 @click.option(
     "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
 )
@@ -61,16 +62,18 @@ def plot(
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
         solution, drawn = load(file), parse_specs(figure_specs(file))
-        with told_as(_UNDRAWN, file), filling(out) as draft:
+        with told_as(_UNDRAWN, file), MANIFEST.filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si)
-            MANIFEST.add(draft, out)
+        if not drawn:
+            for line in untold_lines(solution):
+                echo(line, err=True)
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
 def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
     """Draw a sweep; what shows nothing is said. Raises :class:`NoDesignError` where no figure shows anything."""
     skipped, drawn = [], []
-    with told_as(_UNDRAWN, sweep.path), filling(out) as draft:
+    with told_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
         for path, why in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
             if why:
                 skipped.append(f"{path.name}: {why}")
@@ -79,7 +82,6 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
         write_index(sweep.case, drawn, draft)
-        MANIFEST.add(draft, out)
     for line in skipped:
         echo(f"note: not drawn: {line}", err=True)
 

@@ -24,16 +24,17 @@ from ..sweep import Sweep, is_sweep
 from ..sweep.page import is_of, write_sweep_report
 from ..system.publish import check_writable
 from .echo import echo
-from .options import instants, parameters, settings_by, wanted
+from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive
+from .strength_lines import untold_lines
 
 _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
 
 
 @click.command()
-@click.argument("target", metavar="FILE.h5|CASE", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), metavar="REPORT.html", help="The page; default: <name>.html here.")
+@click.argument("target", metavar="FILE.h5|CASE", type=PATH)
+@click.option("--out", type=PATH, metavar="REPORT.html", help="The page; default: <name>.html here.")
 @settings_by("Of a case: give a parameter another value.")
 @instants("Of a case: instants [s]; default: its own.")
 @by_drive
@@ -41,7 +42,7 @@ _UNSHOWN = "cannot be shown"
 @click.option(
     "--live", is_flag=True, help="Of a case: put the engine into the page, with sliders for the parameters; needs ziglang."
 )
-@click.option("--case", type=click.Path(path_type=Path), help="Of a sweep: its case, for the mechanism in motion.")
+@click.option("--case", type=PATH, help="Of a sweep: its case, for the mechanism in motion.")
 def report(
     target: Path,
     out: Path | None,
@@ -115,6 +116,8 @@ def _tell(solution: Solution, out: Path) -> None:
     shown, total = shown_instants(solution).size, solution.t.size
     if shown < total:
         echo(f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True)
+    for line in untold_lines(solution):
+        echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} says so")

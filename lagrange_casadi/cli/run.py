@@ -15,7 +15,7 @@ from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
-from ..declare.scene import Scene
+from ..declare.scene import Scene, fitted_of, strength_of
 from ..declare.times import Over, Timing
 from ..draw.index import MANIFEST
 from ..draw.kept import dump_specs
@@ -26,26 +26,24 @@ from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
-from ..study.holding import holding
 from ..study.peaks import forces, refine, resultants
-from ..system.publish import check_writable, filling
+from ..system.publish import check_writable
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_lines
-from .holding_lines import holding_lines
-from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
+from .options import EVEN_POINTS, PATH, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
 from .rows import csv_written, rows_of
 from .slope_lines import slope_lines
-from .strength_lines import strength_lines
+from .strength_lines import strength_lines, untold_lines
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @settings_by()
 @instants()
 @by_drive
@@ -53,10 +51,10 @@ from .strength_lines import strength_lines
 @wanted("effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.")
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
-@click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
-@click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
+@click.option("--out", type=PATH, help="The file; default: <case>.h5 here.")
+@click.option("--figures", type=PATH, help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
-@click.option("--csv", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write a row for every instant as CSV too.")
+@click.option("--csv", type=PATH, metavar="FILE.csv", help="Write a row for every instant as CSV too.")
 @click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
 @click.option("--elastic", is_flag=True, help="Let the beams of links tell what equilibrium leaves open.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
@@ -111,15 +109,19 @@ def run(
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
     told = csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv) if csv else nullcontext()
-    with told, filling(folder) if folder else nullcontext() as draft:
+    with told, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
-            MANIFEST.add(draft, folder)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
     say = partial(echo, err=csv is not None and is_standard_output(csv))
-    for line in _report(loaded.scene, solution, want or loaded.scene.wanted, loaded.scene.timing(t, over), backend, refine_peaks):
+    asked = want or loaded.scene.wanted
+    for line in _report(loaded.scene, solution, asked, loaded.scene.timing(t, over), backend, refine_peaks):
         say(line)
+    if folder and not loaded.figures:
+        mechanism = loaded.scene.mechanism
+        for line in untold_lines(solution, (*strength_of(mechanism, "safety", asked), *fitted_of(mechanism, asked))):
+            say(line)
     if not no_certificate:
         say(summary(solution.certificate))
     for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
@@ -152,7 +154,6 @@ def _report(
     yield f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {used}; {what}:"
     names = [*forces(solution), *resultants(solution)]
     yield from report_lines(solution, refine(scene, solution, names) if refined else ())
-    yield from holding_lines(solution, holding(scene, solution))
     yield from slope_lines(solution, scene, backend)
     yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
     yield from elastic_lines(solution, scene.mechanism, want)

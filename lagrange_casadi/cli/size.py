@@ -18,7 +18,7 @@ from ..strength.stress import KINDS
 from ..study.sizing import Sized, size
 from ..system.numerals import real
 from .echo import echo
-from .options import instants, parameters, settings_by
+from .options import PATH, instants, parameters, settings_by
 from .options import over as by_drive
 from .strength_lines import safety_lines, told
 
@@ -36,10 +36,8 @@ def share(text: str) -> float:
 
 
 @click.command(name="size")
-@click.argument("case", type=click.Path(path_type=Path))
-@click.option(
-    "--profiles", type=click.Path(path_type=Path), metavar="FILE.csv", help="A column name, and one for each dimension [m]."
-)
+@click.argument("case", type=PATH)
+@click.option("--profiles", type=PATH, metavar="FILE.csv", help="A column name, and one for each dimension [m].")
 @click.option("--safety", type=float, default=2.0, show_default=True, metavar="FACTOR", help="The least factor of safety.")
 @click.option(
     "--deflection",

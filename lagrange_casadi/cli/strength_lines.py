@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene, fitted_of, strength_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
+from ..strength.parts import untold
 from ..strength.safety import Life, Safety
 from ..strength.stress import KINDS, StressPeak
 from ..study.strength_peaks import refine_safety, refine_stress
@@ -35,6 +36,13 @@ def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[st
         yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
         for link in links:
             yield from told(link, lambda name: [_life(solution.life(name))])
+
+
+def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
+    """Which links and joints are left out of figures and tables of strength, and why, but for those that were told of."""
+    for part, why in untold(solution).items():
+        if part not in besides:
+            yield f"note: no factor of safety of '{part}' is told: {why}"
 
 
 def safety_lines(found: Safety) -> Iterator[str]:

@@ -22,19 +22,19 @@ from ..sweep.resting import resting_note
 from ..sweep.turning import turning_note
 from ..system.room import MOST_THREADS
 from .echo import echo
-from .options import AXIS, EVEN_POINTS, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
+from .options import AXIS, EVEN_POINTS, PATH, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
 from .options import over as by_drive
 from .progress import shown
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @click.option(
     "--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last varies fastest."
 )
 @click.option(
     "--designs",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE.csv",
     help="Sweep a list: a line of names, then one line for each design.",
 )
@@ -59,7 +59,7 @@ from .progress import shown
 @click.option("--force", is_flag=True, help="Start anew, and replace what is there.")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
-@click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>_sweep.h5 here.")
+@click.option("--out", type=PATH, help="The file; default: <case>_sweep.h5 here.")
 def sweep(
     case: Path,
     axes: Sequence[tuple[str, Axis]],

@@ -19,7 +19,7 @@ from ..study.tolerances import SAMPLES, Spreads
 from ..study.tolerances import tolerances as spreads_of
 from ..system.publish import check_writable, writing
 from .echo import echo
-from .options import instants, parameters, settings_by, wanted
+from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 _FEW = 3
@@ -35,7 +35,7 @@ def _tolerance(text: str) -> tuple[str, str]:
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @click.option(
     "--tolerance", "within", type=_tolerance, multiple=True, required=True, metavar="NAME=VALUE", help="Plus or minus; repeatable."
 )
@@ -45,7 +45,7 @@ def _tolerance(text: str) -> tuple[str, str]:
 @wanted("As in run; default: the case's; repeatable.")
 @click.option("--samples", type=int, default=SAMPLES, show_default=True, metavar="NUMBER", help="Designs drawn at random.")
 @click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
-@click.option("--csv", "out", type=click.Path(path_type=Path), metavar="FILE.csv", help="All peaks, a row each.")
+@click.option("--csv", "out", type=PATH, metavar="FILE.csv", help="All peaks, a row each.")
 def tolerances(
     case: Path,
     within: Sequence[tuple[str, str]],

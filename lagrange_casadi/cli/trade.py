@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,19 +21,19 @@ from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
 from .echo import echo
-from .options import instants, parameters, settings_by, wanted
+from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @settings_by()
 @instants()
 @by_drive
 @wanted()
 @click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
-@click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
-@click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
+@click.option("--out", type=PATH, help="The numbers, as JSON; default: <case>_trade.json here.")
+@click.option("--figure", type=PATH, help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
@@ -44,8 +45,8 @@ def trade(
     figure: Path | None,
 ) -> None:
     """Measure time and error of every method on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
-    if accuracy is not None and not accuracy > 0.0:
-        raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
+    if accuracy is not None and not 0.0 < accuracy < math.inf:
+        raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
     out, figure = out or Path(f"{loaded.name}_trade.json"), figure or Path(f"{loaded.name}_trade.png")
     for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):

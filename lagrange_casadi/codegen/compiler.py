@@ -18,14 +18,13 @@ import shlex
 import shutil
 import subprocess
 import sys
-import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from ..errors import CompilerError, lacking
+from ..errors import CompilerError, lacking, warn
 from ..system import cache
 from . import programs
 
@@ -107,7 +106,7 @@ def _find_compiler(language: Language, chosen: str, _path: str) -> Compiler | No
         try:
             version = _version(command)
         except subprocess.TimeoutExpired as error:
-            warnings.warn(f"the compiler {' '.join(command)} is passed over: it {_silent(error)}", stacklevel=3)
+            warn(f"the compiler {' '.join(command)} is passed over: it {_silent(error)}")
             continue
         if version is not None:
             return Compiler(language, command, version)
@@ -159,7 +158,7 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
             try:
                 cache.keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
             except OSError as error:
-                warnings.warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
+                warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only")
         try:
             return ctypes.CDLL(str(fresh))
         except OSError as error:
@@ -194,7 +193,7 @@ def _kept(library: Path) -> ctypes.CDLL | None:
                 why = f"does not load ({error})"
         else:
             why = "was damaged"
-    warnings.warn(f"the cached library {library} {why} and is built again", stacklevel=4)
+    warn(f"the cached library {library} {why} and is built again")
     return None
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
+from ..system.symbolic import symbolic
 from .calls import Call
 from .split import split
 from .stages import Stages, plain
@@ -282,6 +283,7 @@ def following(graph: SceneGraph, stages: Stages, newton: int | None, sizes: dict
     return _FOLLOW.format(**sizes, **rule, told=_told(newton), turns=turns, slow=slow)
 
 
+@symbolic
 def _lead(drive: ca.Function) -> ca.Function:
     """The drive under a name of its own, for one instant at a time."""
     inputs = [ca.MX.sym(drive.name_in(i), drive.size1_in(i)) for i in range(drive.n_in())]
@@ -333,6 +335,7 @@ def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
     }
 
 
+@symbolic
 def hoisted(instant: ca.Function, rows: Sequence[int] | None = None) -> tuple[ca.Function, ca.Function]:
     """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p; of some ``rows``."""
     inputs = instant.sx_in()

@@ -26,6 +26,7 @@ from ..arithmetic.lookups import Lookup
 from ..declare.density import Array
 from ..declare.motion import Laws
 from ..equations.scene_graph import SceneGraph
+from ..system.symbolic import Graphs, symbolic
 
 FEW_TURNS = 128.0
 """Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""
@@ -34,7 +35,7 @@ _SAMPLES = 65
 
 
 @dataclass(frozen=True, eq=False)
-class Stages:
+class Stages(Graphs):
     """The functions of an instant, in a precision.
 
     ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction, size)`` where loops are iterated;
@@ -49,6 +50,7 @@ class Stages:
     compensated: bool = False
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def plain(graph: SceneGraph) -> Stages:
     """The stages of a graph in doubles that count turns themselves."""
@@ -65,6 +67,7 @@ def plain(graph: SceneGraph) -> Stages:
     return Stages(drive, loops, instant)
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def compensated(graph: SceneGraph, precision: Precision) -> Stages:
     """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
@@ -72,7 +75,7 @@ def compensated(graph: SceneGraph, precision: Precision) -> Stages:
 
 
 @dataclass(frozen=True, eq=False)
-class Controlled:
+class Controlled(Graphs):
     """The functions of an instant whose drives are given, not prescribed: for code that a controller calls.
 
     ``law(t, p) -> (d, d_rate, d_acceleration)`` are the motions that are written in scalars, as :class:`.Laws` order them;
@@ -88,6 +91,7 @@ class Controlled:
     precision: Precision
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def controlled(graph: SceneGraph, precision: Precision, fixed: tuple[float, ...] | None = None) -> Controlled:
     """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.

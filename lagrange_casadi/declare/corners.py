@@ -6,7 +6,6 @@ They are looked for where a mechanism goes, with the parameters that it has ther
 from __future__ import annotations
 
 import functools
-import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..system.symbolic import Graphs, symbolic
 from .density import Array
 from .kinks import Smooth
 from .mechanism import Mechanism
@@ -22,7 +22,6 @@ from .parts import Constraint
 from .scene import Scene
 
 _LOOKED_AT = 4001
-_ONE_AT_A_TIME = threading.Lock()
 
 
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
@@ -32,7 +31,7 @@ def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | 
 
 
 @dataclass(frozen=True, eq=False)
-class Corners:
+class Corners(Graphs):
     """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``."""
 
     scene: Scene
@@ -40,14 +39,10 @@ class Corners:
     constraints: Mapping[str, Smooth]
 
     @classmethod
-    def of(cls, scene: Scene) -> Corners:
-        """Return the corners of a scene. Threads wait for each other, for CasADi's expressions are no thread's own."""
-        with _ONE_AT_A_TIME:
-            return cls._of(scene)
-
-    @classmethod
+    @symbolic
     @functools.lru_cache(maxsize=64)
-    def _of(cls, scene: Scene) -> Corners:
+    def of(cls, scene: Scene) -> Corners:
+        """Return the corners of a scene."""
         m = scene.mechanism
         found = {name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()}
         laws = smooth_laws(scene.laws, m.symbols)
@@ -75,7 +70,10 @@ class Corners:
         """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""
         found = np.zeros(len(p), bool)
         for smooth in self.laws.values():
-            found |= smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], p)
+            # Most designs share what their motions depend on.
+            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])
+            each, number = np.unique(rows, axis=0, return_inverse=True)
+            found |= _broken_law(smooth, each.tobytes())[number.ravel()]
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
@@ -84,3 +82,10 @@ class Corners:
         for name, smooth in self.constraints.items():
             found |= smooth.broken(seen(name), p)
         return found
+
+
+@functools.lru_cache(maxsize=256)
+def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
+    """For each row of a start, a stop and parameters whether a law has a kink."""
+    start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
+    return smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], np.array(p).T.reshape(start.size, -1))

@@ -74,11 +74,11 @@ class Curve:
         if isinstance(x, ca.SX) and x.numel() == 1:
             return self._expression(x)
         try:
-            numbers = np.array(np.nan) if isinstance(x, ca.SX | ca.MX) else np.asarray(x, float)
-        except (TypeError, ValueError):
+            numbers = np.array(np.nan) if isinstance(x, ca.SX | ca.MX | ca.DM) else np.asarray(x, float)
+        except (TypeError, ValueError, OverflowError):
             numbers = np.array(np.nan)
         if not np.isfinite(numbers).all():
-            raise DeclarationError(f"curve: expected a scalar casadi.SX expression or finite numbers, got {x!r}")
+            raise DeclarationError(f"curve: expected a scalar casadi.SX expression or finite numbers, got {shown(x)}")
         if not (self.periodic or ((numbers >= self.low) & (numbers <= self.high)).all()):
             raise DeclarationError(f"curve: {x!r} is beyond its ends, {self.low:g} and {self.high:g}")
         within = numbers - self.origin

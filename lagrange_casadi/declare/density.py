@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import Symbolic, public
 from ..errors import DeclarationError
 from .curves import Curve, rows
 
@@ -147,12 +148,14 @@ class NumericDensity:
         return np.asarray(sum(np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0) for i, c in enumerate(self.cells)))
 
 
-def uniform(mass: Any) -> Density:
+@public
+def uniform(mass: Symbolic) -> Density:
     """A link of one density throughout, by its whole mass [kg], a number or an expression in parameters."""
     return Density((0.0, 1.0), ((mass,),), per_length=False)
 
 
-def polynomial(*coefficients: Any) -> Density:
+@public
+def polynomial(*coefficients: Symbolic) -> Density:
     """c0 + c1 u + c2 u^2 + ... [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip.
 
     Coefficients are numbers or expressions in parameters. Raises :class:`DeclarationError` without a coefficient.
@@ -162,6 +165,7 @@ def polynomial(*coefficients: Any) -> Density:
     return Density((0.0, 1.0), (tuple(coefficients),), per_length=True)
 
 
+@public
 def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
     """Linear between values [kg/m] at ratios xi/l that rise from 0 to 1.
 
@@ -177,6 +181,7 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
     return Density(tuple(u), tuple(cells), per_length=True)
 
 
+@public
 def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
     """A density of slices that have rotary inertia, of a link in space, by second moments of mass per length [kg m].
 
@@ -195,6 +200,7 @@ def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
     return replace(density, slices=Slices(*moments))
 
 
+@public
 def along(curve: Curve) -> Density:
     """A smooth :func:`.curve` through values [kg/m] over the ratio xi/l, from 0 to 1.
 

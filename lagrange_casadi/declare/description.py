@@ -10,7 +10,7 @@ import casadi as ca
 
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
-from .density import NumericDensity
+from .density import Density, NumericDensity
 from .fitted import told_parts
 from .joints import Joint
 from .mechanism import Mechanism
@@ -74,7 +74,16 @@ def shape_of(value: Any) -> dict[str, Any]:
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
     optional = {"outlines": {str: [[float, float]]}, "losses": [str], "beside": {str: _VECTOR}, "rounded": {str: [float]}}
+    optional["unturned"] = [str]
     return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
+
+
+def check_places(description: Description) -> None:
+    """Raise ``ValueError`` where a joint or a load is at a place on a body that there is not."""
+    ends = ((name, joint[end]) for name, joint in description["joints"].items() for end in ("parent", "child"))
+    for name, place in (*ends, *((name, point) for name, load in description["loads"].items() for point in load["points"])):
+        if place["body"] != "ground" and place["body"] not in description["bodies"]:
+            raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -151,6 +160,13 @@ def describe(
     if drives is None:
         return found
     return found | {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+
+
+def _lies_by_default(joint: Joint) -> bool:
+    """Whether a slender link slides along one line of its parent, and nothing was said of how it lies there."""
+    body = joint.child.body
+    slender = isinstance(body, Link) and isinstance(body.mass, Density)
+    return slender and joint.kind in ("prismatic", "cylindrical", "screw") and not joint.turn_given
 
 
 def _kind(mechanism: Mechanism, name: str) -> str:
@@ -260,7 +276,8 @@ def _described(
     beside = {name: vector(link.beside) for name, link in mechanism.links.items() if link.beside is not None}
     outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
     lossy = [c.name for c in mechanism.constraints.values() if c.transmission is not None and c.transmission.loss is not None]
-    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside)
+    unturned = [joint.name for joint in mechanism.joints.values() if _lies_by_default(joint)]
+    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside), ("unturned", unturned)
     return {
         "name": mechanism.name,
         "parameters": parameters,

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
-from ..errors import DeclarationError, UnknownNameError
+from ..arguments import texts
+from ..errors import DeclarationError, UnknownNameError, shown
 from .mechanism import Mechanism
 from .parts import Expression
 
@@ -17,8 +18,8 @@ def weighed(mechanism: Mechanism, drives: Mapping[str, Expression] | Sequence[st
     ``moved`` are the joints whose motion needs an effort. Raises :class:`UnknownNameError` for a joint that is none, and
     :class:`DeclarationError` for one that has no coordinate, for too few, and for a weight that is not positive.
     """
-    if isinstance(drives, str) or not isinstance(drives, (Mapping, Sequence)):
-        raise DeclarationError(f"drives: expected a list of joints, or weights by joint, got {drives!r}")
+    if not isinstance(drives, Mapping) and texts(drives) is None:
+        raise DeclarationError(f"drives: expected a list of joints, or weights by joint, got {shown(drives)}")
     weights = dict(drives) if isinstance(drives, Mapping) else dict.fromkeys(drives, 1.0)
     if len(weights) < len(drives):
         raise DeclarationError(f"drives: a joint stands twice in {', '.join(drives)}")

@@ -9,11 +9,13 @@ import casadi as ca
 
 from ..arithmetic.compensated import Precision
 from ..arithmetic.lookups import lookup
+from ..system.symbolic import symbolic
 
 BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far an argument may be beyond the ends of a curve by rounding, as :func:`beyond_ends` tells it."""
 
 
+@symbolic
 def beyond_ends(expression: Any) -> list[Any]:
     """How far each argument of an expression's curves is beyond the curve's ends; of curves that have ends.
 

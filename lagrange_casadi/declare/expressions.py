@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import casadi as ca
@@ -126,3 +126,19 @@ def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) ->
 def plain(value: Any) -> Expression:
     """A number where an expression is one."""
     return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
+
+
+def value_of(expression: Expression, symbols: Mapping[str, Any], values: Mapping[str, float]) -> float:
+    """The value of an expression in parameters. Raises :class:`.DeclarationError` for what is none, or lacks values."""
+    if not isinstance(expression, ca.SX):
+        try:
+            return float(expression)
+        except (TypeError, ValueError, OverflowError, RuntimeError):
+            raise DeclarationError(f"number: expected an expression in parameters, got {shown(expression)}") from None
+    if missing := [name for name in symbols if name not in values]:
+        raise DeclarationError(f"number: expected values of all parameters, and {', '.join(missing)} have none")
+    try:
+        numbers = ca.vertcat(ca.SX(0, 1), *(values[name] for name in symbols))
+        return float(ca.evalf(ca.substitute(expression, ca.vertcat(ca.SX(0, 1), *symbols.values()), numbers)))
+    except (RuntimeError, NotImplementedError):
+        raise DeclarationError(f"number: expected an expression in parameters alone, got {shown(expression)}") from None

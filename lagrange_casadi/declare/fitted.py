@@ -7,15 +7,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from ..arguments import NotNegative, Positive, Symbolic, public
 from ..beams.material import Material
-from ..errors import DeclarationError
-from .parts import Expression
+from ..errors import DeclarationError, shown
 
 if TYPE_CHECKING:
     from .joints import Joint
     from .mechanism import Mechanism
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Pin:
     """A pin through an eye between two cheeks of a fork [m].
@@ -24,14 +25,15 @@ class Pin:
     softer of them bears [Pa]. The pin fits loosely in both.
     """
 
-    diameter: Expression
-    eye: Expression
-    cheek: Expression
+    diameter: Symbolic
+    eye: Symbolic
+    cheek: Symbolic
     material: Material
-    pressure: float | None = None
-    gap: Expression = 0.0
+    pressure: Positive | None = None
+    gap: Symbolic = 0.0
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Plain:
     """A plain bearing by its bore and its width [m], and what its material bears.
@@ -40,13 +42,14 @@ class Plain:
     largest mean of the product of both over time [W/m^2]. What is None is not looked at.
     """
 
-    bore: Expression
-    width: Expression
-    pressure: float | None = None
-    speed: float | None = None
-    heating: float | None = None
+    bore: Symbolic
+    width: Symbolic
+    pressure: Positive | None = None
+    speed: Positive | None = None
+    heating: Positive | None = None
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Rolling:
     """A rolling bearing by its ratings, and the hours that nine of ten must run.
@@ -55,28 +58,29 @@ class Rolling:
     bearings. The equivalent load is ``radial`` times the force across the pin's axis, and ``axial`` times that along it (ISO 281).
     """
 
-    dynamic: float
-    hours: float
-    static: float | None = None
-    exponent: float = 3.0
-    radial: float = 1.0
-    axial: float = 0.0
+    dynamic: Positive
+    hours: Positive
+    static: Positive | None = None
+    exponent: Positive = 3.0
+    radial: NotNegative = 1.0
+    axial: NotNegative = 0.0
 
 
 Fitted = Pin | Plain | Rolling
 KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {"pin": Pin, "plain": Plain, "rolling": Rolling}
-_LENGTHS = ("diameter", "eye", "cheek", "gap", "bore", "width")
+_UNITS = dict.fromkeys(("diameter", "eye", "cheek", "gap", "bore", "width"), "m") | {"speed": "m/s"}
 _MAY_BE_ZERO = ("gap", "axial", "radial")
 
 
+@public
 def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     """Say what a pin joint of a mechanism is made of: of each kind one part at most, for ``safety:JOINT``.
 
     Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for what is no such part, and for
     numbers that are not positive.
     """
-    if not hasattr(mechanism, "own"):
-        raise DeclarationError(f"fit: expected a Mechanism first, got {mechanism!r}")
+    if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
+        raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
     mechanism.own.joint(joint)
     what = f"joint '{joint.name}'"
     mechanism.own.open(f"fit {what}")
@@ -86,7 +90,7 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     for part in parts:
         kind = next((name for name, known in KINDS.items() if isinstance(part, known)), None)
         if kind is None:
-            raise DeclarationError(f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got {part!r}")
+            raise DeclarationError(f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got {shown(part)}")
         if kind in found:
             raise DeclarationError(f"{what}: it has a {kind} part already")
         found[kind] = type(part)(**{name: _checked(mechanism, f"{what}: {kind}", name, value) for name, value in _numbers(part)})
@@ -105,7 +109,7 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
         return value
     if value is None and name in ("pressure", "speed", "heating", "static"):
         return None
-    number = mechanism.own.expression(f"{what}: {name}", value, "m" if name in _LENGTHS else "1")
+    number = mechanism.own.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
     if isinstance(number, float) and not positive(name, number):
         raise DeclarationError(f"{what}: {name} must be positive, got {number:g}")
     return number

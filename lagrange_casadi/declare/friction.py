@@ -11,6 +11,7 @@ from .joints import Axis, Joint
 from .ownership import Ownership
 from .parts import POSITIVE, Expression, Friction
 
+_UNITS = {"radius": "m", "length": "m", "stribeck": "m/s"}
 _IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "prismatic", "cylindrical", "screw", "spherical")
 
 
@@ -22,7 +23,8 @@ def friction(own: Ownership, name: str, joint: Joint, along: str, told: Mapping[
     own.free("load", name, own.mechanism.loads)
     what = f"friction '{name}'"
     axis, beside = _axes(own, what, joint, along)
-    numbers = {key: _number(own, f"{what}: {key}", value) for key, value in told.items() if value is not None}
+    units = _UNITS | {"smooth": "rad/s" if axis.kind == "angle" else "m/s"}
+    numbers = {key: _number(own, what, key, value, units.get(key, "1")) for key, value in told.items() if value is not None}
     _require(what, joint, axis, numbers)
     if numbers.get("static") is not None and "stribeck" not in numbers:
         raise DeclarationError(f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from static")
@@ -112,10 +114,8 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         raise DeclarationError(f"{what}: joint '{joint.name}' bears no moment, and needs no length of guidance")
 
 
-def _number(own: Ownership, what: str, value: Expression) -> Expression:
-    word = what.rpartition(" ")[2]
-    unit = "m" if word in ("radius", "length") else "1"
-    found, positive = own.expression(what, value, unit), word in POSITIVE
+def _number(own: Ownership, what: str, word: str, value: Expression, unit: str) -> Expression:
+    found, positive = own.expression(f"{what}: {word}", value, unit), word in POSITIVE
     if isinstance(found, float) and (found < 0.0 or (found == 0.0 and positive)):
-        raise DeclarationError(f"{what} must be {'positive' if positive else 'at least 0'}, got {found:g}")
+        raise DeclarationError(f"{what}: {word} must be {'positive' if positive else 'at least 0'}, got {found:g}")
     return found

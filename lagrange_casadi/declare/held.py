@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
+from ..arguments import public
+from ..errors import DeclarationError, UnknownNameError, shown
 from .description import Description, in_space
 
 _END = 1e-9
@@ -16,6 +19,7 @@ ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
 """How an end of a beam is held: its place, its place and slope, not at all, its slope alone."""
 
 
+@public
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
     """The effective lengths of a link as a column over its own, where it bends along y and along z, by the joints at its ends.
 
@@ -24,6 +28,10 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     of the plane a link that is joined at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
     theoretical numbers (Timoshenko and Gere, table of section 2.4).
     """
+    if not (isinstance(description, Mapping) and {"bodies", "joints"} <= {*description}):
+        raise DeclarationError(f"effective_lengths: expected the description of a solution, got {shown(description)}")
+    if link not in description["bodies"] or description["bodies"][link]["length"] is None:
+        raise UnknownNameError("link", link, [name for name, body in description["bodies"].items() if body["length"] is not None])
     ends = held_ends(description, link)
     if in_space(description):
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)

@@ -87,7 +87,7 @@ class Joint:
 
     In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE` tells along which the joint moves;
     ``turned`` are the directions of the child's x and y axes, in the parent's axes, where all coordinates are zero. ``pitch`` is
-    that of a screw [m/rad].
+    that of a screw [m/rad]. ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by default.
     """
 
     name: str
@@ -99,6 +99,7 @@ class Joint:
     directions: Triad | None = None
     turned: tuple[Vector, Vector] | None = None
     pitch: Expression = 0.0
+    turn_given: bool = True
 
     @property
     def triad(self) -> Triad:

@@ -9,6 +9,7 @@ and slopes on both sides of it are compared.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -20,10 +21,10 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
+from ..arithmetic.running_errors import running_errors
 from ..errors import DeclarationError
 from .density import Array
-
-Flags = npt.NDArray[np.bool_]
+from .limits_beside import Flags, Side, between, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9
 """What is no jump: of the value or slope there, and of the largest along the path."""
@@ -31,7 +32,7 @@ _SAME, _FAINT = 1e-6, 1e-9
 _HALVINGS, _ROUNDS = 64, 8
 """How often a step is halved, and how many places are looked for in one."""
 
-_WIDEST, _LIMITS = 32.0, 41
+_WIDEST, _LIMITS = 2048.0, 47
 """From how many steps away a limit is taken, and at how many distances, each half of the one before."""
 
 _SLACK = 10.0
@@ -48,7 +49,7 @@ _AT_ONCE = 1 << 17
 
 @dataclass(frozen=True)
 class Kink:
-    """A place, by symbol, at which a value or a slope jumps; by what part of it."""
+    """A place, by symbol, at which a value or a slope jumps; by what part of it, infinite where it has no limit."""
 
     what: str
     jump: float
@@ -56,7 +57,8 @@ class Kink:
 
     def __str__(self) -> str:
         place = ", ".join(f"{name} = {value:.6g}" for name, value in self.at.items())
-        return f"its {self.what} jumps by {100.0 * self.jump:.3g} % where {place}"
+        does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
+        return f"its {self.what} {does} where {place}"
 
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` has the kink."""
@@ -75,7 +77,7 @@ class Smooth:
     operations that may make a kink where they pass zero, or a whole number if ``whole``; what is
     ``open`` there may be without bound, or have a slope that is, and may make a kink where it only
     touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)`` the
-    value and its derivatives by the symbols.
+    value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
     """
 
     symbols: tuple[Any, ...]
@@ -84,6 +86,7 @@ class Smooth:
     slopes: Any
     whole: Flags
     open: Flags
+    uses: Flags
 
     @classmethod
     def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
@@ -112,6 +115,7 @@ class Smooth:
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
             np.array(open_),
+            np.array([ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)] if fixed.numel() else [], bool),
         )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
@@ -171,9 +175,9 @@ class Smooth:
                 break
             found = rest.halved(partial(self._state, rest))
             ends = [self._states(self._marks(found, x)) for x in (found.low, found.high)]
-            open_ = ((ends[0] != ends[1]) & self.open[:, None]).any(axis=0)
-            passed.append(found.some(~open_))
-            touched.append(found.some(open_))
+            changes, open_ = ends[0] != ends[1], self.open[:, None]
+            passed.append(found.some((changes & ~open_).any(axis=0)))
+            touched.append(found.some((changes & open_).any(axis=0)))
             waiting = [found.to(found.high, rest.high)]
         return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched)
 
@@ -210,42 +214,52 @@ class Smooth:
         return np.where(whole, np.floor(marks), marks > 0.0)
 
     def _compared(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
-        """Kinks where marks pass, by what is just before and just after."""
+        """Kinks where marks pass, by what is just before and just after; what seems one must have other limits on both sides.
+
+        A size of what only touches zero has a slope of zero where rounding makes it nothing. Where the path ends there is one side.
+        """
         off = steps.off(4.0, 1.0)
         # Off the place itself, where a size has the slope of neither side.
         before, after = (_called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
         gaps = _both(np.abs(after - before))
         sizes = _both(np.maximum(np.abs(before), np.abs(after)))
-        least = _SAME * sizes + _FAINT * usual[:, steps.owner]
-        return _worst(steps, gaps, sizes, gaps > least)
+        broken = gaps > _SAME * sizes + _FAINT * usual[:, steps.owner]
+        at_end = (steps.low - off <= steps.least) | (steps.high + off >= steps.most)
+        yield from _worst(steps.some(at_end), (gaps / sizes)[:, at_end], broken[:, at_end])
+        yield from self._limits(steps.some(broken.any(axis=0) & ~at_end), usual)
 
     def _limits(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
-        """Kinks where something may be without bound: by what both sides tend to.
+        """Kinks where something may be without bound: both sides must have limits, and the same ones.
 
-        A difference of both sides, d(h) = jump + c h, is extrapolated to h = 0. Rounding spoils it where h
-        is small, what is of higher order where it is large; so nowhere is it small where there is a jump.
+        What is beyond the path's ends has no say.
         """
         many, middle = steps.owner.size, (steps.low + steps.high) / 2
+        if not many:
+            return
         far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-        wide = _Steps.joined([steps] * _LIMITS)
-        shape = len(self.symbols) + 1, _LIMITS, many
-        sides = (wide.at((middle + side * far).ravel()) for side in (-1, 1))
-        before, after = (_called(self.slopes, places, wide.p).reshape(shape) for places in sides)
-        gaps = _both(np.abs(2.0 * (after - before)[:, 1:] - (after - before)[:, :-1]))
-        sizes = _both(np.maximum(np.abs(before), np.abs(after)))[:, 1:]
-        seen = far[1:] > steps.off(64.0, 0.0)
-        gaps = np.where(np.isfinite(gaps), gaps, np.inf)
-        pairs = np.maximum(gaps[:, 1:], gaps[:, :-1])
-        least = _SLACK * (_SAME * sizes + _FAINT * usual[:, None, steps.owner])[:, 1:]
-        share = np.where(seen[1:] & np.isfinite(pairs), pairs / least, np.inf)
-        best, last = share.argmin(axis=1), np.maximum(seen.sum(axis=0) - 2, 0)
-        # Of a root or a power it is not small anywhere, but falls for ever.
-        which = (np.broadcast_to(k, (2, 1, many)) for k in (last, np.maximum(last - 8, 0)))
-        end, earlier = (np.take_along_axis(pairs, k, 1)[:, 0] for k in which)
-        broken = (share.min(axis=1) > 1.0) & ~(end < earlier / 2)
-        place = best[:, None]
-        gaps, sizes = (np.take_along_axis(rows[:, 1:], place, 1)[:, 0] for rows in (gaps, sizes))
-        return _worst(steps, gaps, sizes, broken)
+        wide, shape = _Steps.joined([steps] * _LIMITS), (len(self.symbols) + 1, _LIMITS, many)
+        sides = []
+        for way in (-1, 1):
+            share = middle + way * far
+            places, there = wide.at(share.ravel()), (share >= steps.least) & (share <= steps.most)
+            value, off = (of(self.slopes, places, wide.p).reshape(shape) for of in (_called, running_errors))
+            sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
+        before, after = sides
+        # The largest of slopes says what is large or small for all of them.
+        rows = np.minimum(np.arange(shape[0]), 1)
+
+        faint = _FAINT * usual[:, steps.owner]
+
+        def vanishing(side: Side, sizes: Array, faint: Any) -> tuple[Flags, Array]:
+            sizes = _both(sizes)
+            least = _SLACK * (_SAME * sizes + faint[:, None])
+            found, part = vanishes(side, sizes[rows], least[rows])
+            return np.array([found[0], found[1:].all(axis=0)]), _both(part)
+
+        same, part = vanishing(between(before, after), np.maximum(np.abs(before.value), np.abs(after.value)), faint)
+        # What is large elsewhere may be so for it has no limit here.
+        limits = np.array([vanishing(side.steps, side.sizes, 0.0 * faint)[0] for side in sides]).all(axis=0)
+        yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,10 +283,9 @@ class _Steps:
         """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
         count, symbols, n = paths.shape
         x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths[..., :-1], np.diff(paths)))
-        least, most = np.full((count, n - 1), -np.inf), np.full((count, n - 1), np.inf)
-        least[:, 0], most[:, -1] = 0.0, 1.0
+        number = np.tile(np.arange(n - 1.0), count)
         owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
-        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, least.ravel(), most.ravel())
+        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
 
     @classmethod
     def joined(cls, parts: Sequence[_Steps]) -> _Steps:
@@ -324,12 +337,12 @@ def _both(rows: Array) -> Array:
     return np.array([rows[0], rows[1:].max(axis=0)])
 
 
-def _worst(steps: _Steps, gaps: Array, sizes: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
+def _worst(steps: _Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
+    """Kinks by what part of it jumps of the value and of slopes, (2, m); without bound where there is no limit."""
     places = steps.at(steps.high)
     for k in np.flatnonzero(broken.any(axis=0)):
         row = 0 if broken[0, k] else 1
-        part = gaps[row, k] / sizes[row, k]
-        yield int(steps.owner[k]), ("value", "slope")[row], float(min(part, 2.0)), places[:, k]
+        yield int(steps.owner[k]), ("value", "slope")[row], float(parts[row, k]), places[:, k]
 
 
 def _marks(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
@@ -337,10 +350,8 @@ def _marks(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool,
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
         yield (y - x if operation == ca.OP_LT else x - y), False, False
-    elif operation in (ca.OP_FABS, ca.OP_SIGN):
-        yield x, False, False
-    elif operation == ca.OP_COPYSIGN:
-        yield y, False, False
+    elif operation in (ca.OP_FABS, ca.OP_SIGN, ca.OP_COPYSIGN):
+        yield from ((one, False, False) for one in operands)
     elif operation in (ca.OP_EQ, ca.OP_NE):
         yield ca.fabs(x - y), False, False
     elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):

@@ -16,9 +16,10 @@ import casadi as ca
 from ..arguments import Number, public
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from ..system.symbolic import Graphs, symbolic
 from .constraints import constraint, row
 from .density import Density
-from .expressions import bound, check_line, check_name
+from .expressions import bound, check_line, check_name, value_of
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -50,12 +51,11 @@ from .planar_joints import in_plane
 from .possible import demands
 from .results import Asked, OwnOutput, Results
 
-_GROUND = "ground"
-
 
 @public
+@symbolic
 @dataclass(eq=False)
-class Mechanism:
+class Mechanism(Graphs):
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
 
     Gravity is (0, -9.81) m/s^2 unless :meth:`set_gravity` says otherwise. Lengths, masses, places and gravity may be numbers or
@@ -86,7 +86,7 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         check_name("mechanism", self.name)
-        self.bodies[_GROUND] = Ground(_GROUND)
+        self.bodies["ground"] = Ground("ground")
 
     def __repr__(self) -> str:
         names = ", ".join(body.name for body in self.moving)
@@ -95,7 +95,7 @@ class Mechanism:
     @property
     def ground(self) -> Ground:
         """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
-        return cast(Ground, self.bodies[_GROUND])
+        return cast(Ground, self.bodies["ground"])
 
     @property
     def moving(self) -> tuple[Link | PointMass, ...]:
@@ -181,12 +181,12 @@ class Mechanism:
         child: Body | Point,
         *,
         axis: tuple[Expression, Expression],
-        angle: Expression = 0.0,
+        angle: Expression | None = None,
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
 
-        ``angle`` [rad] is the child's direction against the parent's. The parent carries the line, and is loaded where the point
-        is at the moment. The coordinate is the place on the line [m].
+        ``angle`` [rad] is the child's direction against the parent's, 0 if it is not given: a note says so where a link lies across
+        ``axis``. The parent carries the line, loaded where the point is at the moment. The coordinate is the place on it [m].
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
@@ -375,10 +375,7 @@ class Mechanism:
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
         """The value of an expression in the parameters."""
-        if not isinstance(expression, ca.SX):
-            return float(expression)
-        numbers = [values[name] for name in self.parameters]
-        return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
+        return value_of(expression, {name: one.symbol for name, one in self.parameters.items()}, values)
 
     def _joint(
         self,
@@ -387,7 +384,7 @@ class Mechanism:
         parent: Body | Point,
         child: Body | Point,
         axis: tuple[Expression, Expression] | None = None,
-        angle: Expression = 0.0,
+        angle: Expression | None = None,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         return self.joints.setdefault(name, in_plane(self.own, name, kind, parent, child, axis, angle))

@@ -16,6 +16,7 @@ import casadi as ca
 
 from ..arguments import public
 from ..errors import DeclarationError
+from ..system.symbolic import Graphs, symbolic
 from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import coordinates, scalar, symbols_of, told
@@ -131,6 +132,7 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
 
 
+@symbolic
 def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the joint's name.
 
@@ -160,6 +162,7 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth
     return {joint: smooth for joint, smooth in found.items() if smooth is not None}
 
 
+@symbolic
 def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their ends, a row a joint of the laws.
 
@@ -173,6 +176,7 @@ def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
 
 
+@symbolic
 def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives of several laws; at a spline's knot, that of one side.
 
@@ -194,7 +198,7 @@ def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Laws:
+class Laws(Graphs):
     """The motion of several drives in two functions as :func:`motion_function` makes them.
 
     ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive

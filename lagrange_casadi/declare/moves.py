@@ -10,9 +10,10 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import Symbolic, public
 from ..errors import DeclarationError
 from ..system.numerals import readable
+from ..system.symbolic import symbolic
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression
@@ -47,14 +48,14 @@ class Dwell:
 
 @public
 def move(
-    to: Expression | str | None = None,
+    to: Symbolic | None = None,
     *,
-    by: Expression | str | None = None,
-    time: Expression | None = None,
-    law: object = None,
-    speed: Expression | None = None,
-    acceleration: Expression | None = None,
-    jerk: Expression | None = None,
+    by: Symbolic | None = None,
+    time: Symbolic | None = None,
+    law: str | RestLaw | None = None,
+    speed: Symbolic | None = None,
+    acceleration: Symbolic | None = None,
+    jerk: Symbolic | None = None,
     name: str = "",
 ) -> Move:
     """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text as ``"90 deg"``].
@@ -74,12 +75,13 @@ def move(
 
 
 @public
-def dwell(time: Expression | None = None, *, name: str = "") -> Dwell:
+def dwell(time: Symbolic | None = None, *, name: str = "") -> Dwell:
     """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as the period asks for."""
     return Dwell(_named(name), time)
 
 
 @public
+@symbolic
 def moves(
     parts: Sequence[object],
     *,

@@ -34,7 +34,7 @@ def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[st
     """Raise :class:`DeclarationError` for what cannot be a name, or is that of one of the other parts."""
     check_name(kind, name)
     for part in (parts[name] for parts in others if name in parts):
-        bearer = _WORDS[type(part)]
+        bearer = next(_WORDS[known] for known in type(part).__mro__ if known in _WORDS)
         if bearer in (f"a {kind}", f"an {kind}"):
             raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{mechanism}'")
         raise DeclarationError(f"{kind} '{name}': the name is taken by {bearer} of mechanism '{mechanism}'")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -9,15 +10,17 @@ import numpy.typing as npt
 
 from ..quantities import Output
 from .density import Array
-from .description import Description, drives_of, motions_of
+from .description import Description, drives_of, in_space, motions_of
+from .directions import ROUNDED
 
 _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
 
 
 def notes(t: Array, outputs: Mapping[Output, Array], description: Description, resting: npt.NDArray[np.bool_]) -> Iterator[str]:
-    """More drives than motions; where a joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each
-    joint whose point slides beyond the end of a link that has sections, and how far it goes.
+    """More drives than motions; slender links that slide across their axes, as nobody said; where a joint that rubs is ``resting``;
+    joints in gimbal lock, whose turns are not told; and each joint whose point slides beyond the end of a link that has sections,
+    and how far it goes.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs: those that are determined.
     """
@@ -26,6 +29,7 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
         told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
+    yield from _across(description)
     if resting.any():
         yield rest_note(t, outputs, resting)
     if rounded := description.get("rounded"):
@@ -56,6 +60,33 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
                 f"{high:.4g}): beyond its ends it loads the link as through a bracket"
             )
+
+
+def _across(description: Description) -> Iterator[str]:
+    """Each slender link that slides in a direction that is not its axis, where nothing was said of how it lies."""
+    for name in description.get("unturned", ()):
+        joint = description["joints"][name]
+        space = in_space(description)
+        along, axis = (joint["triad"][0], joint["turned"][0]) if space else ([*joint["axis"], 0.0], [1.0, 0.0, 0.0])
+        off = math.atan2(np.linalg.norm(np.cross(along, axis)), abs(np.dot(along, axis)))
+        if off <= ROUNDED or _is_carrier(description, joint["child"]["body"]):
+            continue
+        if space:
+            ways = "turned= says how it lies"
+        else:
+            ways = f'angle="{math.degrees(math.atan2(along[1], along[0])):.6g} deg" lays it along, angle=0 says that it is meant'
+        yield (
+            f"link '{joint['child']['body']}' slides along joint '{name}' at {math.degrees(off):.3g} deg to its axis, for the "
+            f"joint's axis does not turn it: {ways}"
+        )
+
+
+def _is_carrier(description: Description, link: str) -> bool:
+    """Whether a link has no mass, and joins and bears all at one place: then how it lies matters to nothing."""
+    ends = [joint[end] for joint in description["joints"].values() for end in ("parent", "child")]
+    loaded = [point for load in description["loads"].values() for point in load["points"]]
+    places = [point for point in [*ends, *loaded, *description.get("paths", {}).values()] if point["body"] == link]
+    return description["bodies"][link]["mass"] == 0.0 and all(place == places[0] for place in places)
 
 
 def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np.bool_]) -> str:

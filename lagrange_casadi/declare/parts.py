@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from ..arguments import in_words, number
+from ..arguments import Symbolic, in_words, number, public
 from ..beams.beam import Beam
 from ..errors import NumberError, ParameterError, shown
 from ..geometry.vectors import Expression as Expression
@@ -85,11 +85,12 @@ class Point:
         return self.x, self.y, self.z
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Ground(Body):
     """The fixed frame."""
 
-    def at(self, x: Expression, y: Expression, z: Expression = 0.0) -> Point:
+    def at(self, x: Symbolic, y: Symbolic, z: Symbolic = 0.0) -> Point:
         """The point of the ground at (x, y), in space (x, y, z) [m]."""
         return Point(self, x, y, z=z)
 
@@ -106,6 +107,7 @@ class RigidMass:
     inertia: Any
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Link(Body):
     """A link: its axis runs from its base (station 0) to its tip (station ``length``).
@@ -132,7 +134,7 @@ class Link(Body):
         """The tip, at station ``length``."""
         return Point(self, self.length, 0.0, "tip")
 
-    def at(self, x: Expression, y: Expression = 0.0, z: Expression = 0.0) -> Point:
+    def at(self, x: Symbolic, y: Symbolic = 0.0, z: Symbolic = 0.0) -> Point:
         """The place at station ``x`` along the axis and ``y``, in space ``z`` too, beside it [m]."""
         return Point(self, x, y, z=z)
 

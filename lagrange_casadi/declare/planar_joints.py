@@ -16,7 +16,7 @@ def in_plane(
     parent: Body | Point,
     child: Body | Point,
     axis: tuple[Expression, Expression] | None,
-    angle: Expression,
+    angle: Expression | None,
 ) -> Joint:
     """A joint between points of two bodies. Raises :class:`DeclarationError` for one that cannot be."""
     what = f"joint '{name}'"
@@ -29,4 +29,5 @@ def in_plane(
             f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
         )
     unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
-    return Joint(name, kind, start, end, unit, own.expression(f"{what}: angle", angle, "rad"))
+    turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
+    return Joint(name, kind, start, end, unit, turn, turn_given=angle is not None)

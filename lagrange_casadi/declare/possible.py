@@ -17,6 +17,7 @@ from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
 from ..system.numerals import readable
+from ..system.symbolic import symbolic
 from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends
@@ -71,6 +72,7 @@ class Demands:
             raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
 
 
+@symbolic
 def demands(mechanism: Mechanism, precision: Precision = "double") -> Demands:
     """What a mechanism's parts demand: of lengths, masses, densities, stations; what a precision rounds is forgiven."""
     return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)

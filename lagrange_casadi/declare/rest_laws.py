@@ -14,6 +14,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import Symbolic, public
 from ..errors import DeclarationError, UnknownNameError
 from .expressions import plain
 from .parts import Expression
@@ -67,7 +68,8 @@ class Limits:
         return {name: limit for name, limit in each.items() if limit is not None}
 
 
-def trapezoid(share: Expression = _CUBE) -> RestLaw:
+@public
+def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
     """Constant acceleration, constant speed, constant deceleration: speeding up takes ``share`` of the time, 1/2 at most.
 
     Raises :class:`.DeclarationError` for a number that is no such share.
@@ -82,7 +84,8 @@ def trapezoid(share: Expression = _CUBE) -> RestLaw:
     return RestLaw("trapezoid", top, steep, math.inf, shape, (steep, 0.0), inner)
 
 
-def s_curve(share: Expression = _CUBE, rounding: Expression = 0.5) -> RestLaw:
+@public
+def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
     """The S-curve of seven segments: speeding up takes ``share`` of the time, 1/2 at most; over ``rounding`` of that the
     acceleration changes.
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from ..arguments import number, within
+from ..arguments import Outputs, number, public, texts, within
 from ..arithmetic.compensated import Precision
-from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError
+from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
+from ..system.symbolic import Graphs, symbolic
 from ..tables import ANGLE, LENGTH
 from .density import Density
 from .drives import weighed
@@ -85,8 +86,9 @@ class Wanted:
         """
         every = outputs(mechanism)
         choices = [*every, *kinds(mechanism)]
-        if isinstance(names, str) or not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
-            raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
+        if (told := texts(names)) is None:
+            raise DeclarationError(f"wanted: expected a list of output names, got {shown(names)}; valid: {', '.join(choices)}")
+        names = told
         for name in names:
             if name not in choices:
                 _refuse_output(mechanism, name)
@@ -146,14 +148,14 @@ def fitted_of(mechanism: Mechanism, names: Sequence[str]) -> list[str]:
 def without_fitted(mechanism: Mechanism, names: Sequence[str], what: str) -> None:
     """Raise :class:`.DeclarationError` where the safety of a joint's pin or bearing is among wanted names."""
     for joint in mechanism.fitted:
-        if f"safety:{joint}" in names:
+        if f"safety:{joint}" in (texts(names) or ()):
             raise DeclarationError(f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}")
 
 
 def without_life(names: Sequence[str], what: str) -> None:
     """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
-    for name in names if isinstance(names, Iterable) else ():
-        if isinstance(name, str) and name.partition(":")[0] == "life":
+    for name in texts(names) or ():
+        if name.partition(":")[0] == "life":
             raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
 
 
@@ -192,8 +194,9 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
         raise DeclarationError(f"output '{name}': {why}")
 
 
+@symbolic
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Graphs):
     """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and of section ratios.
 
     Parameters
@@ -320,12 +323,13 @@ class Scene:
 
         return scene_summary(self)
 
+    @public
     def report(
         self,
         path: str | os.PathLike[str],
         *,
         parameters: Mapping[str, float] | None = None,
-        wanted: Sequence[str] | None = None,
+        wanted: Outputs | None = None,
         live: bool = False,
     ) -> None:
         """Evaluate the scene, and write a page that shows it in a browser; with ``live`` one that evaluates other parameters.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..arguments import public
-from ..errors import DeclarationError
+from ..errors import DeclarationError, shown
 from .density import Density
 from .matter import second_moments
 from .parts import Expression, Link, Point
@@ -39,8 +39,8 @@ def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expr
     Source: Berkof and Lowen, *A new method for completely force balancing simple linkages*, J. Eng. Ind. 91 (1969), 21-26.
     Raises :class:`.DeclarationError` where there are no bodies, or ``about`` is no place.
     """
-    if not hasattr(mechanism, "moving"):
-        raise DeclarationError(f"shaking: expected a Mechanism, got {mechanism!r}")
+    if isinstance(mechanism, type) or not hasattr(mechanism, "moving"):
+        raise DeclarationError(f"shaking: expected a Mechanism, got {shown(mechanism)}")
     if not mechanism.moving:
         raise DeclarationError("shaking: declare it after the bodies; there are none")
     axes = mechanism.measures.components

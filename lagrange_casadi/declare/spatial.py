@@ -12,6 +12,7 @@ from ..beams.beam import Beam
 from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
+from ..system.symbolic import symbolic
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -30,6 +31,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 
 
 @public
+@symbolic
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
@@ -129,7 +131,9 @@ class SpatialMechanism(Mechanism):
     def prismatic(  # type: ignore[override]
         self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning."""
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning; as in a plane ``axis`` does
+        not turn the child, ``turned`` does.
+        """
         return self._spatial(name, "prismatic", parent, child, axis, None, at, turned)
 
     def cylindrical(
@@ -346,7 +350,7 @@ class SpatialMechanism(Mechanism):
             )
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
-        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch)
+        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch, turn_given=placed or bool(turned))
         self.joints[name] = joint
         if placed:
             self.hard.add(name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ..arguments import texts
 from .mechanism import Mechanism
 
 SENSITIVITY = "sensitivity"
@@ -17,7 +18,7 @@ def sensitivities(mechanism: Mechanism) -> list[str]:
 
 def by_parameters(mechanism: Mechanism, names: Iterable[str]) -> tuple[str, ...]:
     """The parameters by which sensitivities are among wanted names, in the order of declaration."""
-    asked = {*names}
+    asked = {*(texts(names) or ())}
     return tuple(name for name in mechanism.parameters if asked & {SENSITIVITY, f"{SENSITIVITY}:{name}"})
 
 

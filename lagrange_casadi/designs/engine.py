@@ -24,7 +24,7 @@ from ..declare.times import Times, Timing
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..evaluate import checked_laws, checked_span, outputs_of
+from ..evaluate import checked_span, outputs_of
 from ..instants.backends import begun, compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import undetermined
@@ -106,7 +106,7 @@ class DesignEngine:
         graph = derive(scene, wanted)
         rung.check(graph)
         times, values = DesignTimes(scene, timing or scene.timing(t)), scene.mechanism.values()
-        checked_laws(scene, checked_span(scene, times.timing, values), tuple(values.values()))
+        checked_span(scene, times.timing, values)
         instants, even = times.default
         p = np.array(list(values.values()))
         kept = KeptOutputs.of(graph, rung)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import public
+from ..arguments import Numeric, Outputs, ThreadCount, public
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
 from ..declare.scene import Scene, without_fitted, without_life
 from ..declare.times import Over, Times
-from ..errors import AssemblyError, DeclarationError, UnknownNameError
+from ..errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ..evaluate import evaluate
 from ..instants.refusal import Status
-from ..instants.rung import Backend, Rung
+from ..instants.rung import Backend, Rung, Steps
 from ..instants.solution import Solution
 from .engine import DesignEngine, Outcome
 from .gradients import MeanSlopes
@@ -127,8 +127,8 @@ class _Answers(threading.local):
         self.seen = Peaks(*(places[name][0] for name in kept))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call itself.
-        if engine.library is not None and engine.times.common and not engine.watch:
-            even, asked = engine.times.of(self.p)
+        if engine.library is not None and engine.times.common and not engine.watch.columns:
+            even, asked = self.instants = engine.times.of(self.p)
             bind = partial(engine.library.bound, p=self.p)
             nowhere = np.zeros((1, 0), bool)
             self.fill = (
@@ -201,7 +201,7 @@ class Prepared:
             self._refuse(found.status[0], p)
             return {str(o): row for o, row in engine.told(found.series[0], p[0]).items()}
         fill[0]()
-        self._refuse(answers.status[0], p)
+        self._refuse(self._watched(answers.instants[1]), p)
         return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
 
     def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
@@ -234,7 +234,8 @@ class Prepared:
         own = self._engine.gradient(p, value, t, xi)
         return Curvature(self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own))
 
-    def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+    @public
+    def designs(self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
 
         Values are not checked against the parameters' ranges. A design without a result has its status, and NaN.
@@ -249,7 +250,7 @@ class Prepared:
             self._refuse(found.status[0], p)
             return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
         fill[1]()
-        self._refuse(answers.status[0], p)
+        self._refuse(self._watched(answers.instants[0]), p)
         return answers.seen
 
     def _kept_peaks(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
@@ -263,8 +264,8 @@ class Prepared:
         p: Array = self._answers.p
         row = p[0]
         row[:] = self._defaults
-        if not (values is None or hasattr(values, "items")):
-            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {values!r}")
+        if not (values is None or isinstance(values, Mapping)):
+            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(values)}")
         for given in (values, named) if values else (named,):
             for name, value in given.items():
                 parameter = self._declared.get(name)
@@ -274,6 +275,13 @@ class Prepared:
                     parameter.check(value)
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
         return p
+
+    def _watched(self, t: Array) -> int:
+        """The status of this thread's evaluation at instants (1, t); its motion may have a corner though all have numbers."""
+        engine, answers = self._engine, self._answers
+        if not engine.watch:
+            return int(answers.status[0])
+        return int(engine.watch.statuses(answers.p, t, answers.status, lambda: answers.history)[0])
 
     def _refuse(self, status: int, p: Array) -> None:
         if status != Status.OK:
@@ -288,10 +296,10 @@ def prepare(
     *,
     t: Times | None = None,
     over: Over | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     flags: str = "",
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
@@ -308,8 +316,8 @@ def prepare(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
-    without_life(wanted or (), "prepared scenes")
-    without_fitted(scene.mechanism, wanted or (), "prepared scenes")
+    without_life(() if wanted is None else wanted, "prepared scenes")
+    without_fitted(scene.mechanism, () if wanted is None else wanted, "prepared scenes")
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
     return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))

@@ -28,9 +28,11 @@ from ..instants.rules import rules
 from ..instants.rung import Rung
 from ..quantities import AVERAGED, Output, compared
 from ..summits.sharpness import Sharpness
+from ..system.symbolic import symbolic
 from ..tables import Table, table_of
 
 
+@symbolic
 def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
     """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them.
 
@@ -156,6 +158,7 @@ def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
     return found
 
 
+@symbolic
 def _matter(scene: Scene, links: list[Link], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
     """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
     mechanism = scene.mechanism

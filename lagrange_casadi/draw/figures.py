@@ -5,6 +5,7 @@ Specs are known wherever cases are; matplotlib is imported when something is dra
 
 from __future__ import annotations
 
+import os
 import re
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -14,12 +15,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..arguments import Finite, public
 from ..declare.density import Array
 from ..declare.description import parts_of
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
-from ..strength.parts import bending_of, fitted_in, strong_of
+from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
 from ..tables import PLANE, SPACE
 from .pictures import one_at_a_time, save
 from .readable import scale_for
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 _PIXELS, _LABEL = 1600, 40
 
 
+@public
 @dataclass(frozen=True)
 class TimePlot:
     """Quantities over time, those of each unit on axes of their own; of a section force, one curve for each ratio in ``xi``.
@@ -43,7 +46,7 @@ class TimePlot:
     quantities: tuple[str, ...]
     title: str = ""
     xi: tuple[float, ...] = ()
-    factor: float = 1.0
+    factor: Finite = 1.0
     note: str = ""
 
     def needs(self) -> tuple[str, ...]:
@@ -77,6 +80,7 @@ class TimePlot:
             axes.plot(_along(solution)[0], self.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
 
 
+@public
 @dataclass(frozen=True)
 class SpanPlot:
     """A section force along its link at the instant nearest to ``t``."""
@@ -84,9 +88,9 @@ class SpanPlot:
     kind: ClassVar[str] = "span"
     name: str
     quantity: str
-    t: float
+    t: Finite
     title: str = ""
-    factor: float = 1.0
+    factor: Finite = 1.0
     note: str = ""
 
     def needs(self) -> tuple[str, ...]:
@@ -107,6 +111,7 @@ class SpanPlot:
         return figure
 
 
+@public
 @dataclass(frozen=True)
 class SectionMaps:
     """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned.
@@ -163,6 +168,7 @@ class SectionMaps:
         return figure
 
 
+@public
 @dataclass(frozen=True)
 class MechanismDrawing:
     """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself; postures that are the same once.
@@ -194,6 +200,7 @@ class MechanismDrawing:
         return draw_mechanism(solution, self.count, self.overlay, si)
 
 
+@public
 @dataclass(frozen=True)
 class StrengthPlot:
     """Von Mises' stress of a link that has a beam, over time and along it, and its swings in Goodman's diagram."""
@@ -214,6 +221,7 @@ class StrengthPlot:
         return draw_strength(solution, self.link, *_along(solution), si)
 
 
+@public
 @dataclass(frozen=True)
 class UtilisationPlot:
     """How far links that have a beam are used, and joints that have pins or bearings, against each way to fail."""
@@ -236,6 +244,7 @@ class UtilisationPlot:
         return draw_utilisation(solution, (*self.links, *self.joints))
 
 
+@public
 @dataclass(frozen=True)
 class DeflectionPlot:
     """The deflection of a link that has a beam, over time and along it, and the harmonics of its bending."""
@@ -264,6 +273,7 @@ KINDS: dict[str, type[Spec]] = {
 """By the word for it in files."""
 
 
+@public
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
     """The usual drawings of whatever a solution holds."""
     specs: list[Spec] = []
@@ -287,7 +297,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
     specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
-    links, joints = strong_of(solution, "yield_strength", "elasticity"), fitted_in(solution)
+    links, joints = strong_of(solution, *NEEDED), fitted_in(solution)
     if links or joints:
         specs.append(UtilisationPlot("utilisation", links, joints))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in bending_of(solution)]
@@ -300,19 +310,24 @@ def _in_ground_axes(output: Output) -> Iterator[Output]:
     return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
 
 
-def draw(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> Iterator[tuple[Spec, Path | None]]:
+@public
+def draw(
+    solution: Solution, specs: Sequence[Spec], folder: str | os.PathLike[str], si: bool = False
+) -> Iterator[tuple[Spec, Path | None]]:
     """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by one.
 
     Axes have the units that people read, as kN and mm where numbers call for them; with ``si`` those of SI, without prefixes.
     The path is None where the solution lacks what a spec draws. Raises :class:`DeclarationError` for what is no spec.
     """
-    chosen = specs or default_figures(solution)
+    chosen, folder = specs or default_figures(solution), Path(folder)
     for spec in chosen:
         if not isinstance(spec, Spec):
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
         _check_parts(solution, spec)
+    if not os.path.isdir(folder):
+        raise PathError(f"draw: expected an existing folder, got {shown(folder)}")
     for spec in chosen:
         if not _has(solution, spec):
             yield spec, None

@@ -11,14 +11,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arguments import Numeric, public
 from ..declare.density import Array
 from ..declare.held import ends_of
 from ..errors import DeclarationError, UnknownNameError
+from ..instants.sizes import largest
 from ..instants.solution import Solution
 from ..instants.turning import turns_between
 from ..strength.member import Member
@@ -40,6 +42,7 @@ class DeflectionPeak:
     xi: float
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Deflection:
     """How a link bends, stretches and twists, over time and along it.
@@ -66,11 +69,15 @@ class Deflection:
     def __repr__(self) -> str:
         return f"<Deflection of '{self.member.link}' against its {self.against}: {self.member.t.size} instants>"
 
-    def at(self, name: str, u: Any) -> Array:
-        """What is told by a name, at ratios (t, ...), a row an instant."""
+    def at(self, name: str, u: Numeric) -> Array:
+        """What is told by a name, at a ratio, or at ratios (t, ...), a row an instant."""
         if name not in self.names:
             raise UnknownNameError("deflection", name, self.names)
         u = np.asarray(u, float)
+        if not u.shape:
+            u = np.full(self.member.t.size, float(u))
+        if len(u) != self.member.t.size or not ((u >= 0.0) & (u <= 1.0)).all():
+            raise DeclarationError(f"deflection: expected ratios xi/l from 0 to 1, a row for each of {self.member.t.size} instants")
         found = self._at(name, u)
         if self.against == "base" or name in ("along", "twist"):
             return found
@@ -125,7 +132,7 @@ class Deflection:
     def peak(self) -> DeflectionPeak:
         """The largest of these, over the instants: along the link exactly, where the cross-section is constant."""
         values, places = self.largest()
-        i = int(np.argmax(np.abs(values)))
+        i = int(largest(values))
         return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
 
     @cached_property

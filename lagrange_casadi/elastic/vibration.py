@@ -8,7 +8,7 @@ damping). What this changes is by how much the forces of rigid links are off.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -84,7 +84,7 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, or its material
     has no elasticity; and for other words than these.
     """
-    if ends is not None and (len(ends) != 2 or any(end not in ENDS for end in ends)):
+    if ends is not None and not (isinstance(ends, Sequence) and len(ends) == 2 and all(end in ENDS for end in ends)):
         raise DeclarationError(f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)}, got {ends!r}")
     compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
     held = ends or ends_of(solution.description, link)

@@ -17,6 +17,7 @@ from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Bent:
     """A bar of straight ``pieces``, links called NAME_1, NAME_2 and so on, and its ``corners`` from the base to the tip."""

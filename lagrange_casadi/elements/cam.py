@@ -14,7 +14,7 @@ from typing import Any, cast
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import Count, public
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -45,6 +45,7 @@ class Design:
     roller: Expression
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Cam:
     """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
@@ -58,7 +59,7 @@ class Cam:
     constraint: Constraint
     design: Design
 
-    def profile(self, parameters: dict[str, float] | None = None, *, count: int = 720) -> CamProfile:
+    def profile(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> CamProfile:
         """The cam's profile at ``count`` angles of one turn, for parameters' values, in its own axes."""
         design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
         cosine = _dot(design.normal, design.way)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..system.publish import check_writable, writing
@@ -23,6 +24,7 @@ _SAME = 1e-9
 _MILLIMETRES = 1e3
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class CamProfile:
     """A cam's profile at angles of one turn of the cam, each (n,), in its own axes.

@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Count, public
 from ..declare.density import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -57,6 +57,7 @@ class Groove:
     bend: Any
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class CylindricalCam:
     """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
@@ -72,7 +73,7 @@ class CylindricalCam:
     design: Groove
     cam: Joint
 
-    def groove(self, parameters: dict[str, float] | None = None, *, count: int = 720) -> Array:
+    def groove(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> Array:
         """The path of the roller's centre on the drum at ``count`` angles of one turn, in the drum's own axes, (count, 3) [m].
 
         Raises :class:`.DeclarationError` for a count below 16.

@@ -16,6 +16,7 @@ from ..declare.parts import Expression, Link, Point
 from ..errors import DeclarationError
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Plate:
     """A plate: its ``link``, and its ``corners`` as points of it."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
@@ -17,6 +17,7 @@ from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..quantities import Output
 from ..system import cache
+from ..system.symbolic import symbolic
 from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections
@@ -36,7 +37,8 @@ from .strength import stresses, utilisation
 
 
 @public
-def derive(scene: Scene, wanted: Sequence[str] | None = None, *, elastic: bool = False) -> SceneGraph:
+@symbolic
+def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
     With ``elastic`` it tells how forces change with what equilibrium leaves open.
@@ -58,6 +60,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, elastic: bool =
     raise type(found)(str(found))
 
 
+@symbolic
 def assembled(
     scene: Scene,
     values: Mapping[str, float],

@@ -6,9 +6,11 @@ from collections.abc import Mapping
 
 from ..declare.description import Description, describe
 from ..declare.scene import Scene
+from ..system.symbolic import symbolic
 from .tree import span
 
 
+@symbolic
 def described(scene: Scene, values: Mapping[str, float]) -> Description:
     """The description of a scene's mechanism, for values of its parameters.
 

@@ -14,8 +14,10 @@ import numpy as np
 
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
+from ..system.symbolic import symbolic
 
 
+@symbolic
 def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     """The hash of the declaration, its expressions and laws of motion, what is wanted, and the code that derives.
 
@@ -27,6 +29,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     return hashlib.sha256("\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
 
 
+@symbolic
 def declaration(scene: Scene, wanted: Wanted) -> str | None:
     """All that is declared and wanted, as text; None where it holds something whose content cannot be told."""
     mechanism = scene.mechanism

@@ -7,6 +7,7 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
+from ..system.symbolic import symbolic
 from .blocks import Block, Equation
 from .joints import off
 from .multibody import Multibody
@@ -39,6 +40,7 @@ def reach(mechanism: Mechanism) -> Any:
     return sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0)) if mechanism.links else ca.SX(1)
 
 
+@symbolic
 def extent(mechanism: Mechanism) -> Any:
     """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is small or large beside it."""
     points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))

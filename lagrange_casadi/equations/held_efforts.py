@@ -10,6 +10,7 @@ import casadi as ca
 
 from ..declare.scene import Scene, Wanted
 from ..quantities import Output
+from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column
 from .meshes import transmissions_of
 from .mobility import internal_forces
@@ -19,7 +20,7 @@ from .pressing import frictions_of
 
 
 @dataclass(frozen=True, eq=False)
-class HeldEfforts:
+class HeldEfforts(Graphs):
     """``instant(t, d, d_rate, d_acceleration, z, p, signs) -> out``, a row for each of ``columns``.
 
     ``signs`` are those of ``frictions``.
@@ -30,6 +31,7 @@ class HeldEfforts:
     frictions: tuple[str, ...]
 
 
+@symbolic
 @functools.lru_cache(maxsize=8)
 def held_efforts(scene: Scene) -> HeldEfforts:
     """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts that are ``open`` besides."""

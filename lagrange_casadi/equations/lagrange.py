@@ -26,6 +26,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import Graph, public
 from ..errors import DeclarationError
 from .integrability import Course, no_rates
 
@@ -37,6 +38,7 @@ def _none() -> Any:
     return ca.SX(0, 1)
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class LagrangeSystem:
     """A system given by its energy: CasADi SX graphs over symbols.
@@ -76,24 +78,24 @@ class LagrangeSystem:
     given.
     """
 
-    kinetic: Any
-    force_function: Any
-    coordinates: Any
-    rates: Any
-    accelerations: Any
-    tangent: Any = None
-    mobilities: Any = field(default_factory=_none)
-    mobility_rates: Any = field(default_factory=_none)
-    forces: Any = None
-    mobility_forces: Any = None
-    constraints: Any = field(default_factory=_none)
-    multipliers: Any = field(default_factory=_none)
-    velocities: Any = field(default_factory=_none)
-    velocity_graphs: Any = field(default_factory=_none)
-    velocity_rates: Any = None
-    velocity_forces: Any = None
-    drift: Any = None
-    time: Any = None
+    kinetic: Graph
+    force_function: Graph
+    coordinates: Graph
+    rates: Graph
+    accelerations: Graph
+    tangent: Graph | None = None
+    mobilities: Graph = field(default_factory=_none)
+    mobility_rates: Graph = field(default_factory=_none)
+    forces: Graph | None = None
+    mobility_forces: Graph | None = None
+    constraints: Graph = field(default_factory=_none)
+    multipliers: Graph = field(default_factory=_none)
+    velocities: Graph = field(default_factory=_none)
+    velocity_graphs: Graph = field(default_factory=_none)
+    velocity_rates: Graph | None = None
+    velocity_forces: Graph | None = None
+    drift: Graph | None = None
+    time: Graph | None = None
 
     def __post_init__(self) -> None:
         n, p, k = self.rates.numel(), self.coordinates.numel(), self.mobility_rates.numel()

@@ -13,8 +13,10 @@ import casadi as ca
 
 from ..arithmetic.interpret import Step, followable, steps
 from ..arithmetic.scalars import less, product
+from ..system.symbolic import symbolic
 
 
+@symbolic
 def share_reciprocals(function: Any, parameters: str) -> Any:
     """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay.
 
@@ -41,6 +43,7 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
     return _replayed(function, made)
 
 
+@symbolic
 def differentiable(function: Any) -> Any:
     """A function of :func:`share_reciprocals` with plain divisions again.
 

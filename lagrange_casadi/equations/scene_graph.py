@@ -15,6 +15,7 @@ from ..declare.density import Array
 from ..declare.motion import Laws
 from ..declare.scene import Scene, Wanted
 from ..quantities import Output, law_members, station_members
+from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column, Kind, column_of
 from .gaps import extent
 from .iteration import NewtonLoop
@@ -23,7 +24,7 @@ from .open_forces import OpenForces
 
 
 @dataclass(frozen=True, eq=False)
-class SceneGraph:
+class SceneGraph(Graphs):
     """What a scene computes, as CasADi functions that hold nothing else.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
@@ -69,6 +70,7 @@ class SceneGraph:
             return Laws(self.motion, None, tuple(range(len(self.driven))))
         return Laws.of({name: self.scene.laws[name] for name in self.driven}, self.scene.mechanism.symbols)
 
+    @symbolic
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
         mechanism = self.scene.mechanism

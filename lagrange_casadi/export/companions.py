@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..tables import Table
-from .contract import REST, Contract, Member
+from .contract import CORNERS, REST, Contract, Member
 from .fatigue import counting
 from .golden import RATIOS
 from .matlab import matlab
@@ -92,8 +92,7 @@ def _settings(c: Contract) -> str:
     if not c.settings:
         return "There are none: every number of the scene is fixed.\n"
     rows = "\n".join(f"| `{m.name}` | {markdown(m.unit)} | {m.range} |" for m in c.settings)
-    corners = "Corners of motions, constraints and lifts were looked for with the defaults alone."
-    return f"`{c.prefix}_defaults` holds the defaults. {corners}\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
+    return f"`{c.prefix}_defaults` holds the defaults. {CORNERS}\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
 
 
 def _mapped(c: Contract) -> str:

@@ -16,11 +16,15 @@ from ..equations.scene_graph import SceneGraph
 from ..equations.spreads import spreads_of
 from ..instants.solution import Solution
 from ..quantities import Output
+from ..system.symbolic import symbolic
 from ..tables import PLANE, Table, table_of
 from .naming import constants, members, prefix
 
 REST = "rest:"
 """What the full name of a rest begins with."""
+
+CORNERS = "Corners of motions, constraints and lifts were looked for with the defaults alone."
+"""What whoever changes parameters must know."""
 
 _DIGITS = 3
 FAINT = 1e-9
@@ -170,6 +174,7 @@ def contract(
     )
 
 
+@symbolic
 def _timed(graph: SceneGraph) -> bool:
     """Whether anything but the motion depends on the time."""
     functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]

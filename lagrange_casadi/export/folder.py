@@ -10,14 +10,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError
-from ..instants.rung import Rung
-from ..system.manifest import Manifest, digest
-from ..system.publish import check_writable, filling
+from ..instants.rung import Rung, Steps
+from ..system.manifest import Manifest
+from ..system.publish import check_writable
 from ..version import __version__
 from .companions import companions
 from .contract import Contract
@@ -50,9 +50,9 @@ def export(
     *,
     name: str | None = None,
     parameters: Mapping[str, float] | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     table: float | None = None,
     largest: int | None = None,
     force: bool = False,
@@ -106,28 +106,26 @@ def export(
         files |= for_pages(source)
     unit = f"{agreed.prefix}.fmu"
     told = MANIFEST.known(folder)
-    known = MANIFEST.check(folder, [*files, *([unit] if fmu else [])], beside=force, changed=force, apart=_BUILD)
+    allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
+    MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
     if told and f"{agreed.prefix}.h" not in told and not force:
         raise PathError(f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}")
     if fmu:
         files[unit] = archive(source, np.array(list(source.values.values())))
-    files[MANIFEST.name] = _manifest(source, files).encode()
-    with filling(folder) as draft:
+    with MANIFEST.filling(folder, _told(source), alone=True, **allowed) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)
-    for stale in known.keys() - files.keys():
-        (folder / stale).unlink()
     return agreed
 
 
-def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
-    """What the folder holds, for programs: names, units and places of all members, and a digest of each file."""
+def _told(source: Source) -> dict[str, Any]:
+    """What the folder holds, for programs: names, units and places of all members."""
     agreed = source.contract
 
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:
         return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
 
-    more = {
+    return {
         "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
         "mechanism": agreed.name,
         "prefix": agreed.prefix,
@@ -143,4 +141,3 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
     }
-    return MANIFEST.text({file: digest(content) for file, content in files.items()}, more)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .contract import Contract
+from .contract import CORNERS, Contract
 from .sections import about, law_in_words
 from .slopes import declaration, types
 from .source import Source
@@ -93,7 +93,7 @@ def _parameters(c: Contract) -> str:
     if not c.settings:
         return ""
     rows = "\n".join(member(p, m.name, m.comment) for m in c.settings)
-    about = "/* Numbers that may change without generating anything again. */"
+    about = f"/* Numbers that may change without generating anything again.\n   {CORNERS} */"
     return f"\n{about}\ntypedef struct {{\n{rows}\n}} {p}_parameters;\n\nextern const {p}_parameters {p}_defaults;\n"
 
 

@@ -23,6 +23,7 @@ from ..errors import DeclarationError
 from ..instants.cycle_table import CycleTable
 from ..instants.tabulate import still
 from ..quantities import Output
+from ..system.symbolic import symbolic
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +66,7 @@ class Program:
         return newton_rule(self.precision, self.newton)
 
 
+@symbolic
 def program(
     graph: SceneGraph, precision: Precision, newton: int | None, p: Array, read: tuple[SceneGraph, CycleTable] | None
 ) -> Program:

@@ -37,8 +37,8 @@ def sourced(
     Raises :class:`SizeError` for a table that is too large, :class:`CertificateError` where the scene's own cycle fails its
     certificate, and what :func:`.evaluate` raises.
     """
-    without_life(wanted or (), "exports")
-    without_fitted(scene.mechanism, wanted or (), "exports")
+    without_life(() if wanted is None else wanted, "exports")
+    without_fitted(scene.mechanism, () if wanted is None else wanted, "exports")
     names = scene.wanted if wanted is None else wanted
     by = by_parameters(scene.mechanism, names)
     if by:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 import shlex
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -21,7 +20,7 @@ from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, ne
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..errors import CompilerError
+from ..errors import CompilerError, warn
 from ..system.room import cores
 from ..version import __version__
 from . import grids
@@ -139,13 +138,13 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
         except CompilerError as error:
             if backend != "auto" or language == "c":
                 raise
-            warnings.warn(f"{error}; scalar C serves", stacklevel=6)
+            warn(f"{error}; scalar C serves")
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if rung.precision == "single":
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
-        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=6)
+        warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly")
     return None
 
 

@@ -21,6 +21,7 @@ from ..equations.dead_centres import passes_dead_centre
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
+from ..system.symbolic import symbolic
 from ..tables import ANGLE, FORCE, LENGTH, MOMENT
 
 TURNS = 4
@@ -114,6 +115,7 @@ class Drive:
     terms: Any
 
     @classmethod
+    @symbolic
     def of(cls, graph: SceneGraph, p: Array) -> Drive:
         """Raises :class:`DeclarationError` where there is not one drive that turns, or where columns depend on time itself."""
         joint = the_drive(graph)

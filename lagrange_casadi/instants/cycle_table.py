@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import math
-import warnings
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from importlib import resources
@@ -22,7 +21,7 @@ from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.density import Array
-from ..errors import CompilerError, DeclarationError
+from ..errors import CompilerError, DeclarationError, warn
 
 FACTORS = ("1", "rate", "rate^2", "acceleration")
 """What a term is multiplied by."""
@@ -316,6 +315,6 @@ def _compiled(dtype: str) -> Any | None:
             return None
         entry = loaded(source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")).lagrange_casadi_interpolate
     except CompilerError as error:
-        warnings.warn(f"{error}; NumPy reads the tables", stacklevel=4)
+        warn(f"{error}; NumPy reads the tables")
         return None
     return INTERPOLATE.declare(entry)

@@ -15,6 +15,7 @@ from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..system.room import cores
+from ..system.symbolic import symbolic
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
@@ -86,6 +87,7 @@ def cycle_table(graph: SceneGraph, p: tuple[float, ...], table: float, rates: tu
 _single = functools.lru_cache(maxsize=32)(CycleTable.single)
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def drive_of(graph: SceneGraph) -> SceneGraph:
     """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ctypes
 import functools
 import math
-import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
@@ -22,7 +21,7 @@ from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.density import Array
 from ..declare.limits import END
-from ..errors import CompilerError, DeclarationError
+from ..errors import CompilerError, DeclarationError, warn
 from ..system.room import require
 
 WORTH_COMPILING = 1 << 14
@@ -221,7 +220,7 @@ def _compiled() -> Any | None:
             return None
         library = loaded(source, compiler, _OPTIONS)
     except CompilerError as error:
-        warnings.warn(f"{error}; NumPy fills the grids", stacklevel=4)
+        warn(f"{error}; NumPy fills the grids")
         return None
     for name, call in (("lagrange_casadi_grid", GRID), ("lagrange_casadi_largest", LARGEST)):
         call.declare(getattr(library, name))

@@ -107,7 +107,7 @@ def refuse(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Ru
 def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
     held, extent = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p)
-    bad = (evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out))
+    bad = unfinished(graph, evaluated)
     passed: dict[Rule, npt.NDArray[np.bool_]] = {}
     for rule in held:
         bad |= broken(rule, evaluated.out, extent)
@@ -136,6 +136,11 @@ def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
     for row in graph.checks("rest").values():
         found |= np.asarray(out[row]) > 0.5
     return found
+
+
+def unfinished(graph: SceneGraph, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
+    """At which instants (t,) there is no result; at rest there is one, beside what friction reaches."""
+    return np.asarray((evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out)))
 
 
 def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from ..arguments import Within
 from ..arithmetic.compensated import PRECISIONS, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 
@@ -17,6 +18,7 @@ BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
 
 FEWEST_NODES = 8
 MOST_STEPS = 1000
+Steps: TypeAlias = Annotated[int, Within(1, MOST_STEPS)]
 """Each step squares what a loop still misses: after some ten nothing changes."""
 
 

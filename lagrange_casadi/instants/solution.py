@@ -19,12 +19,13 @@ from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from ..quantities import Output
 from ..tables import Table
 from .derivatives import Derivatives
 from .elasticity import Elasticity
 from .frames import dataset, frame
+from .held import Holding, held_notes
 from .laws import law_of, made_of
 from .ordering import table_of_described
 from .sizes import largest, size_of
@@ -83,7 +84,7 @@ class Solution:
     centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
     :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
     which the instants were asked for, or None. ``elasticity`` says which outputs least strain energy told; ``sensitivities`` are
-    derivatives by parameters, where these were wanted.
+    derivatives by parameters, where these were wanted; ``held`` are ranges of efforts that joints at rest leave open.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
@@ -101,6 +102,7 @@ class Solution:
     over: DriveAxis | None = None
     elasticity: Elasticity = field(default_factory=Elasticity)
     sensitivities: Derivatives = field(default_factory=Derivatives)
+    held: Mapping[str, Holding] = field(default_factory=dict)
 
     @cached_property
     def table(self) -> Table:
@@ -221,7 +223,7 @@ class Solution:
             from ..elastic.vibration import swinging
 
             slopes = (*slopes, *swinging(self))
-        return (*found, *self.elasticity.notes, *slopes)
+        return (*found, *held_notes(self.held), *self.elasticity.notes, *slopes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
@@ -235,11 +237,15 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
+        each = instants.tolist() if isinstance(instants, np.ndarray) else []
+        if not (isinstance(instants, slice) or [type(one) for one in each] == [bool] * self.t.size):
+            raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
-        certificate = {name: values[instants] for name, values in self.certificate.items()}
+        left = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
         slopes = self.sensitivities.during(instants)
-        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over, sensitivities=slopes)
+        held = {name: found.during(instants) for name, found in self.held.items()}
+        return replace(self, t=self.t[instants], outputs=outputs, certificate=left, over=over, sensitivities=slopes, held=held)
 
     @property
     def by_equilibrium(self) -> Solution:
@@ -272,14 +278,14 @@ class Solution:
     def unit(self, name: str | Output) -> str:
         """The unit of a quantity by its full name, as text: ``N m``."""
         output = self._output(name)
-        if output.group != "certificate" and not self._over_time(output):
+        if output.group not in ("certificate", "holding") and not self._over_time(output):
             self._of_section(output)
         if output.group == "output":
             return str(self.description["outputs"][output.part])
         kinds, part = coordinates_of(self.description), output.part
         if output.group == "friction":
             return output.quantity.unit_for(kinds[self.description["loads"][part]["friction"]["coordinate"]])
-        return output.quantity.unit_for(kinds.get(part, "angle") if output.group in ("motion", "effort") else "angle")
+        return output.quantity.unit_for(kinds.get(part, "angle") if output.group in ("motion", "effort", "holding") else "angle")
 
     def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
@@ -362,13 +368,10 @@ class Solution:
 
     @cached_property
     def _sections(self) -> dict[str, Section]:
-        links = dict.fromkeys(output.part for output in self.outputs if output.group == "law")
-        return {link: self._section(link) for link in links}
-
-    def _section(self, link: str) -> Section:
-        body = self.description["bodies"][link]
-        law = law_of(link, self.outputs, body["length"], density_of(body), self.provenance.precision)
-        return Section(law, self.xi)
+        links = {output.part: self.description["bodies"][output.part] for output in self.outputs if output.group == "law"}
+        precision = self.provenance.precision
+        laws = {link: law_of(link, self.outputs, body["length"], density_of(body), precision) for link, body in links.items()}
+        return {link: Section(law, self.xi) for link, law in laws.items()}
 
     def _output(self, name: str | Output) -> Output:
         with suppress(KeyError):

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
 from ..store.opening import opened_file
+from ..store.untrusted import check_dataset, check_links, shown
 from ..system.publish import PatientFile, replacing
 from ..system.seal import kind_of, seal
 from .front import Front
 from .optimum import Optimum
+from .trail import CONVERGED
 
 SCHEMA, VERSION = "lagrange-casadi-optimum", 1
+_COLUMNS = ("start", "objective", "excess", "result")
+"""Those of a history, before the parameters that were chosen."""
 
 
 def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
@@ -43,9 +49,12 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
 
     Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
     """
-    found = []
+    found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
+        check_links(file)
         file.visititems(_read)
+        for group in file["points"].values() if "points" in file else [file]:
+            found += _contradictions(group)
         if file.attrs["stopped"]:
             found.append("the search was stopped before its end")
         if not file.attrs["feasible"]:
@@ -60,6 +69,39 @@ def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
     dict(item.attrs)
     if isinstance(item, h5py.Dataset):
         item[()]
+
+
+def _contradictions(group: h5py.Group) -> Iterator[str]:
+    """What of an optimum is told twice, and not alike: starts, ends and optima are rows of the history.
+
+    Raises ``KeyError``, ``ValueError`` and others where it is not what a search writes.
+    """
+    place, names = group.name.rstrip("/"), [name for name, item in group["parameters"].items() if item.attrs["chosen"]]
+    history, optima = group["history"], group["optima"]
+    check_dataset(history, (len(history), len(_COLUMNS) + len(names)))
+    if list(history.attrs["columns"]) != [*_COLUMNS, *names]:
+        yield f"{place}/history: its columns are not those of a history"
+    ends = []
+    for number, start in group["starts"].items():
+        rows = history[()][history[:, 0] == int(number)]
+        for end in ("start", "end"):
+            check_dataset(start[end], (len(names),))
+        came = np.array([start.attrs["objective"], start.attrs["excess"], *start["end"]])
+        begins = len(rows) == 0 or _alike(rows[0, len(_COLUMNS) :], start["start"])
+        if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)):
+            yield f"{start.name}: is not the way that the history tells"
+        shown(start.attrs["ending"])
+        if start.attrs["ending"] == CONVERGED:
+            ends.append(np.delete(came, 1))
+    check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
+    check_dataset(optima["starts"], (len(optima["objective"]),))
+    best = np.column_stack([optima["objective"], optima["designs"]])
+    if int(np.sum(optima["starts"])) != len(ends) or not all(any(_alike(row, end) for end in ends) for row in best):
+        yield f"{optima.name}: are not the designs at which starts have converged"
+
+
+def _alike(one: Any, other: Any) -> bool:
+    return np.array_equal(np.asarray(one, float), np.asarray(other, float), equal_nan=True)
 
 
 def _write_front(file: h5py.File, front: Front) -> None:
@@ -103,4 +145,4 @@ def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
     optima["objective"] = np.array([one.objective for one in optimum.optima])
     optima["starts"] = np.array([one.starts for one in optimum.optima], int)
     history = file.create_dataset("history", data=optimum.history)
-    history.attrs["columns"] = ["start", "objective", "excess", "result", *names]
+    history.attrs["columns"] = [*_COLUMNS, *names]

@@ -27,6 +27,10 @@ except ImportError:  # where there is none, nothing keeps two searches apart
     fcntl = None  # type: ignore[assignment]
 
 
+_FIRST = b' {"identity": '
+"""How the first line goes on after its checksum."""
+
+
 def journal_of(target: Path) -> Path:
     """Where the journal of a search into ``target`` is."""
     place = settled(target)
@@ -64,7 +68,8 @@ class Journal:
 def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, force: bool) -> Iterator[Journal]:
     """The journal of a search into ``target``, locked; nothing is kept on disk where that is None.
 
-    It is removed where nothing is in it. Raises :class:`PathError` where one is there and neither ``resume`` nor ``force`` is
+    It is removed where nothing is in it. One whose first line a kill cut short holds nothing, and a new one takes its place. Raises
+    :class:`PathError` where one is there and neither ``resume`` nor ``force`` is
     asked for, :class:`StoreError` where it is of another search, :class:`BusyError` where another process writes it.
     """
     if target is None:
@@ -72,7 +77,9 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
         return
     check_writable(target, hdf5=True)
     path = journal_of(target)
-    if path.exists() and path.stat().st_size and not (resume or force):
+    with telling(path):
+        begun = path.exists() and not (path.is_file() and _holds_nothing(path.read_bytes()))
+    if begun and not (resume or force):
         raise PathError(f"{path} is of an unfinished search: go on with resume=True, or start anew with force=True")
     journal, own = Journal(target), False
     try:
@@ -83,7 +90,8 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
                 except BlockingIOError:
                     raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
             journal.file = file
-            own = force or not os.fstat(file.fileno()).st_size
+            file.seek(0)
+            own = force or _holds_nothing(file.read())
             if force or not _read(journal, path, identity):
                 file.truncate(0)
                 file.write(_line({"identity": identity}))
@@ -104,7 +112,7 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
     if content and not content.endswith(b"\n"):
         journal.file.write(b"\n")  # a line that a kill cut short is none
     if not lines or "identity" not in lines[0]:
-        if content:
+        if not _holds_nothing(content):
             raise StoreError(f"{path} holds what no search wrote, or is damaged: force=True starts anew")
         return False
     for words in lines:
@@ -113,6 +121,13 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
         elif found := difference(words["identity"], identity):
             raise StoreError(f"{path} is of another search: {found}; start anew with force=True, or write another file")
     return True
+
+
+def _holds_nothing(content: bytes) -> bool:
+    """Whether a journal is empty, or has the beginning of its first line alone, which a kill cut short."""
+    checksum, said = content[:8], content[8:]
+    cut = said.startswith(_FIRST) or _FIRST.startswith(said)
+    return b"\n" not in content and cut and all(digit in b"0123456789abcdef" for digit in checksum)
 
 
 def _line(words: Mapping[str, Any]) -> bytes:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import DeclarationError
+from ..system.symbolic import symbolic
 from .conditions import Conditions, conditions
 from .look import Point
 from .problem import Box, Problem
@@ -86,6 +87,7 @@ class _Built:
 class Program:
     """The program of a problem, whose limits are numbers that it is given; it is built once for each size."""
 
+    @symbolic
     def __init__(self, values: PointValues, box: Box, problem: Problem, instants: int, least_closure: float) -> None:
         if not ca.has_nlpsol("ipopt"):
             raise DeclarationError("optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel contains it")
@@ -160,6 +162,7 @@ class Program:
             )
         return rows.ravel()
 
+    @symbolic
     def _build(self, held: Sequence[Held], room: int) -> _Built:
         box, n, nz = self.box, len(self.box.names), self.values.graph.instant.size1_in("z")
         x, limits = ca.MX.sym("x", n), ca.MX.sym("limits", 2, len(held))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, overload
+from typing import Annotated, Any, overload
 
-from ..arguments import public
+from ..arguments import Within, public
 from ..case import Case
 from ..declare.scene import Scene
 from ..declare.times import Times
@@ -23,7 +23,7 @@ from .journal import kept
 from .optimum import Optimum
 from .problem import Problem, Question
 from .searching import Progress, Search
-from .starts import Starts, checked
+from .starts import MOST, Starts
 
 Over = Mapping[str, tuple[Any, Any]]
 
@@ -80,8 +80,8 @@ def optimise(
     over: Over,
     subject_to: Sequence[str] = (),
     starts: Starts = 4,
-    screen: int = 256,
-    points: int = POINTS,
+    screen: Annotated[int, Within(1, MOST)] = 256,
+    points: Annotated[int, Within(2)] = POINTS,
     transmission: float = 0.05,
     t: Times | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -140,9 +140,6 @@ def optimise(
     if not isinstance(own, Scene):
         raise DeclarationError(f"optimise: expected a Scene or a Case, got {scene!r}")
     question = Question.of(own, minimise, over, subject_to, transmission=transmission, t=t, parameters=parameters, backend=backend)
-    checked(starts, screen)
-    if type(points) is not int or points < 2:
-        raise DeclarationError(f"points: expected a whole number above 1, got {points!r}")
     if resume and force:
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     if resume and out is None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
+from ..arguments import Within
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
 from ..instants.refusal import Status
 from .finder import Finder
@@ -14,23 +15,14 @@ from .judged import Judged
 from .problem import Problem
 from .sobol import sobol
 
-Starts = int | Sequence[Mapping[str, float]]
-"""How many designs to start from, or the values of parameters for each."""
-
 _APART = 0.15
 """Of the bounds: how far starts are from each other."""
 
-_MOST = 1 << 24
-"""Designs that are screened at most."""
+MOST = 1 << 24
+"""Designs that are screened, or started from, at most."""
 
-
-def checked(starts: Any, screen: Any) -> None:
-    """Raise :class:`DeclarationError` for counts that are none."""
-    told = isinstance(starts, (list, tuple)) and all(isinstance(start, Mapping) for start in starts)
-    if not told and (type(starts) is not int or starts < 1):
-        raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {starts!r}")
-    if type(screen) is not int or not 1 <= screen <= _MOST:
-        raise DeclarationError(f"screen: expected a whole number from 1 to {_MOST}, got {screen!r}")
+Starts: TypeAlias = Annotated[int, Within(1, MOST)] | Sequence[Mapping[str, float]]
+"""How many designs to start from, or the values of parameters for each."""
 
 
 def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:

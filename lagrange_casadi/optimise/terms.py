@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.masses import mass_of
 from ..declare.mechanism import Mechanism
 from ..errors import DeclarationError
@@ -37,6 +38,7 @@ _CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
 _EXAMPLE = "peak:section:rod:bending <= 12"
 
 
+@public
 @dataclass(frozen=True)
 class Term:
     """A number that a design has: a ``kind``, and the quantity it is of by full name, or the parameter."""
@@ -96,6 +98,7 @@ class Term:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"
 
 
+@public
 @dataclass(frozen=True)
 class Constraint:
     """A term that is at most, or with ``least`` at least, a ``limit``."""

@@ -24,6 +24,7 @@ from ..quantities import Output
 from ..sensitivity.along import Along, Place
 from ..sensitivity.in_scalars import in_scalars
 from ..sensitivity.points import resultant
+from ..system.symbolic import symbolic
 from ..tables import table_of
 from .fatigue import Tired, tired_link
 
@@ -81,6 +82,7 @@ class PointValues:
     known: dict[Output, Followed] = field(default_factory=dict)
     links: dict[str, Tired] = field(default_factory=dict)
 
+    @symbolic
     def of(self, quantity: Output) -> Followed:
         """A quantity at a point; it is made once.
 
@@ -119,6 +121,7 @@ class PointValues:
             self.links[link] = Tired(self.graph, link)
         return self.links[link]
 
+    @symbolic
     def closures(self) -> Any | None:
         """``value(share, guess, p, xi, place)``: the squares of the sines of all loops' transmission angles, None without loops.
 

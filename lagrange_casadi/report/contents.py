@@ -16,12 +16,13 @@ from ..draw.solid import COLOURS
 from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.derivatives import derivatives
+from ..instants.held import held_outputs
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
 from ..quantities import Output
-from ..strength import safeties
+from ..strength.parts import looked
 from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
@@ -99,7 +100,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "strength": list(_strength(solution)),
         "parameters": list(_parameters(description)),
         "certificate": _certificate(solution),
-        "notes": list(solution.notes),
+        "notes": [*solution.notes, *(live.notes if live else ())],
         "undetermined": list(solution.undetermined),
         "provenance": asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)},
     }
@@ -169,6 +170,9 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
             words = f"{what(slope.output, solution.table) or slope.output.part}, by {slope.name.split(':')[1]}"
             yield Series(slope.name, "sensitivity", slope.output.part, words, slope.unit, arrays.add(slope.values[chosen]))
+    for output, values in held_outputs(solution.held).items():
+        words, unit = what(output, solution.table), solution.unit(output)
+        yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
     for output, values in _residuals(solution):
         yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
 
@@ -189,12 +193,18 @@ def _rows(solution: Solution) -> Iterator[Row]:
 
 
 def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
-    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none."""
-    for found in safeties(solution):
+    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none.
+
+    What is ``open`` has its reason.
+    """
+    for found in looked(solution):
         for verdict in found.verdicts:
-            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where}
+            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where, "open": False}
             used = 1.0 / verdict.factor if verdict.factor else None
             yield told_of | {"factor": finite(verdict.factor), "used": used, "governs": verdict is found.governs}
+        for why in found.is_open:
+            told_of = {"part": found.link, "against": "", "where": why, "open": True}
+            yield told_of | {"factor": None, "used": None, "governs": False}
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codegen.plain import plain
+from ..declare.corners import Corners
 from ..declare.density import Density
 from ..declare.description import Description, numbered
 from ..declare.mechanism import Mechanism
@@ -31,6 +32,10 @@ from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..quantities import Output
 from .arrays import Arrays
+
+_CORNERS = (
+    "Corners of motions, constraints and lifts were looked for with the first values of the parameters alone, not with sliders'."
+)
 
 _NUMBERS = """#include <math.h>
 typedef double casadi_real;
@@ -63,6 +68,12 @@ class Live:
         if not mechanism.parameters:
             raise DeclarationError(f"live: mechanism '{mechanism.name}' has no parameter to change; declare one, or leave live out")
         check_zig("a live report")
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What whoever changes parameters in the page must know."""
+        corners = Corners.of(self.scene)
+        return (_CORNERS,) if corners.laws or corners.constraints else ()
 
     def entry(self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
         """What a page needs beside its solution: the module, and what its inputs, outputs and numbers are.

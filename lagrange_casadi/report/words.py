@@ -16,6 +16,7 @@ _CUT = (
 
 GROUPS = {
     "effort": "Efforts",
+    "holding": "Efforts with rests",
     "reaction": "Reactions",
     "section": "Section forces",
     "stress": "Stresses, largest along the link",

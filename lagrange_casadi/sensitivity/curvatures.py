@@ -21,6 +21,7 @@ from ..declare.motion import jerk_function, motion_function
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
+from ..system.symbolic import symbolic
 from .batches import at_points
 from .in_scalars import in_scalars
 from .points import PointFunction
@@ -76,6 +77,7 @@ class Curvatures:
         return Bends(found[:, 0, 0], found[:, :, 1])
 
 
+@symbolic
 def second_function(graph: SceneGraph, points: PointFunction) -> Any:
     """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
     and all parameters, and how it changes along a ``way`` of these."""

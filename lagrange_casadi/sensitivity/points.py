@@ -24,6 +24,7 @@ from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..quantities import Output
 from ..summits.sharpness import Kind, Sharpness, Watch
+from ..system.symbolic import Graphs, symbolic
 from ..tables import table_of
 from .along import Along, Place
 
@@ -35,7 +36,7 @@ _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
 
 @dataclass(frozen=True, eq=False)
-class PointFunction:
+class PointFunction(Graphs):
     """``function(t, drives, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities of a graph.
 
     ``drives`` is what ``lead(t, p)`` gives where motions are by samples; else it is empty, and there is no ``lead``.
@@ -53,6 +54,7 @@ class PointFunction:
     at_drives: Any
 
     @classmethod
+    @symbolic
     def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness) -> PointFunction:
         """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps."""
         sharp = [k for k, watch in enumerate(sharpness.watches) if watch.kind in _SWITCHES]

@@ -19,6 +19,7 @@ from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..quantities import Output
 from ..system.room import require
+from ..system.symbolic import symbolic
 from .batches import at_points
 from .following import iterated
 from .sections import section_slopes
@@ -49,6 +50,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
     return {name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()} for k, name in enumerate(by)}
 
 
+@symbolic
 def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
     inner = total(graph, [graph.outputs[output] for output in rows], by)

@@ -22,12 +22,13 @@ import numpy as np
 
 from ..arguments import public
 from ..declare.density import Array
-from ..declare.description import Description, motions_of, shape_of
+from ..declare.description import Description, check_places, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
-from ..errors import PathError, StoreError, one_line
+from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
+from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..judge.certificate import LOOSE, blur, certify
@@ -42,8 +43,8 @@ from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
 SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
-those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses or derivatives by
-parameters, and nothing that elasticity tells; all from 2 on are still written."""
+those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses, derivatives by
+parameters or ranges of holding efforts, and nothing that elasticity tells; all from 2 on are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
 _READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)
@@ -53,6 +54,8 @@ _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _OVER = "over"
+_BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
+"""Attributes that a dataset may have beside those of what it holds."""
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
@@ -74,6 +77,8 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
     the file cannot be written.
     """
+    if "\0" in figures or not figures.isascii():
+        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {shown(figures)}")
     target = Path(path)
     check_target(target)
     _require_room(solution, target)
@@ -150,10 +155,11 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
-        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *certificate])
+        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate])
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
+            found += _check_axes(file, solution)
             found += _check_drive_axis(solution)
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += check_slopes(file, solution)
@@ -187,9 +193,23 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
     for key, value in quantity.attributes.items():
         if dataset.attrs.get(key) != value:
             yield f"{place}: {key} is not the schema's"
+    if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
+        yield f"{place}: {min(strange)} is not the schema's"
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"
+
+
+def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
+    """Times and ratios: finite, and said to be these; and the parameters, which are told twice."""
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        if not np.isfinite(values).all():
+            yield f"{axis}: holds values that are not finite"
+        if (file[axis].attrs.get("units"), file[axis].attrs.get("long_name")) != _AXES[axis]:
+            yield f"{axis}: its unit or meaning is not the schema's"
+    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told:
+        yield "parameters: differ from those of the mechanism"
 
 
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
@@ -240,6 +260,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for output, values in solution.outputs.items():
         breathe()
         _add(file, scales, solution, output, values)
+    for output, values in held_outputs(solution.held).items():
+        _add(file, scales, solution, output, values)
     for name, values in solution.certificate.items():
         _add(file, scales, solution, Output("certificate", "", name), values)
     for link in solution.links_with_sections:
@@ -262,6 +284,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     if solution.elasticity != Elasticity():
         file.attrs["by_elasticity"] = json.dumps([str(output) for output in solution.elasticity.told])
         file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
+    if solution.held:
+        file.attrs["holding"] = json.dumps({name: held.untold for name, held in solution.held.items()})
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
@@ -270,7 +294,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    latest = solution.sensitivities.by or solution.elasticity != Elasticity()
+    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.held
     if latest or any(output.group in _LATEST for output in solution.outputs):
         return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
@@ -326,6 +350,7 @@ def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output,
 def _read(file: h5py.File) -> Solution:
     check_links(file)
     description = parsed(file.attrs["mechanism"], shape_of, "mechanism")
+    check_places(description)
     t, xi = (_numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
@@ -337,7 +362,7 @@ def _read(file: h5py.File) -> Solution:
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
-            if output.quantity.axes == ("t",) and output.group != "certificate":
+            if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
                 outputs[output] = _numbers(item, t.shape)
 
     file.visititems(visit)
@@ -356,7 +381,18 @@ def _read(file: h5py.File) -> Solution:
         whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
-    return replace(solution, sensitivities=slopes_of(file, solution, _numbers))
+    return replace(solution, sensitivities=slopes_of(file, solution, _numbers), held=_held(file, solution))
+
+
+def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
+    """The ranges of the efforts that joints at rest leave open. Raises ``ValueError`` for those of what is no drive."""
+    found = {}
+    for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
+        if Output("effort", name) not in solution.outputs:
+            raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
+        least, largest = (_numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS)
+        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
+    return found
 
 
 def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:

@@ -102,6 +102,8 @@ def _misfit(value: Any, shape: Shape, place: str) -> str:
     if isinstance(shape, Mapping):
         if not isinstance(value, dict):
             return place
+        if strange := next((name for name in value if not _is_shown(name)), ""):
+            return f"{place}.{strange!r}"
         asked = dict.fromkeys(value, shape[str]) if str in shape else shape
         missing = next((f"{place}.{name}" for name in asked if name not in value), "")
         return missing or next(filter(None, (_misfit(value[name], one, f"{place}.{name}") for name, one in asked.items())), "")

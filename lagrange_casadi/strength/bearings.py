@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import NotNegative, Numeric, Positive, public
 from ..declare.density import Array
 from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
 from ..errors import DeclarationError
@@ -25,15 +25,18 @@ from ..quantities import Output
 from .safety import Safety, Verdict
 
 
-def bending_of_pin(force: Any, eye: Any, cheek: Any, gap: Any = 0.0) -> Any:
+@public
+def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 0.0) -> Any:
     """The bending moment in the middle of a pin [N m]: F (eye + 2 cheek + 4 gap)/8."""
     return force * (eye + 2.0 * cheek + 4.0 * gap) / 8.0
 
 
 @public
-def equivalent_load(load: Sequence[float] | Array, turned: Sequence[float] | Array, exponent: float = 3.0) -> float:
+def equivalent_load(load: Array | Sequence[float], turned: Array | Sequence[float], exponent: Positive = 3.0) -> float:
     """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything else, ``turned`` (n,)."""
     loads, shares = np.asarray(load, float), np.asarray(turned, float)
+    if loads.ndim != 1 or loads.shape != shares.shape or not np.isfinite([loads, shares]).all() or min(0.0, *loads, *shares) < 0.0:
+        raise DeclarationError("equivalent_load: expected two rows of one length, finite and not negative")
     total, most = float(shares.sum()), float(np.max(loads, initial=0.0))
     if total == 0.0 or most == 0.0:
         return 0.0
@@ -42,11 +45,14 @@ def equivalent_load(load: Sequence[float] | Array, turned: Sequence[float] | Arr
 
 
 @public
-def rated_hours(dynamic: float, load: float, rpm: float, exponent: float = 3.0) -> float:
+def rated_hours(dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent: Positive = 3.0) -> float:
     """The hours that nine of ten bearings run: (C/P)^p million turns."""
     if load == 0.0 or rpm == 0.0:
         return math.inf
-    return float((dynamic / load) ** exponent * 1e6 / (60.0 * rpm))
+    try:
+        return float((dynamic / load) ** exponent * 1e6 / (60.0 * rpm))
+    except OverflowError:
+        return math.inf
 
 
 @public

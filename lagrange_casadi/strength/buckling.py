@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Numeric, Positive, public
 from ..beams.beam import SLIGHT
 from ..declare.density import Array
 from .member import Member
@@ -25,7 +25,7 @@ _LOOKED_AT = 65
 
 
 @public
-def critical_stress(slenderness: Any, elasticity: float, strength: float) -> Any:
+def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Any:
     """The stress at which a column of a slenderness, effective length over radius of gyration, fails: Euler's or Johnson's [Pa]."""
     s = np.asarray(slenderness, float)
     with np.errstate(divide="ignore"):

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import NotNegative, public
 from ..beams.material import Material
 from ..declare.density import Array
+from ..errors import DeclarationError, shown
 from .fatigue import Place, sought
 from .stress import Stress
 
@@ -35,6 +36,7 @@ _ROUNDS, _BESIDE, _NEARER = 8, 2, 2.5
 """How often the worst plane is looked at again, how many planes on each side, and how much nearer they come."""
 
 
+@public
 @dataclass(frozen=True)
 class Plane:
     """The plane on which a history is worst: shear ``amplitude``, largest ``normal`` stress [Pa], none in compression, and the
@@ -45,17 +47,19 @@ class Plane:
     normal: float
     angle: float
 
-    def value(self, share: float = DUCTILE) -> float:
+    def value(self, share: NotNegative = DUCTILE) -> float:
         """Shear amplitude and ``share`` of the normal stress."""
         return self.amplitude + share * self.normal
 
 
 @public
-def critical_plane(values: Array, share: float = DUCTILE) -> Plane:
+def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
     """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and along z [Pa].
 
     ``share`` is Findley's k.
     """
+    if values.ndim != 2 or len(values) != 3 or not values.size or not np.isfinite(values).all():
+        raise DeclarationError(f"critical_plane: expected finite stresses (3, t), got {shown(values)}")
     sheared = [bool(row.any()) for row in values[1:]]
     if not all(sheared):
         # All planes that count go through the direction without stress.
@@ -65,7 +69,7 @@ def critical_plane(values: Array, share: float = DUCTILE) -> Plane:
 
 
 @public
-def plane_factor(plane: Plane, material: Material, share: float = DUCTILE) -> float:
+def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE) -> float:
     """By how much all loads may grow until a part no longer lasts for ever.
 
     Raises :class:`.DeclarationError` where the material has no endurance limit.

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Numeric, public
 from ..beams.beam import Notch
 from ..beams.material import Material
 from ..declare.density import Array
@@ -74,7 +74,7 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
 
 
 @public
-def factor(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
+def factor(amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman") -> Any:
     """By how much amplitude and mean may grow together until the part no longer lasts for ever; of numbers or arrays.
 
     Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq. 6-45 to 6-48; Dowling for
@@ -88,7 +88,7 @@ def factor(amplitude: Any, mean: Any, material: Material, criterion: str = "good
 
 
 @public
-def reversed_amplitude(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
+def reversed_amplitude(amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman") -> Any:
     """The amplitude without a mean that does the same damage; infinite where the mean alone is too much."""
     _, strength = strengths(material, criterion)
     m = np.maximum(mean, 0.0) / strength
@@ -107,13 +107,13 @@ def line(material: Material) -> tuple[float, float, float]:
 
 
 @public
-def cycles(amplitude: Any, material: Material) -> Any:
+def cycles(amplitude: Numeric, material: Material) -> Any:
     """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly below its endurance limit.
 
     Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of infinite amplitudes it is none.
     """
     endurance, start, slope = line(material)
-    size = np.asarray(amplitude, float)
+    size = np.abs(amplitude)
     with np.errstate(divide="ignore", over="ignore"):
         found = _LEAST * (size / start) ** slope
     return np.where((size <= endurance) & material.endless, np.inf, found)
@@ -142,10 +142,10 @@ def loaded(values: Array) -> Loaded:
     first, last = _farthest(vector)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
-    if size == 0.0:
+    swings = rainflow(along @ vector / size, repeating=True) if size else []
+    if not swings:  # none that is more than rounding
         pairs, counts = [(first, first)], [1.0]
     else:
-        swings = rainflow(along @ vector / size, repeating=True)
         pairs, counts = [(s.first, s.last) for s in swings], [s.times for s in swings]
     a, b = (vector[:, list(side)] for side in zip(*pairs, strict=True))
     middle = (a + b) / 2

@@ -8,21 +8,42 @@ from ..arguments import public
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from .bearings import joint_safety
+from .member import Member
 from .safety import Safety, safety
+
+NEEDED = ("yield_strength", "elasticity")
+"""The numbers of a material that factors of safety need."""
 
 
 @public
 def safeties(solution: Solution) -> Iterator[Safety]:
     """The factors of safety of links that have a beam, and of joints that have pins or bearings; not of those that are open."""
+    return (found for found in looked(solution) if found.verdicts)
+
+
+def looked(solution: Solution) -> Iterator[Safety]:
+    """The same, and of those that are open the reason, without a verdict."""
+    links, joints = _parts(solution)
+    for part in [*links, *joints]:
+        try:
+            yield joint_safety(solution, part) if part in joints else safety(solution, part)
+        except DeclarationError as error:
+            yield Safety(part, (), (str(error),))
+
+
+def untold(solution: Solution) -> dict[str, str]:
+    """Links that have a beam and joints that have pins or bearings of which no factor of safety is told, and why."""
+    links, joints = _parts(solution)
+    reasons = {link: _reason(lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link) for link in links}
+    reasons |= {joint: _reason(lambda name: joint_safety(solution, name), joint) for joint in joints}
+    return {part: reason for part, reason in reasons.items() if reason}
+
+
+def _parts(solution: Solution) -> tuple[list[str], list[str]]:
+    """The links that have a beam and sections, and the joints that have something fitted."""
     bodies, joints = solution.description["bodies"], solution.description["joints"]
     links = [link for link in solution.links_with_sections if "beam" in bodies[link]]
-    for part in [*links, *(name for name, joint in joints.items() if "fitted" in joint)]:
-        try:
-            found = joint_safety(solution, part) if part in joints else safety(solution, part)
-        except DeclarationError:
-            continue
-        if found.verdicts:
-            yield found
+    return links, [name for name, joint in joints.items() if "fitted" in joint]
 
 
 def fitted_in(solution: Solution) -> tuple[str, ...]:
@@ -35,18 +56,19 @@ def fitted_in(solution: Solution) -> tuple[str, ...]:
 def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
     """The links whose stresses are told, and whose material has some numbers."""
     bodies = solution.description["bodies"]
-    known = (link for link in solution.links_with_sections if _is_told(solution.stress, link))
+    known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
     return tuple(link for link in known if all(bodies[link]["beam"]["material"][name] is not None for name in numbers))
 
 
 def bending_of(solution: Solution) -> tuple[str, ...]:
     """The links whose deflections are told."""
-    return tuple(link for link in strong_of(solution, "elasticity") if _is_told(solution.deflection, link))
+    return tuple(link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link))
 
 
-def _is_told(asked: Callable[[str], object], link: str) -> bool:
+def _reason(asked: Callable[[str], object], part: str) -> str:
+    """Why what is asked of a part is not told; nothing where it is."""
     try:
-        asked(link)
-    except DeclarationError:
-        return False
-    return True
+        asked(part)
+    except DeclarationError as error:
+        return str(error)
+    return ""

@@ -35,7 +35,7 @@ def reversals(history: Array) -> Array:
 
 
 @public
-def rainflow(history: Sequence[float] | Array, *, repeating: bool = False) -> list[Swing]:
+def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> list[Swing]:
     """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which each counts whole.
 
     One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no finite numbers.

@@ -29,6 +29,7 @@ class Verdict:
     where: str
 
 
+@public
 @dataclass(frozen=True)
 class Safety:
     """The factors of safety of a link; what ``is_open`` could not be looked at, each with its reason."""

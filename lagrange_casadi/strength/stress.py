@@ -21,9 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..arguments import Share, public
 from ..beams.beam import Notch
 from ..declare.density import Array
-from ..errors import UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
 from ..summits.polynomials import interpolation
 from .member import Cell, Member
@@ -64,6 +65,7 @@ class Largest:
     fibre: tuple[str, ...]
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Stress:
     """The stresses in a link, nominal but where notches are said.
@@ -80,7 +82,9 @@ class Stress:
     def grid(self, kind: str, xi: Array | None = None) -> Array:
         """A stress (t, xi) over ratios, by default those of the solution: the largest in size of all fibres, on the tip's side."""
         weights = _weights(kind)
-        u = self.member.xi if xi is None else np.asarray(xi, float)
+        u = self.member.xi if xi is None else np.atleast_1d(xi)
+        if u.ndim != 1 or not ((u >= 0.0) & (u <= 1.0)).all():
+            raise DeclarationError(f"stress: expected a row of ratios xi/l from 0 to 1, got {shown(xi)}")
         found = np.empty((self.member.t.size, u.size))
         for cell in self.member.cells:
             inside = np.flatnonzero((u >= cell.low) & ((u < cell.high) | (cell.high == 1.0)))
@@ -95,13 +99,13 @@ class Stress:
                 found[:, chosen] = _signed(kind, square, normal)
         return found
 
-    def at(self, xi: float, side: Side = "tip", notch: Notch | None = None) -> Array:
+    def at(self, xi: Share, side: Side = "tip", notch: Notch | None = None) -> Array:
         """The stresses at a ratio: (3, fibres, t), normal, and shear along y and z, with the factors of a notch where given."""
         cell = self.member.cell_at(xi, side)
         forces = self.member.at(np.full((self.member.t.size, 1), xi), side, None if notch is None else self._scale(notch))
         return np.asarray(np.einsum("cfk,kt->cft", cell.factors(np.array([xi]))[..., 0], forces[..., 0]))
 
-    def fibres(self, xi: float, side: Side = "tip") -> tuple[str, ...]:
+    def fibres(self, xi: Share, side: Side = "tip") -> tuple[str, ...]:
         """The names of the fibres at a ratio."""
         return self.member.cell_at(xi, side).names
 
@@ -121,6 +125,8 @@ class Stress:
         """The largest over all instants that count; where ``notches`` are asked for, their stresses and theirs alone."""
         moving = Stress(self.member.counted)
         if notches:
+            _weights(kind)
+            self._require_notches()
             return max((moving._at_notch(kind, notch) for notch in self.member.beam.notches), key=lambda peak: abs(peak.value))
         best: StressPeak | None = None
         for stress in moving._blocks():
@@ -133,8 +139,13 @@ class Stress:
     def largest_at_notches(self, kind: str) -> Array:
         """The size of a stress at notches, their factors included, at every instant (t,)."""
         weights = _weights(kind)
+        self._require_notches()
         each = [self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES]
         return np.asarray(np.sqrt(np.max([_square(values, weights).max(axis=0) for values in each], axis=0)))
+
+    def _require_notches(self) -> None:
+        if not self.member.beam.notches:
+            raise DeclarationError(f"the beam of link '{self.member.link}' has no notches")
 
     def _highest(self, kind: str, floor: float) -> StressPeak | None:
         """The peak of a few instants; None where it is not above a floor. A coarse look leaves out instants that have it not."""

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Count, public
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..declare.even_points import are_even
@@ -35,6 +35,7 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output, compared
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
+from ..system.symbolic import symbolic
 from ..tables import LARGEST
 
 _SAME = 1e-6
@@ -83,9 +84,10 @@ class Shortfall:
     refined_median: float
 
 
+@public
 def shortfall(
     scene: Scene,
-    counts: Sequence[int],
+    counts: Sequence[Count],
     names: Iterable[str] | None = None,
     *,
     parameters: Mapping[str, float] | None = None,
@@ -131,6 +133,7 @@ def resultants(solution: Solution) -> list[str]:
     return [str(output) for output in there if solution.determined(output)]
 
 
+@public
 def forces(solution: Solution) -> list[str]:
     """The full names of a solution's efforts, reactions, section forces, what is largest along links, and own outputs: those that
     equilibrium determines.
@@ -139,6 +142,7 @@ def forces(solution: Solution) -> list[str]:
     return [str(output) for output in wanted if solution.determined(output)]
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def rates(graph: SceneGraph) -> ca.Function:
     """The columns of a graph and, where loops are closed, their time derivatives along the motion.

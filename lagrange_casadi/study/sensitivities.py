@@ -45,6 +45,7 @@ class Changes:
     tied: bool = False
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """The derivatives of a ``solution`` by the parameters of its ``scene``, each made when it is asked for.

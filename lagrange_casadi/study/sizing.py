@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import Positive, public
 from ..beams.profiles import Profile
 from ..declare.density import Density
 from ..declare.held import ends_of
@@ -85,18 +86,19 @@ class Sizing:
         return sum(sized.mass for sized in self.links)
 
 
+@public
 def size(
     scene: Scene,
     profiles: Sequence[Profile],
     *,
-    safety: float = 2.0,
+    safety: Positive = 2.0,
     links: Sequence[str] | None = None,
     parameters: Mapping[str, float] | None = None,
     t: Times | None = None,
     over: Over | None = None,
     criterion: str = "goodman",
     yielding: str = "von_mises",
-    deflection: float | None = None,
+    deflection: Positive | None = None,
 ) -> Sizing:
     """Choose for each link the lightest of some profiles with a factor of safety, against yielding, buckling and fatigue.
 
@@ -111,10 +113,6 @@ def size(
     Raises :class:`DeclarationError` where profiles fit no link, or not those that are named; :class:`NoDesignError` where no
     profile is safe; and what :func:`.evaluate` and :func:`.strength.safety` do.
     """
-    if not (isinstance(safety, (int, float)) and 0.0 < safety < math.inf):
-        raise DeclarationError(f"size: expected a positive factor of safety, got {safety!r}")
-    if deflection is not None and (isinstance(deflection, bool) or not 0.0 < deflection < math.inf):
-        raise DeclarationError(f"size: expected a positive deflection over length, as 1/500, got {deflection!r}")
     search = _Search.of(scene, profiles, links, parameters or {}, float(safety), t, over, criterion, yielding, deflection)
     choice = search.lightened(search.safe())
     return search.told(choice)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
@@ -24,6 +25,7 @@ from ..strength.stress import Stress, StressPeak
 from .peaks import ContinuousSolution, refine
 
 
+@public
 def refine_stress(scene: Scene, solution: Solution, link: str, kind: str = "von_mises", *, notches: bool = False) -> StressPeak:
     """The peak of a stress in a link of a solution, as :meth:`.Stress.peak`, but over all times of its span.
 
@@ -39,6 +41,7 @@ def refine_stress(scene: Scene, solution: Solution, link: str, kind: str = "von_
     return peak if found is None else found.stress(kind, peak)
 
 
+@public
 def refine_safety(
     scene: Scene, solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
 ) -> Safety:

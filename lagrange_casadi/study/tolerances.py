@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Outputs, Within, public
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
@@ -105,10 +106,10 @@ def tolerances(
     within: Mapping[str, float | str],
     *,
     parameters: Mapping[str, float] | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     t: Times | None = None,
     over: Over | None = None,
-    samples: int = SAMPLES,
+    samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
     backend: Backend = "auto",
 ) -> Spreads:
     """How far peaks spread where parameters are ``within`` tolerances: by name plus or minus so much, as ``{"l": "0.1mm"}``.
@@ -123,8 +124,6 @@ def tolerances(
         raise DeclarationError(f"tolerances: expected a Scene, got {scene!r}")
     if not isinstance(within, Mapping) or not within:
         raise DeclarationError(f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}")
-    if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= _LARGEST:
-        raise DeclarationError(f"samples: expected a whole number from 2 to {_LARGEST}, got {samples!r}")
     mechanism = scene.mechanism
     values = mechanism.values(parameters)
     sizes = {name: read_tolerance(mechanism, name, value, values.get(name, 0.0)) for name, value in within.items()}

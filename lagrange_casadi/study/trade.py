@@ -25,6 +25,7 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Evaluated, run
 from ..instants.from_table import columns
+from ..instants.refusal import resting, unfinished
 from ..instants.rung import Rung
 from ..judge.reference import reference
 from ..tables import ANGLE, LENGTH
@@ -151,7 +152,7 @@ def trade(
             continue
         try:
             evaluated, _ = columns(graph, times, values, rung, 1)
-            if evaluated.status.any():
+            if unfinished(graph, evaluated).any():
                 raise AssemblyError("some instants have no result")
             works[rung] = _work(graph, times, values, rung)
         except (AssemblyError, CompilerError, DeclarationError) as error:
@@ -167,7 +168,7 @@ def trade(
         peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
     except (AssemblyError, DeclarationError):
         peaks = ()
-    return Trade(scene.mechanism.name, INSTANTS, compared.size, ordered, refused, peaks)
+    return Trade(scene.mechanism.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
 
 
 class _Truth:
@@ -175,6 +176,8 @@ class _Truth:
 
     def __init__(self, graph: SceneGraph, t: Array, compared: Array, p: Array) -> None:
         evaluated, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        moves = ~resting(graph, evaluated.out)  # at rest there is nothing to compare
+        compared = compared[moves[compared]] if moves[compared].any() else compared
         self.compared = compared
         rows = reference(graph, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
         self.columns = {output: [row[k] for row in rows] for output, k in graph.outputs.items()}

@@ -22,6 +22,7 @@ from ..arithmetic.lookups import is_entry
 from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
+from ..system.symbolic import symbolic
 from ..tables import LARGEST
 
 
@@ -69,6 +70,7 @@ class Sharpness:
     knots: tuple[float, ...]
 
     @classmethod
+    @symbolic
     def of(cls, graph: SceneGraph, columns: Sequence[int]) -> Sharpness:
         """Of what some columns of a scene's graph are made of.
 
@@ -91,6 +93,7 @@ class Sharpness:
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(knots))
 
 
+@symbolic
 def with_watched(graph: SceneGraph, sharpness: Sharpness) -> SceneGraph:
     """The graph with what is watched as further columns, the last ones."""
     inputs = graph.instant.sx_in()

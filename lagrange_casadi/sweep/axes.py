@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import number, typed
+from ..arguments import number, public, typed
 from ..declare.density import Array
 from ..declare.even_points import points
 from ..declare.limits import parameter_faults
@@ -32,6 +32,7 @@ RESULTS = (DESIGN, "status", "t", "xi")
 _SHOWN = 20
 
 
+@public
 @dataclass(frozen=True)
 class Range:
     """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
@@ -90,6 +91,7 @@ class Range:
         return "" if low <= self.start and self.stop <= high else f"{self.start:.10g} to {self.stop:.10g}"
 
 
+@public
 @dataclass(frozen=True)
 class Values:
     """Values one by one; some may be texts, as ``"30 deg"`` or ``"100 mm"``, and ``unit`` is then what they are in.
@@ -148,6 +150,7 @@ class Values:
 Axis = Range | Values
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Grid:
     """The product of axes by the names of parameters; the last axis runs fastest. Raises :class:`DeclarationError` for none."""
@@ -202,6 +205,7 @@ class Grid:
         return {name: axis.unit for name, axis in self.axes.items() if axis.unit}
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Listed:
     """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.

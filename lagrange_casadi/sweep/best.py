@@ -32,6 +32,7 @@ _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 
 
+@public
 @dataclass(frozen=True)
 class Condition:
     """A parameter or a column against a number; peaks by their size, whatever their sign.
@@ -120,6 +121,7 @@ def best(
     return [row(sweep, int(number), asked) for number in kept[:count]]
 
 
+@public
 def chosen(
     sweep: Sweep, names: str | Sequence[str], where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
 ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from itertools import islice
 from pathlib import Path
 
-from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
+from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError, warn
 from ..system.publish import check_writable, telling, uninterrupted
 from ..system.seal import Seen, seal
 from .axes import counted, grouped
@@ -110,7 +109,7 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
     with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
         _require_room(folder, plan.axes_size)
         if words := plan.takes(done):
-            warnings.warn(words, stacklevel=5)
+            warn(words)
         progress("designs", done, plan.size)
         for block in blocks:
             if block:

@@ -30,6 +30,7 @@ def check_sweep(path: str | Path) -> list[str]:
     sweep = Sweep.open(path)
     found: list[str] = []
     with sweep.opened() as file:
+        found += _check_scales(file, sweep)
         for kept in sweep.columns.values():
             try:
                 found += _check_column(file, sweep, kept)
@@ -52,6 +53,23 @@ def progress(folder: Folder) -> str:
     with told_as("damaged", folder.path):
         size = size_of(folder.identity["grid"])
     return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
+
+
+def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
+    """What is wrong with axes: each is read, and its numbers are finite."""
+    found: list[str] = []
+
+    def visit(place: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and place.replace("/", ":") not in sweep.columns:
+            try:
+                check_chunks(item)
+                if not np.isfinite(item[()]).all():
+                    found.append(f"{place}: holds values that are not finite")
+            except Exception as error:
+                found.append(f"{place}: damaged: {one_line(error)}")
+
+    file.visititems(visit)
+    return found
 
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:

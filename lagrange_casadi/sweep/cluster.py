@@ -10,7 +10,6 @@ import pickle
 import re
 import threading
 import time
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, wait
 from contextlib import contextmanager, suppress
@@ -21,7 +20,7 @@ from typing import Any
 from ..case import Case, load_case
 from ..declare.density import Array
 from ..declare.scene import Scene
-from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line
+from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
 from ..system.cache import working_folder
 from .blocks import Queue
 from .columns import Harvest
@@ -140,7 +139,7 @@ class Cluster:
             if pause():
                 return
         if not roll.threads:
-            warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
+            warn(f"the scheduler at {self.address} has no workers yet; waiting for some")
         send()
         while blocks:
             future = _first(waiting)

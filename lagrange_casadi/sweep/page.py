@@ -19,7 +19,7 @@ from ..declare.scene import Scene, Wanted
 from ..declare.wanted_slopes import SENSITIVITY
 from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
-from ..errors import DeclarationError
+from ..errors import DeclarationError, shown
 from ..evaluate import evaluate
 from ..report import Live, assembled, live_digest, page, with_motion, write_page
 from ..report.arrays import Arrays
@@ -46,6 +46,8 @@ def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene 
     :class:`.DeclarationError` for the scene of another sweep, for a sweep without columns to show, and what
     :func:`.write_report` raises.
     """
+    if not (scene is None or isinstance(scene, Scene)):
+        raise DeclarationError(f"report: scene: expected a Scene, got {shown(scene)}")
     write_page(Path(path), lambda: _page(sweep, scene, command))
 
 

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import public
+from ..arguments import Count, Index, public
 from ..declare.density import Array
 from ..declare.description import coordinates_of
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
@@ -151,15 +151,21 @@ class Sweep:
             chosen[axis] = found if before is None else before[found]
         return replace(self, chosen=chosen)
 
-    def thinned(self, axis: str, stride: int) -> Sweep:
+    def thinned(self, axis: str, stride: Count) -> Sweep:
         """Every so many-th along an axis."""
-        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        numbers = self._along(axis)
         return replace(self, chosen={**self.chosen, axis: numbers[::stride]})
 
-    def at_number(self, axis: str, number: int) -> Sweep:
+    def at_number(self, axis: str, number: Index) -> Sweep:
         """One place along an axis, by its number among those selected."""
-        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        numbers = self._along(axis)
         return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
+
+    def _along(self, axis: str) -> npt.NDArray[np.int64]:
+        """The numbers that are selected along an axis of the designs. Raises :class:`UnknownNameError`."""
+        if axis not in self.dimensions:
+            raise UnknownNameError("axis of designs", axis, self.dimensions)
+        return self.chosen.get(axis, np.arange(self.dimensions[axis]))
 
     def axes_of(self, names: Sequence[str]) -> tuple[str, ...]:
         """The axes beyond those of the designs that columns share; those without any go with all, and so do axes by name.
@@ -334,6 +340,7 @@ class Sweep:
         return _opened(self.path, self.seen)
 
 
+@public
 def is_sweep(path: str | Path) -> bool:
     """Whether a path is that of a sweep's file, whole or not."""
     return kind_of(path) == SCHEMA
@@ -385,5 +392,5 @@ def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.
 
 def _refuse_unfinished(path: str | Path) -> None:
     """Raise :class:`PathError` where there are parts, and no file yet."""
-    if not Path(path).exists() and Folder.of(Path(path)).begun:
+    if not os.path.exists(path) and Folder.of(Path(path)).begun:
         raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is")

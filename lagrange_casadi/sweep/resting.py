@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from ..evaluate import evaluate
 from ..instants.refusal import Status
 from .reading import Sweep
 
+_LOOKED_AT = 16
+"""Designs of a sweep, from the first to the last that has a result."""
+
 
 def resting_note(
     scene: Scene,
@@ -26,20 +30,19 @@ def resting_note(
     over: Over | None = None,
     wanted: Sequence[str] | None = None,
 ) -> str:
-    """A line where a joint that rubs rests in the first design that has a result; empty where none does."""
+    """A line where a joint that rubs rests in some design that is looked at, of all those with a result; empty where none does."""
     rub = transmissions_of(scene.mechanism).values()
     if not frictions_of(scene.mechanism) and all(transmission.loss is None for transmission in rub):
         return ""
-    for numbers, values in found.blocks(["status"]):
-        right = np.flatnonzero(values["status"] == Status.OK)
-        if not right.size:
-            continue
-        number = int(numbers[right[0]])
+    right = np.concatenate([numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])])
+    some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _LOOKED_AT)).astype(int))]
+    lines = []
+    for number in some.tolist():
         design = {**fixed, **found.design(number)}
-        try:
+        with suppress(LagrangeCasadiError):  # the sweep is written, and right by its own rules
             solution = evaluate(scene, parameters=design, t=t, over=over, wanted=wanted, backend="vm", certificate=False)
-        except LagrangeCasadiError:  # the sweep is written, and right by its own rules
-            return ""
-        told = rest_note(solution.t, solution.outputs, solution.resting) if solution.resting.any() else ""
-        return told and f"in design {number} {told}"
-    return ""
+            if solution.resting.any():
+                lines.append(f"in design {number} {rest_note(solution.t, solution.outputs, solution.resting)}")
+    if not lines:
+        return ""
+    return f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were looked at" if some.size > 1 else lines[0]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,8 @@ def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.b
 
     Raises :class:`DeclarationError` for what cannot be, and for what no value is.
     """
-    told = [typed(number) for number in (wanted if isinstance(wanted, Iterable) and not isinstance(wanted, str) else [wanted])]
+    several = isinstance(wanted, list | tuple | set | frozenset | range) or (isinstance(wanted, np.ndarray) and wanted.ndim == 1)
+    told = [typed(number) for number in (wanted if several else [wanted])]
     for in_unit in (told_unit for _, told_unit in told if told_unit not in ("", unit)):
         other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
         raise DeclarationError(f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}")

@@ -6,18 +6,18 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..arguments import public
+from ..arguments import Outputs, ThreadCount, public
 from ..arithmetic.compensated import Precision
 from ..case import Case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError
-from ..instants.rung import Backend, Rung
+from ..instants.rung import Backend, Rung, Steps
 from ..system.room import MOST_THREADS
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
@@ -37,13 +37,13 @@ def sweep(
     t: Times | None = None,
     over: Over | None = None,
     xi: EvenPoints | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     keep: Keep = "peaks",
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     flags: str = "",
-    workers: int | None = None,
+    workers: ThreadCount | None = None,
     dask: str | None = None,
     resume: bool = False,
     force: bool = False,

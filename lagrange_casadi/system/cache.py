@@ -17,7 +17,6 @@ import shutil
 import stat
 import tempfile
 import time
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -25,7 +24,7 @@ from pathlib import Path
 
 import platformdirs
 
-from ..errors import DeclarationError, PathError, lacking
+from ..errors import DeclarationError, PathError, lacking, warn
 from .numerals import real
 
 VARIABLE = "LAGRANGE_CASADI_CACHE_SIZE"
@@ -77,7 +76,7 @@ def folder() -> Path | None:
     try:
         return _usable(place())
     except OSError as error:
-        warnings.warn(f"cannot use the cache folder {place()} now: {error.strerror}", stacklevel=3)
+        warn(f"cannot use the cache folder {place()} now: {error.strerror}")
         return None
 
 
@@ -87,7 +86,7 @@ def _usable(place: Path) -> Path | None:
     try:
         place.mkdir(0o700, parents=True, exist_ok=True)
         if why := distrusted(place):
-            warnings.warn(f"the cache folder {place} is not used, for {why}; a temporary one is", stacklevel=3)
+            warn(f"the cache folder {place} is not used, for {why}; a temporary one is")
             place = Path(tempfile.mkdtemp(prefix=_WORK, dir=_private()))
             atexit.register(shutil.rmtree, place, ignore_errors=True)
         with tempfile.TemporaryFile(dir=place):
@@ -95,7 +94,7 @@ def _usable(place: Path) -> Path | None:
     except OSError as error:
         if lacking(error):
             raise
-        warnings.warn(f"cannot write into the cache folder {place}: {error.strerror}; nothing is kept", stacklevel=3)
+        warn(f"cannot write into the cache folder {place}: {error.strerror}; nothing is kept")
         return None
 
 
@@ -168,7 +167,7 @@ def read(name: str) -> str | None:
     if seal == digest(text.encode()):
         use(file)
         return text
-    warnings.warn(f"the cached {file} {why} and is made again", stacklevel=2)
+    warn(f"the cached {file} {why} and is made again")
     return None
 
 

@@ -1,15 +1,21 @@
-"""Folders that are filled once more: a manifest tells which files there are ours, with a digest of each."""
+"""Folders that are filled once more: a manifest tells which files there are ours, with a digest of each.
+
+It is put into its place before the files, and tells of those that are replaced their digests of before, too: after a kill between
+two files all are known. Once they are in place it tells what is there.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ..errors import PathError
-from .publish import telling
+from .publish import filling, replacing, telling
 
 
 @dataclass(frozen=True)
@@ -22,12 +28,12 @@ class Manifest:
     earlier: str
     way_out: str
 
-    def known(self, folder: Path) -> dict[str, str]:
-        """Files that an earlier time wrote, and their digests; none where there is no manifest of this kind."""
+    def known(self, folder: Path) -> dict[str, tuple[str, ...]]:
+        """Files that earlier times wrote, and their digests; none where there is no manifest of this kind."""
         try:
             content = json.loads((folder / self.name).read_text(encoding="utf-8"))
-            files = content["files"] if content["schema"] == self.schema else {}
-            return {str(name): str(digest) for name, digest in files.items()}
+            files, before = (content["files"], content.get("before", {})) if content["schema"] == self.schema else ({}, {})
+            return {str(name): tuple(str(by[name]) for by in (files, before) if name in by) for name in files | before}
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {}
 
@@ -48,7 +54,7 @@ class Manifest:
             present -= {apart, *([self.name] if known else [])}
             files_there = [folder / name for name in present & known.keys()]
             found = {path.name: digest(path) for path in files_there if path.is_file() and not path.is_symlink()}
-        same = {name: found[name] for name in sorted(found) if found[name] == known[name]}
+        same = {name: found[name] for name in sorted(found) if found[name] in known[name]}
         foreign, touched = sorted(present - known.keys()), sorted(present & known.keys() - same.keys())
         refused = f"cannot {self.does} {folder}:"
         for name in foreign:
@@ -60,19 +66,38 @@ class Manifest:
             raise PathError(f"{refused} it holds {self.earlier} whose '{touched[0]}' was changed since; {self.way_out}")
         return same
 
-    def text(self, files: Mapping[str, str], more: Mapping[str, object] | None = None) -> str:
-        """The manifest of files by their digests, with what ``more`` it tells."""
+    def text(
+        self, files: Mapping[str, str], more: Mapping[str, object] | None = None, before: Mapping[str, str] | None = None
+    ) -> str:
+        """The manifest of files by their digests, with what ``more`` it tells, and digests of those that go, ``before`` they do."""
         content = {"schema": self.schema, "schema_version": 1, **(more or {}), "files": dict(sorted(files.items()))}
-        return json.dumps(content, indent=1) + "\n"
+        return json.dumps(content | ({"before": dict(sorted(before.items()))} if before else {}), indent=1) + "\n"
 
-    def add(self, draft: Path, folder: Path) -> None:
-        """Put the manifest beside the files of a ``draft`` that go into ``folder``; what is ours there stays known.
+    @contextmanager
+    def filling(
+        self, folder: Path, more: Mapping[str, object] | None = None, *, alone: bool = False, **allowed: Any
+    ) -> Iterator[Path]:
+        """A temporary folder to fill, as that of :func:`.publish.filling`, to whose files the manifest is added.
 
-        Raises :class:`PathError` for a name that is taken, or a file that was changed since.
+        What is ours in ``folder`` and was not written again stays, and stays known; or goes, where what is written is ``alone``.
+        Raises what :meth:`check` does, with what is ``allowed``.
         """
-        written = {path.name: digest(path) for path in draft.iterdir()}
-        same = self.check(folder, written)
-        (draft / self.name).write_text(self.text(same | written), encoding="utf-8", newline="\n")
+        with filling(folder, self.name) as draft:
+            yield draft
+            written = {path.name: digest(path) for path in draft.iterdir() if path.is_file()}
+            same = self.check(folder, written, **allowed)
+            files = written if alone else same | written
+            before = {name: known for name, known in same.items() if files.get(name) != known}
+            _write(draft / self.name, self.text(files, more, before))
+        with telling(folder):
+            for name in before.keys() - files.keys():
+                (folder / name).unlink()
+        with replacing(folder / self.name) as told:  # though nothing went: it removes the draft of one that was killed here
+            _write(told, self.text(files, more))
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8", newline="\n")
 
 
 def digest(file: Path | bytes) -> str:

@@ -63,7 +63,7 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
 
 def settled(target: Path) -> Path:
     """Where a file is put: what a symbolic link leads to, so that the link stays."""
-    return Path(os.path.realpath(target)) if target.is_symlink() else target
+    return Path(os.path.realpath(target)) if os.path.islink(target) else target
 
 
 def is_hdf5(path: Path) -> bool:
@@ -191,18 +191,25 @@ class PatientFile(io.FileIO):
 
 
 @contextmanager
-def filling(folder: Path) -> Iterator[Path]:
-    """A temporary folder to fill, whose files move into ``folder`` on success and are removed on any failure."""
+def filling(folder: Path, first: str = "") -> Iterator[Path]:
+    """A temporary folder to fill, which on success becomes ``folder``, or whose files move into it; on any failure it is removed.
+
+    Into a folder that is there, the file of the name ``first`` moves before the others.
+    """
     check_writable(folder, folder=True)
     place = settled(folder)
     # What is mounted there takes no file from beside it by a new name.
     within = place / place.name if os.path.ismount(place) else place
     with telling(folder), _beside(within) as work:
-        yield work
-        check_free(work, folder)
-        folder.mkdir(exist_ok=True)
-        for draft in sorted(work.iterdir()):
-            put(draft, folder / draft.name)
+        draft = work / place.name
+        draft.mkdir()
+        yield draft
+        if not os.path.lexists(place):
+            os.rename(draft, place)
+            return
+        check_free(draft, folder)
+        for file in sorted(draft.iterdir(), key=lambda file: (file.name != first, file)):
+            put(file, folder / file.name)
 
 
 def check_free(work: Path, folder: Path) -> None:

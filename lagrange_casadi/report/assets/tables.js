@@ -78,13 +78,14 @@ function strengthTables() {
   if (!contents.strength.length) return [];
   const ofFile = element("span", { class: "alarm", hidden: true }, "of the file's design");
   reading.watchers.add(() => (ofFile.hidden = designState() === "file"));
-  const used = (row) => row.used ?? Infinity;
-  const words = (row) => (row.used === null ? "∞" : format(row.used, 4));
-  const factor = (row) => (row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
+  // What is open comes last.
+  const used = (row) => (row.open ? -1 : row.used ?? Infinity);
+  const words = (row) => (row.open ? "" : row.used === null ? "∞" : format(row.used, 4));
+  const factor = (row) => (row.open ? "open" : row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
   const heads = [
     ["part", (row) => row.part],
     ["against", (row) => row.against],
-    ["factor of safety", factor, (row) => 1 / used(row)],
+    ["factor of safety", factor, (row) => (row.open ? Infinity : 1 / used(row))],
     ["utilisation", (row) => `${words(row)}${used(row) > 1 ? ", FAILS" : row.governs ? ", governs" : ""}`, used],
     ["where", (row) => row.where],
   ];

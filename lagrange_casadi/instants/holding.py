@@ -17,13 +17,13 @@ or a ball.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..equations.checks import Check
@@ -32,11 +32,12 @@ from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.pressing import frictions_of
 from ..equations.scene_graph import SceneGraph
 from ..errors import check_kind
-from ..instants.backends import run
-from ..instants.rules import OPEN, SLIP
-from ..instants.rung import Rung
-from ..instants.solution import Solution
 from ..quantities import Output
+from .backends import run
+from .held import Holding
+from .rules import OPEN, SLIP
+from .rung import Rung
+from .solution import Solution
 
 _MOST = 10
 """Frictions at rest of which all choices of signs are tried."""
@@ -44,24 +45,7 @@ _MOST = 10
 _BENDS, _JAMS = 1e-9, 1e-14
 
 
-@dataclass(frozen=True, eq=False)
-class Holding:
-    """The ``least`` and the ``largest`` effort [N, N m] that a drive may need at each instant, by sign, (t,).
-
-    Both are the effort where that is told. Where joints at rest leave it open, frictions that are there may make it anything
-    between. Where that range is not told either both are NaN, and ``untold`` says why, else it is empty.
-    """
-
-    least: Array
-    largest: Array
-    untold: str = ""
-
-    @property
-    def worst(self) -> Array:
-        """The one of both that is larger in size, (t,)."""
-        return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
-
-
+@public
 def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     """The range of each drive's effort, by joint, at the instants of a solution of the scene that has efforts.
 
@@ -73,7 +57,7 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     open_ = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
     at = np.flatnonzero(np.any([*open_.values()], axis=0)) if efforts else np.zeros(0, int)
     if not at.size:
-        return {name: Holding(values, values) for name, values in efforts.items()}
+        return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
     values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
     graph = derive(assembled(scene, values, ["effort"]), ["effort"])
     held = held_efforts(graph.scene)
@@ -91,7 +75,8 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
         for end in (found.min(axis=0), found.max(axis=0)):
             ends.append(effort.copy())
             ends[-1][at[there]] = np.where(told, end, np.nan)[there]
-        ranges[name] = Holding(ends[0], ends[1], next((words for wrong, words in reasons if wrong[there].any()), ""))
+        untold = next((words for wrong, words in reasons if wrong[there].any()), "")
+        ranges[name] = Holding(ends[0], ends[1], solution.unit(output), untold)
     return ranges
 
 
@@ -101,9 +86,9 @@ _Reasons = list[tuple[Any, str]]
 
 def _inputs(graph: SceneGraph, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
     """What the columns of a scene are functions of, some of the instants ``t`` beside each other."""
-    followed = run(graph, t, p, Rung("vm"))[0].iterated
+    z = np.zeros((0, at.size)) if graph.newton is None else run(graph, t, p, Rung("vm"))[0].iterated[:, at]
     moved = graph.motion(ca.DM(t[at]).T, ca.DM(p))
-    return [ca.DM(t[at]).T, *moved, ca.DM(followed[:, at]), ca.DM(p)]
+    return [ca.DM(t[at]).T, *moved, ca.DM(z), ca.DM(p)]
 
 
 def _tried(held: HeldEfforts, graph: SceneGraph, inputs: list[Any]) -> tuple[Array, _Reasons]:

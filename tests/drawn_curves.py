@@ -1,0 +1,92 @@
+"""Functions of a number drawn from all operations that a graph may hold, and whether they have a kink: by halving steps alone."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+from operations import EACH, X, Y
+
+T, K = ca.SX.sym("t"), ca.SX.sym("k")
+_STEPS, _HALVINGS, _LARGEST = 20000, 26, 100
+_BESIDE = 1e-6
+
+
+class Verdict(NamedTuple):
+    """Whether something is "smooth" or "broken" from 0 to 1; else "unclear", or "nothing" where it is no number."""
+
+    what: str
+    values: np.ndarray
+
+
+def smooth(r, t, k):
+    """A function without a kink."""
+    a, w = r.choice([0.3, 0.7, 1.0, 2.0]), r.choice([1.0, 3.0, 7.0])
+    b, c = r.uniform(-1, 1), r.choice([0.0, 0.0, 0.5, 1.0, -1.0])
+    kinds = (
+        a * ca.sin(w * t + b) + c,
+        w * (t - abs(b)),
+        a * (t - abs(b)) ** 2 + k * c,
+        a * ca.cos(w * t) + c + 0.2 * k,
+        ca.exp(a * t) - 1 - k * b,
+        a + t,
+    )
+    return kinds[r.integers(len(kinds))]
+
+
+def drawn(r, depth=None):
+    """An expression of T and K with operations upon operations, up to three of them."""
+    depth = int(r.integers(3)) if depth is None else depth
+    x, y = (drawn(r, depth - 1) if depth and r.random() < 0.5 else smooth(r, T, K) for _ in range(2))
+    found = ca.substitute(list(EACH.values())[r.integers(len(EACH))], ca.vertcat(X, Y), ca.vertcat(x, y))
+    beside = r.random()
+    if beside < 0.5:
+        found = found * smooth(r, T, K) if beside < 0.3 else found + smooth(r, T, K)
+    return ca.SX(found)
+
+
+def curve(expression, k):
+    """The function of times (n,) to value and slope (2, n)."""
+    function = ca.Function("curve", [T, K], [expression, ca.gradient(expression, T)])
+    return lambda t: np.array([row.full().ravel() for row in function(ca.DM(t).T, k)])
+
+
+def verdict(expression, k):
+    """Halve steps, always to the side on which more changes: what does not fall with them is a kink."""
+    f = curve(expression, k)
+    t = np.linspace(0.0, 1.0, _STEPS + 1)
+    values = f(t)
+    if not np.isfinite(values).all():
+        return Verdict("nothing", values)
+    scale = np.quantile(np.abs(values), 0.99, axis=1)[:, None] + 1e-12
+    worst, place, largest = 0.0, 0.5, (np.abs(values) / scale).max()
+    for row in range(2):
+        some = np.argsort(-np.abs(np.diff(values[row])))[:_LARGEST]
+        low, high, before, after = t[some], t[some + 1], values[:, some], values[:, some + 1]
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            there = f(middle)
+            if not np.isfinite(there).all():
+                return Verdict("nothing", values)
+            left = np.abs(there - before)[row] > np.abs(after - there)[row]
+            low, high = np.where(left, low, middle), np.where(left, middle, high)
+            before, after = np.where(left, before, there), np.where(left, there, after)
+            largest = max(largest, (np.abs(there) / scale).max())
+        rest = (np.abs(after - before) / scale)[row]
+        if rest.max() > worst:
+            worst, place = rest.max(), low[rest.argmax()]
+    if worst > 1e-3 or largest > 1e4:
+        # What is one thing at a single place and another beside it on both sides is both.
+        aside = f(np.clip(place + _BESIDE * np.array([-1.0, 1.0]), 0.0, 1.0))
+        there = np.abs(np.diff(aside)) / scale
+        clear = _BESIDE < place < 1.0 - _BESIDE and (largest > 1e4 or there.max() > worst / 10)
+        return Verdict("broken" if clear else "unclear", values)
+    return Verdict("smooth" if worst < 1e-7 and largest < 50.0 else "unclear", values)
+
+
+def shown(expression, k, place):
+    """Whether value or slope differ across a place, however near to it: a kink that halving went by for it is small."""
+    near = curve(expression, k)(np.clip(place + 1e-8 * np.array([-4.0, -2.0, -1.0, 1.0, 2.0, 4.0]), 0.0, 1.0))
+    gaps = np.abs(near[:, [3, 4, 5]] - near[:, [2, 1, 0]])
+    return bool((gaps[:, 0] > 0.6 * gaps[:, 2]).any() and (gaps[:, 0] > 1e-7 * np.abs(near).max(axis=1)).any())

@@ -1,0 +1,159 @@
+"""Motions, constraints, lifts and loads of all operations, at places drawn anew: refused where they have a kink, and only there."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from drawn_curves import K, T, drawn, shown, verdict
+
+from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi.declare.kinks import Smooth
+from lagrange_casadi.declare.motion import expression, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.elements.cam import disc_cam
+from lagrange_casadi.errors import AssemblyError, DeclarationError
+from lagrange_casadi.instants.refusal import Status
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+VALUES = (0.0, 0.3, 1.0)
+TIMES = np.linspace(0.0, 1.0, 4001)[None]
+
+
+def judged(seed):
+    """A drawn expression, a value of its parameter, whether it is broken, and its values; None where that is not clear."""
+    r = np.random.default_rng(seed)
+    graph, k = drawn(r), float(r.choice(VALUES))
+    if not ca.depends_on(graph, T):
+        return None
+    found = verdict(graph, k)
+    return (graph, k, found.what == "broken", found.values) if found.what in ("smooth", "broken") else None
+
+
+def kinks(seeds):
+    """Look at expressions by themselves."""
+    many = {True: 0, False: 0}
+    for seed in seeds:
+        case = judged(seed)
+        if case is None:
+            continue
+        graph, k, broken, _ = case
+        smooth = Smooth.of(graph, T, K)
+        kink = None if smooth is None else smooth.kink(TIMES, (k,))
+        told = kink is not None
+        assert told == broken or (told and shown(graph, k, kink.at["t"])), f"seed {seed}: {kink}, of {graph} with k = {k}"
+        many[broken] += 1
+    return many
+
+
+def slide(law):
+    m = Mechanism("slide")
+    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    m.prismatic("way", m.ground, body, axis=(1, 0))
+    return Scene(m, {"way": expression(lambda t: law(t, k))}, t=(0.0, 1.0, 101), wanted=("effort",))
+
+
+def constraint(law):
+    m = Mechanism("constraint")
+    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    turn = m.revolute("turn", m.ground, crank)
+    way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
+    m.constraint("profile", m.coordinate(way) - law(m.coordinate(turn), k))
+    return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 101), wanted=("effort",))
+
+
+def cam(law):
+    m = Mechanism("cam")
+    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", 0.0)
+    main = m.revolute("turn", m.ground, wheel)
+    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
+    disc_cam(m, "profile", main, lead, lambda x: law((1 + ca.sin(x)) / 2, k), base_radius=0.1, roller=0.01)
+    return Scene(m, {"turn": polynomial("-90 deg", np.pi)}, t=(0.0, 1.0, 101), wanted=("effort",))
+
+
+def refused(scene, seeds):
+    """Put drawn expressions into a scene: for the parameter in use, and beside a value that may be another verdict."""
+    many = {True: 0, False: 0}
+    for seed in seeds:
+        case = judged(seed)
+        if case is None:
+            continue
+        graph, k, broken, values = case
+        # Small beside the mechanism, and not so small that it is nothing.
+        scaled = graph * (0.01 / max(np.abs(values[0]).max(), 1e-3))
+        law = ca.Function("law", [T, K], [scaled])
+        try:
+            made = scene(law)
+        except DeclarationError:
+            # A profile that is undercut for the default.
+            continue
+        said = f"seed {seed}: {graph} with k = {k}"
+        status = DesignEngine.of(made, ["effort"]).evaluate(np.array([[0.7], [k]])).status[1]
+        try:
+            evaluate(made, parameters={"k": k}, backend="vm", certificate=False)
+            told = False
+        except DeclarationError as error:
+            told = "its value" in str(error) or "its slope" in str(error)
+        except AssemblyError:
+            # A loop that does not close at an instant says nothing of kinks.
+            continue
+        assert told == (status == Status.CORNER), said
+        if status in (Status.OK, Status.CORNER) and (told or broken):
+            place = Smooth.of(graph, T, K).kink(TIMES, (k,))
+            assert told == broken or (told and place is not None and shown(graph, k, place.at["t"])), said
+        many[broken] += 1
+    return many
+
+
+def loads(seeds):
+    """Load a slide that runs steadily: its effort is the load, whose largest value is not missed between instants."""
+    many = {True: 0, False: 0}
+    for seed in seeds:
+        case = judged(seed)
+        if case is None:
+            continue
+        graph, k, broken, values = case
+        law = ca.Function("law", [T, K], [graph])
+        m = Mechanism("loaded")
+        body, p = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+        m.prismatic("way", m.ground, body, axis=(1, 0))
+        m.force("push", body, x=law(m.time, p))
+        scene = Scene(m, {"way": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 101), wanted=("effort",))
+        found = DesignEngine.of(scene, ["effort"]).evaluate(np.array([[k]]))
+        largest = np.abs(values[0]).max()
+        if found.status[0] == Status.OK:
+            assert abs(found.value[0, 0]) >= largest * (1 - 1e-5) - 1e-9, f"seed {seed}: {graph} with k = {k}"
+        many[broken] += 1
+    return many
+
+
+def test_expressions_of_all_operations_have_a_kink_where_halving_finds_one():
+    many = kinks(range(24))
+    assert min(many.values()) >= 4
+
+
+@pytest.mark.parametrize("scene", [slide, constraint, cam])
+def test_scenes_refuse_what_has_a_kink_and_nothing_else(scene):
+    assert min(refused(scene, range(100, 105)).values()) >= 1
+
+
+def test_loads_of_all_operations_keep_their_peaks():
+    assert min(loads(range(200, 205)).values()) >= 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(10))
+def test_more_expressions(part):
+    kinks(range(1000 + 200 * part, 1200 + 200 * part))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scene", [slide, constraint, cam])
+@pytest.mark.parametrize("part", range(4))
+def test_more_scenes(scene, part):
+    refused(scene, range(5000 + 50 * part, 5050 + 50 * part))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(4))
+def test_more_loads(part):
+    loads(range(6000 + 50 * part, 6050 + 50 * part))

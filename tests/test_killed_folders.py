@@ -1,0 +1,73 @@
+"""A kill, or a full disk, at each moment at which a folder changes: the next run of the same command goes on."""
+
+import os
+import random
+
+import pytest
+from kills import full, killed, meet
+
+from lagrange_casadi.draw.index import MANIFEST as FIGURES
+from lagrange_casadi.errors import StoreError
+from lagrange_casadi.export.folder import MANIFEST as EXPORT
+
+pytestmark = [
+    pytest.mark.usefixtures("interpreted"),
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="each kill is of a fork"),
+]
+
+
+def contents(folder):
+    """All files by name, drafts and those of folders too."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def drawn(chance):
+    """Files of a few names."""
+    names = chance.sample(["a.png", "b.png", "index.html", "u.png", "z.c"], chance.randint(1, 5))
+    return {name: chance.choice(["one", "two", "three"]) for name in names}
+
+
+def fill(manifest, folder, files):
+    with manifest.filling(folder, {"more": len(files)}, alone=manifest is EXPORT) as draft:
+        for name, text in files.items():
+            (draft / name).write_text(text)
+
+
+def refused(number, action):
+    """Fill the disk at a change by its number; whether it got there. What is raised is one line of ours."""
+    with pytest.MonkeyPatch.context() as patch:
+        meet(patch, number, full)
+        try:
+            action()
+        except StoreError as error:
+            return str(error).endswith(": No space left on device")
+    return False
+
+
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 20))])
+@pytest.mark.parametrize("manifest", [FIGURES, EXPORT], ids=["figures", "export"])
+@pytest.mark.parametrize("ends", ["kill", "full disk"])
+def test_a_folder_that_is_half_filled_is_filled_by_the_next(tmp_path, manifest, ends, seed):
+    chance = random.Random(seed)
+    earlier, hidden = [drawn(chance) for _ in range(seed % 3)], chance.random() < 0.3
+    files, number, met = drawn(chance), 0, True
+    while met:
+        place = tmp_path / f"{number}"
+        whole, broken = place / "whole", place / "broken"
+        for folder in (whole, broken):
+            folder.parent.mkdir(exist_ok=True)
+            if hidden:
+                folder.mkdir()
+                (folder / ".gitignore").write_text("*")
+            for one in earlier:
+                fill(manifest, folder, one)
+        fill(manifest, whole, files)
+        if ends == "kill":
+            met = killed(number, lambda broken=broken: fill(manifest, broken, files))
+        else:
+            met = refused(number, lambda broken=broken: fill(manifest, broken, files))
+        fill(manifest, broken, files)
+        assert contents(broken) == contents(whole)
+        assert sorted(os.listdir(place)) == ["broken", "whole"]
+        number += 1
+    assert number > 2

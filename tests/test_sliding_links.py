@@ -1,0 +1,121 @@
+"""A slender link that slides across its own axis, of which nothing was said: a note says so, and of no other link."""
+
+import numpy as np
+import pytest
+from conftest import CASES, NAMES
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, save
+from lagrange_casadi.case import load_case
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+SLIDE = polynomial(0.1, 0.2)
+
+
+def axis_drawn(rng, size):
+    """A direction: along an axis, against it, next to it, or anyhow."""
+    if rng.random() < 0.5:
+        return [float(x) for x in rng.choice([-1.0, 1.0]) * np.eye(size)[rng.integers(size)]]
+    if rng.random() < 0.4:
+        return [1.0, *(1e-9 * rng.normal(size=size - 1)).tolist()]
+    return rng.normal(size=size).tolist()
+
+
+def drawn(seed):
+    """A link that slides on the ground or on a link that stands still, and whether something was said of how it lies."""
+    rng = np.random.default_rng(seed)
+    space = bool(rng.integers(2))
+    m = SpatialMechanism("sliding") if space else Mechanism("sliding")
+    kind = str(rng.choice(["prismatic", "cylindrical", "screw"] if space else ["prismatic"]))
+    motion = {}
+    parent = m.ground
+    if rng.random() < 0.5:
+        parent = m.link("arm", length=0.5, mass=1.0)
+        motion["shoulder"] = polynomial(float(rng.normal()))
+        m.revolute("shoulder", m.ground, parent, **({"axis": axis_drawn(rng, 3)} if space else {}))
+    axis = axis_drawn(rng, 3 if space else 2)
+    if not space and rng.random() < 0.3:
+        axis[1] = axis[1] * m.parameter("lean", 1.0)
+    words = {"axis": tuple(axis)}
+    given = "nothing"
+    hard = space and parent is m.ground and rng.random() < 0.3
+    if hard:
+        given, words["at"] = "place", (0.0, 0.0, 0.0)
+        bar = m.link("bar", between=((0, 0, 0), tuple(rng.normal(size=3).tolist())), mass=0.3)
+    elif rng.random() < 0.2:
+        given = "inertia"
+        whole = ((0.1, 0, 0), (0.1, 0.2, 0.2)) if space else ((0.1, 0), 0.2)
+        bar = m.link("bar", length=0.3, mass=1.0, centre=whole[0], inertia=whole[1])
+    else:
+        bar = m.link("bar", length=0.3, mass=0.3)
+        if rng.random() < 0.3:
+            given = "turn"
+            turned = rng.choice([0.0, float(rng.normal())])
+            words |= {"turned": [("z", turned)]} if space else {"angle": turned}
+    if kind == "screw":
+        words["lead"] = 0.01
+    getattr(m, kind)("way", parent, bar, **words)
+    motion |= {"way:slide": SLIDE, "way:turn": polynomial(0.0)} if kind == "cylindrical" else {"way": SLIDE}
+    return Scene(m, motion, t=(0.0, 1.0, 3), xi=(0, 1, 3)), given
+
+
+def slides_across(solution):
+    """Whether the link's point goes in another direction than that of its axis, as its pose tells."""
+    pose = solution.pose("bar")
+    z = np.zeros_like(pose.x) if pose.z is None else pose.z
+    way = np.array([(values[-1] - values[0]) for values in (pose.x, pose.y, z)])
+    axis = [np.cos(pose.angle[0]), np.sin(pose.angle[0]), 0.0] if pose.axes is None else pose.axes[0][0]
+    return np.linalg.norm(np.cross(way / np.linalg.norm(way), axis)) > 1e-6
+
+
+def across(solution):
+    """Its notes of links that slide across their axes."""
+    return [note for note in solution.notes if "does not turn it" in note]
+
+
+@pytest.mark.parametrize("seed", [*range(60), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(60, 1000))])
+def test_a_note_says_so_where_nothing_was_said_of_it_and_only_there(seed):
+    scene, given = drawn(seed)
+    solution = evaluate(scene)
+    assert bool(across(solution)) == (given == "nothing" and slides_across(solution))
+
+
+def needle_bar(**words):
+    """A bar that goes up and down."""
+    m = Mechanism("sewing")
+    m.prismatic("guide", m.ground, m.link("needle_bar", length=0.2, mass=0.1), axis=(0, -1), **words)
+    return Scene(m, {"guide": SLIDE}, t=(0.0, 1.0, 3), xi=(0, 1, 3))
+
+
+def test_the_note_says_what_to_do_and_doing_it_helps(tmp_path):
+    """Sideways it bends by its weight; along its way it does not."""
+    sideways = evaluate(needle_bar())
+    (note,) = sideways.notes
+    assert note == (
+        "link 'needle_bar' slides along joint 'guide' at 90 deg to its axis, for the joint's axis does not turn it: "
+        'angle="-90 deg" lays it along, angle=0 says that it is meant'
+    )
+    assert abs(sideways.section("needle_bar").bending).max() == pytest.approx(0.1 * 9.81 * 0.1)
+    along = evaluate(needle_bar(angle="-90 deg"))
+    assert along.notes == ()
+    assert abs(along.section("needle_bar").bending).max() < 1e-15
+    assert evaluate(needle_bar(angle=0)).notes == ()
+    save(sideways, tmp_path / "x.h5")
+    assert load(tmp_path / "x.h5").notes == (note,)
+
+
+@pytest.mark.parametrize("tip", [False, True])
+def test_of_a_massless_carrier_nothing_is_said(tip):
+    """A cross slide: how the carriage lies matters to nothing, unless something hangs on its tip."""
+    m = Mechanism("cross")
+    table, carriage = m.link("table", length=0.1, mass=0.0), m.link("carriage", length=0.1, mass=0.0)
+    m.prismatic("X", m.ground, table, axis=(1, 0))
+    m.prismatic("Y", table, carriage, axis=(0, 1))
+    m.weld("load", carriage.tip if tip else carriage, m.point_mass("p", 1.0))
+    assert len(across(evaluate(Scene(m, {"X": SLIDE, "Y": SLIDE}, t=(0.0, 1.0, 3))))) == tip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_shipped_case_has_such_a_link(name):
+    assert across(evaluate(load_case(CASES / name).scene, t=(0, 0, 1), wanted=["motion"])) == []
