@@ -137,7 +137,6 @@ def declarations() -> Iterator[tuple[str, Call]]:
     both = {"parent": s.arm.tip, "child": s.rod}
     axis = {"axis": (0.0, 0.0, 1.0)}
     for name, given in {
-        "direction": {"link": s.arm},
         "nonholonomic": {"name": "new", "expression": s.m.rate(s.pin), "replaces": s.pin},
         "at": {"body": s.bar, "x": 0.1, "y": 0.0, "z": 0.0},
         "link": {"name": "new", "length": 0.1, "mass": 1.0},

@@ -93,8 +93,8 @@ SOME = {
 
 KINDS = {**NEVER, **SOME}
 
-ANY = {("Sweep.open", "keeper"), ("Sweep.open", "seen")}
-"""What is handed on as it is."""
+ANY = {("Sweep.open", "keeper"), ("Sweep.open", "seen"), ("disc_cam", "elastic"), ("cylindrical_cam", "elastic")}
+"""What is handed on as it is; the elasticity of cams is looked at where there is a roller."""
 
 CALLED = {("select", "duty"), ("optimise", "progress"), ("sweep", "progress"), ("elements", "lift")}
 """The user's functions: what they raise goes through."""
@@ -219,6 +219,7 @@ Duty Spec
 """Classes that users are given, and make none of."""
 
 INNER = """
+direction
 multiplier output check_ending analysed mapped needs rows demands refined instants timetable block scale outside at_number made_of
 at ends tails cell_at whole holds excess of_parameters unit __getitem__ __call__ largest
 grid size draw needs count index curvature copy
@@ -238,7 +239,7 @@ def public_things():
                 for method, function in inspect.getmembers(thing, inspect.isfunction):
                     if not method.startswith("_") and method not in INNER and len(inspect.signature(function).parameters) > 1:
                         yield f"{door}.{name}.{method}", inspect.unwrap(function)
-            elif inspect.isfunction(thing):
+            elif inspect.isfunction(thing) and name not in INNER:
                 yield f"{door}.{name}", inspect.unwrap(thing)
 
 

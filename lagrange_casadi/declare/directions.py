@@ -13,19 +13,20 @@ from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import AXES, ZERO, Vector, cross, dot, minus, times
 from .joints import Triad
+from .limits import ROUNDED
 from .parts import Body, Expression, Link, Point
 
 Checked = Callable[..., Expression]
 """Takes what is said of an expression, the expression, and its unit if a text may tell it."""
+
+Number = Callable[[Expression], float]
+"""Gives the value of an expression for the default parameters."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
 
 SAME = 1e-12
 """Numbers that differ by less, over a size beside them, are one but for rounding."""
-
-ROUNDED = 1e-6
-"""What a direction may be off by the rounding of a drawing [rad]."""
 
 FAINT = 1e-15
 """A component of a direction that is smaller is rounding."""
@@ -73,10 +74,11 @@ def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
     return x, y, z
 
 
-def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
+def triad_of(what: str, axis: Any, second: Any, checked: Checked, number: Number) -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and at right angles to both.
 
-    A second one that is off a right angle by the rounding of a drawing is made exact: its part across the first is taken.
+    A second one that is off a right angle by the rounding of a drawing is made exact: its part across the first is taken. Where
+    parameters set them, so it is if their defaults are off; what other values are off by more than that is left, to be refused.
     Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is off by more.
     """
     if axis is None:
@@ -91,8 +93,9 @@ def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
         cosine = dot(u, v)
         if isinstance(cosine, float) and abs(cosine) > ROUNDED:
             raise DeclarationError(not_right(what, cosine))
-        if isinstance(cosine, float) and abs(cosine) > SAME:
-            v = _unit(f"{what}: second axis", minus(v, times(cosine, u)))
+        if SAME < abs(number(cosine)) <= ROUNDED:
+            along = cosine if isinstance(cosine, float) else ca.fmax(-ROUNDED, ca.fmin(ROUNDED, cosine))
+            v = _unit(f"{what}: second axis", minus(v, times(along, u)))
     return u, v, cross(u, v)
 
 
@@ -120,13 +123,13 @@ def across(axis: Vector) -> Vector:
     return 1 + sign * x * x * factor, sign * x * y * factor, -sign * x
 
 
-def turned_by(what: str, turned: Any, checked: Checked) -> tuple[Vector, Vector]:
+def turned_by(what: str, turned: Any, checked: Checked, number: Number) -> tuple[Vector, Vector]:
     """The directions of a body's x and y axes: as told, or after turns in sequence, each about an axis that those before carry."""
     expected = "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the child's x and y axes"
     if not isinstance(turned, (list, tuple)):
         raise DeclarationError(f"{what}: turned is {expected}, got {turned!r}")
     if len(turned) == 2 and all(isinstance(one, (tuple, list)) and len(one) == 3 for one in turned):
-        x, y, _ = triad_of(f"{what}: turned", turned[0], turned[1], checked)
+        x, y, _ = triad_of(f"{what}: turned", turned[0], turned[1], checked, number)
         return x, y
     found = Rotation()
     for turn in turned:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
+
+ROUNDED = 1e-6
+"""What the rounding of a drawing puts directions [rad] and places [of a link's length] off by."""
 
 _TOLD = 8
 """Parameters that a message names."""
@@ -67,6 +71,21 @@ def margins(point: Point, precision: Precision) -> list[Expression]:
         return []
     slack = END[precision] * point.body.length
     return [point.x + slack, (point.body.length - point.x) + slack]
+
+
+def on_link(point: Point, number: Callable[[Expression], float]) -> Point:
+    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections, the point at that end.
+
+    So far as it is beyond for any parameters; ``number`` has the value of an expression for the default ones.
+    """
+    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+        return point
+    for end, beyond in ((0.0, -point.x), (point.body.length, point.x - point.body.length)):
+        if ca.jacobian(ca.SX(beyond), ca.vertcat(ca.SX(0, 1), *ca.symvar(ca.SX(beyond)))).is_zero():
+            length = number(point.body.length)
+            if END["double"] * length < number(beyond) <= ROUNDED * length:
+                return replace(point, x=end)
+    return point
 
 
 def at_end(point: Point) -> Expression:

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import public
-from ..errors import DeclarationError
+from ..errors import DeclarationError, shown
 from ..system.symbolic import Graphs, symbolic
 from .curves import curve, rows
 from .ends import beyond_ends
@@ -51,7 +51,11 @@ class Motion:
         """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
         if self.spline:
             raise DeclarationError("a motion by samples is of the time alone; expected lagrange_casadi.curve(x, y)(EXPRESSION)")
-        return self.graph(ca.SX(x))
+        try:
+            expression = ca.SX(x)
+        except (NotImplementedError, TypeError, RuntimeError):
+            raise DeclarationError(f"motion: expected a casadi.SX expression, got {shown(x)}") from None
+        return self.graph(expression)
 
 
 @public

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..quantities import Output
 from .density import Array
 from .description import Description, drives_of, in_space, motions_of
-from .directions import ROUNDED
+from .limits import ROUNDED
 
 _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ..errors import DeclarationError
 from .expressions import scalar
 from .joints import Axis, Joint
+from .limits import on_link
 from .names import Part, check_free
 from .parts import Body, Expression, Link, Point
 
@@ -33,7 +34,7 @@ class Ownership:
         x, y, z = (self.expression(what, number, "m") for number in point.place)
         if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
             raise DeclarationError(f"{what}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
-        return Point(point.body, x, y, point.end, z)
+        return on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
 
     def joint(self, joint: Joint) -> Joint:
         """A joint."""
@@ -66,6 +67,11 @@ class Ownership:
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
         return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'", unit)
+
+    def at_defaults(self, expression: Expression) -> float:
+        """The value of an expression in the parameters, with their defaults."""
+        parameters = self.mechanism.parameters
+        return self.mechanism.number(expression, {name: parameter.default for name, parameter in parameters.items()})
 
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""

@@ -331,11 +331,11 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
-        directions: Triad = triad_of(what, axis, second, self.own.expression)
+        directions: Triad = triad_of(what, axis, second, self.own.expression, self.own.at_defaults)
         placed = at is not None
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, turned, self.own.expression)
+            zero = turned_by(what, turned, self.own.expression, self.own.at_defaults)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.seen(far), True
@@ -373,7 +373,7 @@ class SpatialMechanism(Mechanism):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
-        start, end = first.point(parent, place), second.point(child, place)
+        start, end = (self.own.point(what, one.point(body, place)) for one, body in ((first, parent), (second, child)))
         return start, end, first.directions(directions), first.seen(second)
 
     def _reference(self, what: str, body: Body) -> Reference:

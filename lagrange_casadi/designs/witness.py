@@ -48,7 +48,7 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Out
     rows = table.out[:, some] if graph.newton is not None else table.out
     values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
     within = phases(graph, rows, t[some], p)
-    found_there, description = outputs_of(graph, rows), described(scene, values)
+    found_there, description = outputs_of(graph, rows), described(graph.scene, values)
     whole = Solution(scene.mechanism.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if rung.newton is None else LOOSE
     found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}

@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import Count, public
+from ..arguments import Count, Symbolic, public
 from ..declare.density import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -98,8 +98,8 @@ def cylindrical_cam(
     *,
     start: Expression = 0.0,
     point: Point | None = None,
-    roller: Expression | None = None,
-    width: Expression | None = None,
+    roller: Symbolic | None = None,
+    width: Symbolic | None = None,
     elastic: tuple[float, float] = STEEL,
 ) -> CylindricalCam:
     """Declare the contact of a drum's groove with the roller of its follower in space, from the follower's motion.

@@ -19,6 +19,7 @@ from ..declare.density import Array
 from ..errors import MobilityError
 from .bars import idle_spins
 from .freed import Freed, rank_of
+from .gaps import extent, units
 from .legs import solve_leg
 from .lines import solve_line
 from .loops import ClosedForm, solve_loop
@@ -26,7 +27,8 @@ from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
 
 _ABSENT = 1e-13
-"""Of the largest slope of an equation: what stands in it by rounding alone, as a line that a link slides along may."""
+"""Of the largest slope of an equation, or of what its gaps are large beside: what stands in it by rounding alone, as a line that a
+link slides along may, or all of an equation that says nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,11 +137,13 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
     for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
-    found = []
+    found, mechanism = [], multibody.mechanism
+    whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
         # What has no value at such points may be anything.
         least = _ABSENT * max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
-        there = {c for c, size in sizes[k].items() if size > least}
+        beside = _ABSENT * units(loop, whole)[row] if mechanism.space and loop.joint is not None else 0.0
+        there = {c for c, size in sizes[k].items() if size > max(least, beside / (whole if c.kind == "slide" else 1.0))}
         # The three of a ball share their variables.
         balls = {c.ball for c in there if c.ball is not None}
         present = frozenset(c for c in unknown if c in there or c.ball in balls)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -34,6 +35,14 @@ from .rounding import nearest
 from .scene_graph import SceneGraph
 from .stations import gathered
 from .strength import stresses, utilisation
+
+_FITS = 2e-14
+"""How far equations that are too many may miss where they are exact, of the links' length."""
+
+_SERVES = 1e-9
+"""How far they may miss for other parameters, and a correction serves for these too."""
+
+_STEPS = 50
 
 
 @public
@@ -70,15 +79,23 @@ def assembled(
 ) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
+    So it is too where rounded axes were corrected for its own parameters, and loops close with these but do not with ``values``.
+
     Raises what :func:`derive` does, where they can be assembled with neither.
     """
     try:
-        derive(scene, wanted, elastic=elastic)
+        graph = derive(scene, wanted, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
-        scene = _at(scene, tuple(values.items()))
-        derive(scene, wanted, elastic=elastic)
+        there = _at(scene, tuple(values.items()))
+        derive(there, wanted, elastic=elastic)
+        return there
+    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _SERVES:
+        with suppress(AssemblyError, MobilityError):
+            there = _at(scene, tuple(values.items()))
+            derive(there, wanted, elastic=elastic)
+            return there
     return scene
 
 
@@ -110,9 +127,29 @@ def _kept(scene: Scene, want: Wanted, elastic: bool) -> SceneGraph | AssemblyErr
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
+    if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
+        found = _kept(near, want, elastic)
+        if isinstance(found, SceneGraph):
+            return found
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
+
+
+def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -> float:
+    """By how much loops with too many equations miss at the start, of the links' length: all of them, or those ``iterated``."""
+    rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
+    if not rows:
+        return 0.0
+    t, p, newton = graph.scene.span[0], list(values.values()), graph.newton
+    motion, z = graph.motion(t, p), ca.DM(newton.guess if newton else [])
+    for _ in range(_STEPS):
+        correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
+        z += correction
+        if float(size) < _FITS:
+            break
+    out = graph.instant(t, *motion, z, p)
+    return max(float(out[row]) for row in rows)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
+import numpy as np
 
+from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..system.symbolic import symbolic
-from .blocks import Block, Equation
-from .joints import off
-from .multibody import Multibody
+from .joints import held_directions, off
+from .multibody import LoopEquations, Multibody
+
+if TYPE_CHECKING:
+    from .blocks import Block, Equation
 
 
 def left(multibody: Multibody, block: Block, length: Any) -> Any:
@@ -46,6 +50,12 @@ def extent(mechanism: Mechanism) -> Any:
     points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
     places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in point.place]
     return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
+
+
+def units(loop: LoopEquations, size: float) -> Array:
+    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
+    held = held_directions(loop.joint) if loop.joint is not None else 0
+    return np.array([size] * (loop.gap.numel() - held) + [1.0] * held)
 
 
 def _turned(multibody: Multibody, equation: Equation) -> Any:

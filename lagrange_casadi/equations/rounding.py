@@ -5,13 +5,18 @@ than its mobility leaves room for, and these miss by that rounding. In any postu
 of the loops' Jacobian, whose rank is told within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections x of axes and
 places. The least x is taken for which it holds in many postures, and for other parameters too where it can, by the method of Gauss
 and Newton.
+
+Joints that must be moved are first tried without what is beside a coordinate axis, or an end of a link, by rounding: where loops
+close so, their graphs are as small as those of exact axes. And a link between two spherical joints is a bar where rounding alone
+puts these beside its axis.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import casadi as ca
@@ -22,15 +27,15 @@ from ..declare.joints import Joint
 from ..declare.measures import Measures
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
-from ..declare.parts import Friction, Link, Point
+from ..declare.parts import Body, Expression, Friction, Link, Load, Point
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
-from ..geometry.vectors import Vector, cross, dot, nil, plus, times
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import Vector, cross, dot, minus, nil, plus, times
 from .assembly import assemble
 from .freed import Freed, Posture
-from .gaps import extent
-from .joints import held_directions
-from .multibody import LoopEquations, Multibody
+from .gaps import extent, units
+from .multibody import Multibody
 from .tree import span
 
 _POSTURES = 24
@@ -45,30 +50,131 @@ _CLOSING_STEPS = 30
 _APART = 100.0
 """Between a rank that is told and what rounding within the tolerance leaves: so much lies between singular values."""
 
-_SEEN = 1e-4
-"""Of the largest singular value: what corrections it tells of; what is less is made of rounding."""
+_SEEN = 1e-4, 1e-10
+"""Of the largest singular value: at most and at least what corrections it tells of; less may be made of what loops miss."""
 
 _LEFT = 1e-14
-_FAINT = 1e-18
+_FAINT = 1e-17
 
 
 def nearest(scene: Scene) -> Scene | None:
     """The scene with axes and places of joints moved within its ``rounding``, so that loops close; None if that is not enough."""
-    mechanism = scene.mechanism
-    if not mechanism.space or not scene.rounding:
+    declared = scene.mechanism
+    if not declared.space or not scene.rounding:
         return None
+    values = declared.values(scene.assembly)
+    size = declared.number(extent(declared), values)
+    barred = _barred(declared, scene.rounding * size)
+    least = _closed(scene, barred, size)
+    if least is None:
+        return None
+    moved = _moves(barred, least, values)
+    plain = _with(barred, {name: _plain(declared.joints[name], scene.rounding, size) for name in moved})
+    for mechanism in (_closed(scene, plain, size) if moved else None, least):
+        moves = {} if mechanism is None else _moves(declared, mechanism, values)
+        if mechanism is not None and moves and max(max(a, d / size) for a, d in moves.values()) <= scene.rounding:
+            mechanism.rounded = moves
+            return replace(scene, mechanism=mechanism)
+    return None
+
+
+def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None:
+    """A mechanism with the least corrections with which its loops close; None where there are none."""
     symbols = ca.SX.sym("correction", 12 * len(mechanism.joints))
-    size = mechanism.number(extent(mechanism), mechanism.values(scene.assembly))
-    found = _Search.of(scene, _with(mechanism, _shares(mechanism, symbols, size)), symbols, size).corrections()
+    found = _Search.of(scene, _shared(mechanism, symbols, size), symbols, size).corrections()
     if found is None:
         return None
     found[np.abs(found) < _FAINT] = 0.0
-    shares = {name: share for name, share in _shares(mechanism, found, size).items() if share.angle or share.distance}
-    if not shares or max(max(share.angle, share.distance / size) for share in shares.values()) > scene.rounding:
-        return None
-    corrected = _with(mechanism, shares)
-    corrected.rounded = {name: (share.angle, share.distance) for name, share in shares.items()}
-    return replace(scene, mechanism=corrected)
+    return _shared(mechanism, found, size)
+
+
+def _moves(declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """By how much axes [rad] and places [m] of joints were moved, on one body or the other, by joint."""
+    changed = {name: joint for name, joint in mechanism.joints.items() if joint is not declared.joints[name]}
+    found = {}
+    for name, joint in changed.items():
+        gaps = [
+            ca.norm_2(ca.vertcat(*minus(one, other)))
+            for one, other in zip(_where(joint), _where(declared.joints[name]), strict=True)
+        ]
+        *angles, near, far = np.ravel(ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full())
+        found[name] = max(angles), max(near, far)
+    return {name: (float(angle), float(distance)) for name, (angle, distance) in found.items() if angle or distance}
+
+
+def _where(joint: Joint) -> list[Vector]:
+    """Its directions on the parent and on the child, and its points."""
+    assert joint.turned is not None
+    there = Rotation.of(*joint.turned)
+    return [*joint.triad, *map(there.resolve, joint.triad), joint.parent.place, joint.child.place]
+
+
+def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
+    """The mechanism whose links between two spherical joints have these, and loads, on their axis if within a limit [m]."""
+    links: set[Body] = set()
+    for link in mechanism.links.values():
+        own = [joint for joint in mechanism.joints.values() if link in joint.bodies]
+        if isinstance(link.mass, Density) and [joint.kind for joint in own] == ["spherical", "spherical"]:
+            links.add(link)
+
+    def put(point: Point) -> Point:
+        off = point.body in links and not (nil(point.y) and nil(point.z))
+        return replace(point, y=_nothing(point.y, limit), z=_nothing(point.z, limit)) if off else point
+
+    joints = {
+        name: replace(joint, parent=put(joint.parent), child=put(joint.child))
+        for name, joint in mechanism.joints.items()
+        if put(joint.parent) is not joint.parent or put(joint.child) is not joint.child
+    }
+    found = _with(mechanism, joints)
+    if links:
+        found = copy.copy(found)
+        found.loads = {name: _loaded(load, put) for name, load in found.loads.items()}
+    return found
+
+
+def _loaded(load: Load, put: Callable[[Point], Point]) -> Load:
+    moved: dict[str, Any] = {own.name: put(getattr(load, own.name)) for own in fields(load) if own.type == "Point"}
+    return replace(load, **moved) if moved else load
+
+
+def _plain(joint: Joint, rounding: float, size: float) -> Joint:
+    """A joint whose numbers are zero where rounding may have made them what they are, and whose points are at ends of links."""
+    assert joint.directions is not None
+    assert joint.turned is not None
+    u, v, w = _squared(*joint.directions[:2], rounding)
+    x, y, _ = _squared(*joint.turned, rounding)
+    points = [_put(point, rounding * size) for point in (joint.parent, joint.child)]
+    return replace(joint, parent=points[0], child=points[1], directions=(u, v, w), turned=(x, y))
+
+
+def _squared(first: Vector, second: Vector, limit: float) -> tuple[Vector, Vector, Vector]:
+    """Two directions without components that are below a limit, at right angles, and the third one."""
+    u, v = ((_nothing(x, limit), _nothing(y, limit), _nothing(z, limit)) for x, y, z in (first, second))
+    u = times(1 / _size(u), u)
+    v = minus(v, times(dot(u, v), u))
+    v = times(1 / _size(v), v)
+    return u, v, cross(u, v)
+
+
+def _size(vector: Vector) -> Expression:
+    squared = dot(vector, vector)
+    return math.sqrt(squared) if isinstance(squared, float) else ca.sqrt(squared)
+
+
+def _put(point: Point, limit: float) -> Point:
+    """A point without what is below a limit [m]: of a link whose length is a number, at its end where that is so near."""
+    if point.end is not None or not point.body.oriented:
+        return point
+    x, y, z = (_nothing(component, limit) for component in point.place)
+    length = point.body.length if isinstance(point.body, Link) else None
+    if isinstance(x, float) and isinstance(length, float) and abs(x - length) <= limit:
+        x = length
+    return replace(point, x=x, y=y, z=z)
+
+
+def _nothing(number: Expression, limit: float) -> Expression:
+    return 0.0 if isinstance(number, float) and abs(number) <= limit else number
 
 
 @dataclass(frozen=True)
@@ -77,16 +183,6 @@ class Share:
 
     turns: tuple[Any, Any]
     shifts: tuple[Any, Any]
-
-    @property
-    def angle(self) -> float:
-        """By how much its axes turn, on one body or the other [rad]."""
-        return float(max(np.linalg.norm(turn) for turn in self.turns))
-
-    @property
-    def distance(self) -> float:
-        """By how much its points move, on one body or the other [m]."""
-        return float(max(np.linalg.norm(shift) for shift in self.shifts))
 
     def of(self, joint: Joint) -> Joint:
         """The joint with its share."""
@@ -120,20 +216,23 @@ def _free(point: Point) -> bool:
     return point.body.oriented and not (sections and nil(point.y) and nil(point.z))
 
 
-def _shares(mechanism: Mechanism, corrections: Any, size: float) -> dict[str, Share]:
-    """Corrections joint by joint: twelve each, in radians and of the mechanism's size."""
+def _shared(mechanism: Mechanism, corrections: Any, size: float) -> Mechanism:
+    """The mechanism with corrections, joint by joint: twelve each, in radians and of the mechanism's size."""
     found = {}
-    for k, name in enumerate(mechanism.joints):
+    for k, (name, joint) in enumerate(mechanism.joints.items()):
         each = [corrections[12 * k + 3 * i : 12 * k + 3 * i + 3] for i in range(4)]
-        found[name] = Share((each[0], each[1]), (size * each[2], size * each[3]))
-    return found
+        if isinstance(corrections, ca.SX) or np.any(each):
+            found[name] = Share((each[0], each[1]), (size * each[2], size * each[3])).of(joint)
+    return _with(mechanism, found)
 
 
-def _with(mechanism: Mechanism, shares: Mapping[str, Share]) -> Mechanism:
+def _with(mechanism: Mechanism, corrected: Mapping[str, Joint]) -> Mechanism:
     """The mechanism with corrected joints, and with the same symbols."""
+    if not corrected:
+        return mechanism
     found = copy.copy(mechanism)
     found.asked = list(mechanism.asked)  # what corrected parts ask of parameters is not asked of the declared ones
-    joints = {joint: shares[name].of(joint) for name, joint in mechanism.joints.items() if name in shares}
+    joints = {joint: corrected[name] for name, joint in mechanism.joints.items() if name in corrected}
     found.joints = {name: joints.get(joint, joint) for name, joint in mechanism.joints.items()}
     asked = [
         replace(m, of=joints[m.of], axis=m.axis and found.coordinates[m.axis.coordinate][1]) if m.of in joints else m
@@ -183,7 +282,7 @@ class _Search:
             other = np.array(values) * (1 + _OTHER * generator.uniform(-1, 1, len(values)))
             each = zip(mechanism.parameters.values(), other, strict=True)
             others.append([t, [min(max(float(x), p.low), p.high) for p, x in each]])
-        rows = np.concatenate([_units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
+        rows = np.concatenate([units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
         columns = np.array([size if c.axis.move == "slide" else 1.0 for c in body.coordinates])
         return cls(body, freed, [t, values], others, rows, columns, scene.rounding)
 
@@ -205,7 +304,9 @@ class _Search:
             misses, slopes = (np.concatenate(each) for each in zip(*parts, strict=True))
             if np.max(np.abs(misses), initial=0.0) < _LEFT:
                 return x
-            x = x - np.linalg.lstsq(slopes, misses, rcond=_SEEN)[0]
+            most, least = _SEEN
+            seen_from = min(most, max(least, _APART * float(np.max(np.abs(misses)))))
+            x = x - np.linalg.lstsq(slopes, misses, rcond=seen_from)[0]
         return None
 
     def _walk(self, case: Sequence[Any], x: Array) -> Iterator[Posture]:
@@ -251,10 +352,3 @@ class _Search:
         """Gaps and their derivatives, in radians and beside the mechanism's size."""
         gap, slope, by = self.freed.at(posture, [*case, x])
         return gap / self.rows, slope * self.columns / self.rows[:, None], by / self.rows[:, None]
-
-
-def _units(loop: LoopEquations, size: float) -> Array:
-    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
-    many = loop.gap.numel()
-    held = held_directions(loop.joint) if loop.joint is not None else 0
-    return np.array([size] * (many - held) + [1.0] * held)

@@ -1,0 +1,272 @@
+"""Mechanisms in space as a drawing rounds them: forces are right but for the rounding, and what was meant stays."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from conftest import CASES, PLANAR, SPATIAL
+from drawings import drawing, drawn, drawn_twin
+from spatial_draft import orientation
+from spatial_twin import planar, twin
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, load, load_case, prepare, save, sweep, tolerances
+from lagrange_casadi.errors import ParameterError
+from lagrange_casadi.motion import polynomial
+
+FACTOR = 100.0
+"""By how many times its rounding a mechanism's forces may be off, of the largest of their kind.
+
+Places are off in metres, and cranks are some centimetres.
+"""
+
+LAST = 1e-12
+"""And by how much at the least: of such sums the last digits."""
+
+NOISES = [10.0**-k for k in range(16, 6, -1)]
+CLOSING = ("arm", "scara", "sleigh")
+"""Planar cases without a loop; the motion of the last one keeps to its blade, to less than the rounding."""
+
+
+def assert_near(found, exact, noise):
+    """All that both tell, by units."""
+    assert found.certified == exact.certified
+    size = {}
+    for output, values in exact.outputs.items():
+        unit = exact.unit(str(output))
+        size[unit] = max(size.get(unit, 0.0), float(np.nanmax(np.abs(values), initial=0.0)))
+    for output, values in exact.outputs.items():
+        told = found.outputs[output]
+        known = np.isfinite(values) & np.isfinite(told)
+        gap = np.max(np.abs(told - values)[known], initial=0.0)
+        assert gap <= (FACTOR * noise + LAST) * size[exact.unit(str(output))], (output, gap)
+
+
+def vm(scene, count=5):
+    return evaluate(scene, wanted=["effort"], t=(*scene.span, count), backend="vm")
+
+
+@pytest.mark.parametrize("noise", [1e-14, 1e-12, 1e-9, 3e-7])
+def test_a_screw_in_a_loop_keeps_its_turns(noise):
+    """Each step of the motor is more than a half turn: a loop that is iterated from one instant to the next would lose some."""
+    exact, found = (
+        evaluate(scene, wanted=["effort"], backend="vm") for scene in (drawn("screw_lift", 0.0), drawn("screw_lift", noise))
+    )
+    assert_near(found, exact, noise)
+
+
+@pytest.mark.parametrize("name", ["cardan_shaft", "delta", "five_link_suspension"])
+def test_given_places_and_axes_of_parameters_may_be_rounded(name):
+    assert_near(vm(drawn(name, 1e-7)), vm(drawn(name, 0.0)), 1e-7)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", SPATIAL)
+def test_every_case_in_space(name, seed):
+    exact = vm(drawn(name, 0.0), 9)
+    for noise in NOISES:
+        assert_near(vm(drawn(name, noise, seed), 9), exact, noise)
+
+
+@pytest.mark.sampled(9)
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("name", [name for name in PLANAR if name not in CLOSING])
+def test_planar_cases_in_space(name, turned):
+    scene = load_case(CASES / name).scene
+    start, stop = scene.span
+    flat = planar(scene, start + 0.37 * (stop - start), xi=(0, 1, 3))
+    R = orientation(np.random.default_rng(PLANAR.index(name))) if turned else np.eye(3)
+    exact = evaluate(twin(scene, flat, R), wanted=["effort"], backend="vm")
+    for noise in NOISES[::3]:
+        assert_near(evaluate(drawn_twin(scene, flat, R, noise), wanted=["effort"], backend="vm"), exact, noise)
+
+
+def four_bar(noise=0.0, tilt=None, *, hard=False, seed=1):
+    """A four-bar whose plane is tilted as was meant, about x, by a number or by a parameter."""
+    m = (drawing(noise, seed) if noise else SpatialMechanism)("four_bar")
+    tilt = m.parameter("tilt", 0.0, "rad") if tilt is None else tilt
+    mass = m.parameter("mass", 0.5, "kg", low=0.0)
+    m.set_gravity(0.0, -9.81, -3.0)
+    sine, cosine = (ca.sin(tilt), ca.cos(tilt)) if isinstance(tilt, ca.SX) else (float(np.sin(tilt)), float(np.cos(tilt)))
+    normal, across = (0.0, -sine, cosine), (0.0, cosine, sine)
+    ground = (0.3, 0.05 * cosine, 0.05 * sine)
+    if hard:
+        places = [(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.3, 0.3, 0.0), (0.3, 0.05, 0.0)]
+        links = [m.link(n, between=places[k : k + 2], mass=mass) for k, n in enumerate(("crank", "rod", "rocker"))]
+        for n, pair, at in zip("OABC", [(m.ground, links[0]), links[:2], links[1:], (m.ground, links[2])], places, strict=True):
+            m.revolute(n, *pair, at=at, axis=(0.0, 0.0, 1.0))
+        return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 7), wanted=["effort"])
+    crank, rod, rocker = (m.link(n, length=l, mass=mass) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+    m.revolute("O", m.ground, crank, axis=normal, turned=((1.0, 0.0, 0.0), across))
+    m.revolute("A", crank.tip, rod, axis=(0.0, 0.0, 1.0))
+    m.revolute("C", m.ground.at(*ground), rocker, axis=normal, turned=((1.0, 0.0, 0.0), across))
+    m.revolute("B", rod.tip, rocker.tip, axis=(0.0, 0.0, 1.0))
+    return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 7), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+
+
+def hung(noise):
+    """An arm that two bars of hard points hold, one of them loaded by a spring in its middle."""
+    m = drawing(noise)("hung")
+    arm = m.link("arm", between=((0.0, 0.0, 0.0), (0.4, 0.0, 0.1)), mass=2.0)
+    slide = m.link("slide", between=((0.4, 0.5, 0.3), (0.8, 0.5, 0.3)), mass=1.0)
+    bar = m.link("bar", between=((0.4, 0.0, 0.1), (0.4, 0.5, 0.3)), mass=0.5)
+    m.revolute("O", m.ground, arm, at=(0.0, 0.0, 0.0), axis=(0.0, 0.2, 1.0))
+    m.spherical("A", arm, bar, at=(0.4, 0.0, 0.1))
+    m.spherical("B", bar, slide, at=(0.4, 0.5, 0.3))
+    m.prismatic("S", m.ground, slide, at=(0.4, 0.5, 0.3), axis=(0.1, 1.0, 0.0))
+    off = [noise * x for x in (0.3, -0.7, 0.9)]
+    m.spring("pull", m.ground.at(0.1, 0.2, 1.0), m.at(bar, 0.4 + off[0], 0.25 + off[1], 0.2 + off[2]), stiffness=300.0, length=0.5)
+    return Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 0.3, 5), wanted=["effort"])
+
+
+@pytest.mark.parametrize("noise", [1e-11, 1e-7])
+def test_a_bar_of_hard_points_may_be_loaded(noise):
+    found = vm(hung(noise))
+    assert rounded(found)
+    assert_near(found, vm(hung(0.0)), noise)
+
+
+def rounded(solution):
+    return any("rounding" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize("noise", [1e-12, 1e-9, 2e-7])
+def test_hard_points(noise):
+    found = vm(four_bar(noise, 0.0, hard=True))
+    assert rounded(found) == (noise > 1e-10)
+    assert_near(found, vm(four_bar(0.0, 0.0, hard=True)), noise)
+
+
+@pytest.mark.parametrize("tilt", [1e-5, 1e-7, -3e-10])
+def test_a_tilt_that_was_meant_is_not_moved_where_loops_close(tilt):
+    """Not as a number, and not as a parameter: the effort changes with it as it does with a large one."""
+    level, steep = vm(four_bar(tilt=0.0)).effort("O"), vm(four_bar(tilt=1e-3)).effort("O")
+    by = (steep - level) / 1e-3
+    number = vm(four_bar(tilt=tilt))
+    parameter = evaluate(four_bar(), parameters={"tilt": tilt}, t=(0.0, 0.6, 5), backend="vm")
+    for found in (number, parameter):
+        assert not rounded(found)
+        assert found.effort("O") - level == pytest.approx(tilt * by, abs=1e-2 * abs(tilt) * np.max(np.abs(by)) + 1e-14)
+
+
+def pressing(noise, tilt=None):
+    """The four-bar on a base that turns about an axis that is tilted as was meant; the loop alone is rounded."""
+    m = drawing(noise, exact=("swing",))("pressing")
+    tilt = m.parameter("tilt", 0.0, "rad") if tilt is None else tilt
+    mass, length = m.parameter("mass", 0.5, "kg", low=0.0), m.parameter("length", 0.1, "m", low=0.02, high=0.15)
+    base = m.link("base", length=0.5, mass=3.0)
+    crank, rod, rocker = (m.link(n, length=l, mass=mass) for n, l in (("crank", length), ("rod", 0.35), ("rocker", 0.25)))
+    m.revolute("swing", m.ground, base, axis=(0.0, tilt, 1.0))
+    m.revolute("O", base, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("C", base.at(0.3, 0.05, 0.0), rocker)
+    m.revolute("B", rod.tip, rocker.tip)
+    laws = {"swing": polynomial(0.2, 1.0, 3.0), "O": polynomial(0.1, 10.0)}
+    return Scene(m, laws, t=(0.0, 0.6, 7), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+
+
+@pytest.mark.parametrize("tilt", [1e-5, 1e-7])
+def test_a_tilt_that_was_meant_stays_beside_a_loop_that_was_rounded(tilt):
+    """The joint that carries it closes no loop."""
+    noise = 1e-9
+    by = (vm(pressing(0.0, 1e-3)).effort("swing") - vm(pressing(0.0, 0.0)).effort("swing")) / 1e-3
+    found = vm(pressing(noise, tilt))
+    assert "swing" not in found.description["rounded"]
+    assert_near(found, vm(pressing(0.0, tilt)), noise)
+    by_parameter = evaluate(pressing(noise), parameters={"tilt": tilt}, t=(0.0, 0.6, 5), backend="vm").effort("swing")
+    without = evaluate(pressing(noise), t=(0.0, 0.6, 5), backend="vm").effort("swing")
+    assert by_parameter - without == pytest.approx(tilt * by, abs=1e-2 * tilt * np.max(np.abs(by)) + 1e-13)
+
+
+def test_derivatives_are_those_of_exact_axes():
+    """By a length of the loop, by a mass, and by the tilt: corrections are constants."""
+    names, noise = ["length", "mass", "tilt"], 1e-8
+    wanted = ["effort", *(f"sensitivity:{name}" for name in names)]
+    exact, found = (evaluate(pressing(size), wanted=wanted, backend="vm") for size in (0.0, noise))
+    assert rounded(found)
+    for name in names:
+        for joint in ("swing", "O"):
+            one, other = (solution.sensitivities.array(f"effort:{joint}", name) for solution in (exact, found))
+            assert np.max(np.abs(one - other)) <= FACTOR * noise * np.max(np.abs(one))
+
+
+def test_what_is_made_of_a_corrected_scene(tmp_path):
+    """Peaks of designs, their gradients and spreads, exported C and files."""
+    noise = 1e-8
+    exact, rough = pressing(0.0), pressing(noise)
+    grid = {"length": (0.06, 0.12, 3), "tilt": [0.0, 1e-7, 0.1]}
+    one, other = (sweep(scene, grid, wanted=["effort"]) for scene in (exact, rough))
+    for joint in ("swing", "O"):
+        name = f"peak:effort:{joint}"
+        peaks, found = (np.array([kept.values(k, name)[name] for k in range(kept.size)]) for kept in (one, other))
+        assert np.max(np.abs(found - peaks)) <= FACTOR * noise * np.max(np.abs(peaks))
+    one, other = (prepare(scene, wanted=["effort"]) for scene in (exact, rough))
+    for name, slope in one.gradient(length=0.09)["effort:O"].items():
+        assert other.gradient(length=0.09)["effort:O"][name] == pytest.approx(slope, rel=FACTOR * noise)
+    one, other = (tolerances(scene, {"tilt": "1e-5 rad", "length": 1e-6}, samples=20).peaks["effort:O"] for scene in (exact, rough))
+    assert other.worst == pytest.approx(one.worst, rel=1e-5)
+    solution = evaluate(rough, wanted=["all"], xi=(0, 1, 3), parameters={"length": 0.09})
+    save(solution, tmp_path / "rough.h5")
+    kept = load(tmp_path / "rough.h5")
+    assert kept.description["rounded"] == solution.description["rounded"]
+    assert kept.certified
+    assert rounded(kept)
+    # It is held to its own program, and tells by how much axes were moved.
+    export(rough, tmp_path / "exported", parameters={"length": 0.09})
+    assert (tmp_path / "exported" / "export.json").is_file()
+
+
+@pytest.mark.parametrize("raised", [1.0, 3.0, -2.0])
+def test_corrections_are_sought_for_the_parameters_in_use(raised):
+    """What a place is off goes with a parameter: one correction does not serve all."""
+
+    def offset(by):
+        m = SpatialMechanism("offset")
+        by = by * m.parameter("k", 1.0)
+        crank, rod, rocker = (m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+        m.revolute("O", m.ground, crank)
+        m.revolute("A", crank.tip, rod)
+        m.revolute("C", m.ground.at(0.3, 0.05, by), rocker)
+        m.revolute("B", rod.tip, rocker.tip)
+        return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+
+    exact, found = (evaluate(offset(by), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))
+    assert rounded(found)
+    assert_near(found, exact, 2e-7)
+
+
+@pytest.mark.parametrize("beyond", [1e-10, -3e-7])
+def test_a_station_that_was_rounded_beyond_an_end_is_there(beyond):
+    """Given by a number or by a length and a number; and not where it is a parameter's value, or off by more."""
+
+    def shelf(station):
+        m = Mechanism("shelf")
+        arm = m.link("arm", length=m.parameter("l", 0.3, "m"), mass=0.0)
+        m.revolute("O", m.ground, arm)
+        m.weld("W", arm.at(station(m)), m.point_mass("lump", 2.0))
+        return Scene(m, {"O": polynomial(0.0)}, t=(0.0, 1.0, 3))
+
+    end = (lambda m: m.parameters["l"].symbol) if beyond > 0.0 else (lambda m: 0.0)
+    found, exact = (evaluate(shelf(lambda m, off=off: end(m) + off), backend="vm") for off in (beyond, 0.0))
+    assert found.effort("O") == pytest.approx(exact.effort("O"), rel=1e-15)
+    for station in (lambda m: end(m) + 10 * beyond * 1e6, lambda m: m.parameter("x", 0.3 + abs(beyond), "m")):
+        with pytest.raises(ParameterError, match="outside link"):
+            shelf(station)
+
+
+def crossed(off):
+    """A universal joint whose second axis a parameter turns, off a right angle."""
+    m = SpatialMechanism("crossed")
+    phase = m.parameter("phase", 0.0, "rad")
+    arm = m.link("arm", length=0.3, mass=1.0)
+    lean = m.parameter("lean", 0.0, "rad")
+    m.universal("C", m.ground, arm, axis=(1.0, 0.0, 0.0), second=(off + lean, ca.cos(phase), ca.sin(phase)))
+    return Scene(m, {"C:turn_1": polynomial(0.2, 1.0), "C:turn_2": polynomial(0.1, -2.0)}, t=(0.0, 1.0, 5), wanted=["effort"])
+
+
+@pytest.mark.parametrize("off", [1e-10, 1e-8, -9e-7])
+def test_a_second_axis_of_parameters_is_made_exact(off):
+    values = {"phase": 0.3}
+    found, exact = (evaluate(crossed(size), parameters=values, backend="vm") for size in (off, 0.0))
+    assert_near(found, exact, abs(off))
+    with pytest.raises(ParameterError, match="right angles"):
+        evaluate(crossed(off), parameters={"lean": 1e-3})
