@@ -118,8 +118,8 @@ def evaluate(
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
     asked = [*names, *felt(scene.mechanism)] if gives else wanted
-    how = {"iterate": newton is not None, "elastic": bool(gives)}
-    graph = derive(assembled(scene, values, asked, **how), asked, **how)
+    graph = derive(assembled(scene, values, asked, elastic=bool(gives)), asked, elastic=bool(gives))
+    rung.check(graph)
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
     instants, places = scene.instants(timing, values), points(ratios)
@@ -182,7 +182,7 @@ def _slopes(
     """Derivatives by parameters; of a solution that elasticity completed by the graph of what was ``asked`` that tells it too."""
     if asked is None:
         return series_slopes(graph, solution, p, by, rung)
-    telling = derive(graph.scene, asked, iterate=rung.newton is not None)
+    telling = derive(graph.scene, asked)
     _, left_open = determinate(telling, solution.t, p)
     nothing = {output: np.full(solution.t.size, np.nan) for output in left_open}
     known = replace(solution, outputs={**solution.outputs, **nothing}, left_open=(*solution.left_open, *left_open))

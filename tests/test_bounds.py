@@ -9,6 +9,7 @@ import psutil
 import pytest
 import sweeps
 from mechanisms import slider_crank
+from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
 from lagrange_casadi.cli import main
@@ -118,9 +119,9 @@ def test_what_takes_long_is_said_before_it_starts(monkeypatch):
     module = sys.modules["lagrange_casadi.evaluate"]
     monkeypatch.setattr(module, "_LONG", 1e-9)
     with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
-        evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+        evaluate(iterated(), t=(0, 1, 1001), newton=5)
     monkeypatch.setattr(module, "_LONG", 60.0)
-    evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+    evaluate(iterated(), t=(0, 1, 1001), newton=5)
 
 
 def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):

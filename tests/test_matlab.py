@@ -28,7 +28,7 @@ RUNGS = {
     ("quick_return", "double"): {},
     ("quick_return", "single"): {"precision": "single"},
     ("andrews_squeezer", "single"): {"precision": "single"},
-    ("six_bar", "newton"): {"newton": 3},
+    ("beam_pump", "newton"): {"newton": 3},
     ("cardan_shaft", "double"): {},
     ("arm6", "single"): {"precision": "single"},
 }

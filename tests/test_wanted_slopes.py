@@ -10,6 +10,7 @@ import pytest
 from forging import edit
 from mechanisms import slider_crank
 from reports import wound
+from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, save, sensitivities
 from lagrange_casadi.cli import main
@@ -47,7 +48,7 @@ def two_drives():
     ("make", "asked"),
     [
         (slider_crank, {"t": SHORT, "xi": (0, 1, 4)}),
-        (slider_crank, {"t": SHORT, "xi": (0, 1, 4), "newton": 3, "backend": "vm"}),
+        (iterated, {"t": SHORT, "xi": (0, 1, 4), "newton": 3, "backend": "vm"}),
         (two_drives, {}),
         (two_drives, {"backend": "vm"}),
         (wound, {"backend": "c"}),

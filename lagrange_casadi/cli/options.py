@@ -159,7 +159,7 @@ _PRECISION = click.option(
     "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Precision of all arithmetic."
 )
 _NEWTON = click.option(
-    "--newton", type=int, metavar="STEPS", help="Close every loop by so many Newton steps from the instant before."
+    "--newton", type=int, metavar="STEPS", help="Close iterated loops by so many Newton steps from the instant before."
 )
 _TABLE = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
 _FLAGS = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")

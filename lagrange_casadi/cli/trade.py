@@ -66,8 +66,11 @@ def trade(
     _print(found)
     echo(f"wrote {out} and {figure}")
     if accuracy is not None:
-        best = found.fastest(accuracy)
-        echo(f"fastest within {accuracy:g}: {best.rung.options} ({1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e})")
+        for place, among in (("", found), (" in exported C", found.exported)):
+            if among.measurements:
+                best = among.fastest(accuracy)
+                cost = f"{1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e}"
+                echo(f"fastest within {accuracy:g}{place}: {best.rung.options} ({cost})")
 
 
 def _print(found: Trade) -> None:

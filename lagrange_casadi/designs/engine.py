@@ -103,7 +103,8 @@ class DesignEngine:
         rung = rung or Rung()
         if rung.table is not None:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
-        graph = derive(scene, wanted, iterate=rung.newton is not None)
+        graph = derive(scene, wanted)
+        rung.check(graph)
         times, values = DesignTimes(scene, timing or scene.timing(t)), scene.mechanism.values()
         checked_span(scene, times.timing, values)
         instants, even = times.default

@@ -41,7 +41,7 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Out
     ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``.
     """
     strength = (f"{_WANTED[output.group]}:{output.part}" for output in outputs if output.group in _WANTED)
-    graph = derive(scene, ["all", *strength], iterate=rung.newton is not None)
+    graph = derive(scene, ["all", *strength])
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
     followed = t if graph.newton is not None else t[some]
     table, provenance = run(graph, followed, p, Rung("vm", newton=rung.newton))

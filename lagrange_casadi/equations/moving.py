@@ -46,7 +46,7 @@ class Moving:
     swings: Mapping[str, Any]
 
     @classmethod
-    def of(cls, scene: Scene, want: Wanted, iterate: bool) -> Moving:
+    def of(cls, scene: Scene, want: Wanted) -> Moving:
         """Assemble the mechanism, and solve its loops."""
         mechanism, tree = scene.mechanism, span(scene.guided, scene.laws)
         borne = needed_reactions(mechanism, want.reactions, want.sections)
@@ -56,7 +56,7 @@ class Moving:
         values = list(mechanism.values(scene.assembly).values())
         first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
         start = Start(scene.span[0], first, values)
-        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start, iterate=iterate)
+        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
         solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
         return cls(scene, want, body, driven, motion, start, solved, swings)
 

@@ -99,10 +99,6 @@ class SceneGraph(Graphs):
         """Whether the loops that stand under the name of a closure are iterated."""
         return self.newton is not None and closure in self.newton.names
 
-    def follows(self, closure: str) -> bool:
-        """Whether iteration goes through the loop that stands under the name of a closure, and may leave its branch."""
-        return self.newton is not None and f"'{closure}'" in self.newton.joints
-
     @property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""

@@ -28,8 +28,6 @@ from .program import program
 from .slopes import FUNCTION, check_rung, exported_slopes
 from .source import Source
 
-_ENOUGH = 8
-
 
 def sourced(
     scene: Scene, name: str, parameters: Mapping[str, float] | None, wanted: Sequence[str] | None, rung: Rung, largest: int
@@ -50,22 +48,22 @@ def sourced(
     precision, newton, table = rung.precision, rung.newton, rung.table
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
-    scene = assembled(scene, values, wanted, iterate=newton is not None)
-    graph = derive(scene, wanted, iterate=newton is not None)
+    scene = assembled(scene, values, wanted)
+    graph = derive(scene, wanted)
+    rung.check(graph)
     if not graph.driven:
         raise DeclarationError(f"export: '{scene.mechanism.name}' has no drive, and C without inputs computes nothing; evaluate it")
-    # What rounding alone makes of it: all steps that loops want, and no table.
-    enough = None if newton is None else max(newton, _ENOUGH)
     checked_span(scene, scene.timing(), values)
     instants = scene.instants(scene.timing(), values).t
     whole, (graph, left_open) = graph, determinate(graph, instants, p, telling=table is None)
     # What elasticity tells is in the graph whole, or not at all.
     gives = scene.elastic and not left_open
-    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough, elastic=gives)
+    # What rounding alone makes of it: all steps that loops want, and no table.
+    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", elastic=gives)
     if exact.failed:
         raise CertificateError(f"cannot export {name}: {failure(exact)}")
     solution = exact
-    if newton != enough or table is not None:
+    if newton is not None or table is not None:
         # It is held to the exact one, and as far off as that was asked for.
         words: dict[str, Any] = {"parameters": values, "wanted": wanted, "newton": newton, "table": table}
         solution = evaluate(scene, **words, backend="vm", certificate=False, elastic=gives)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from ..arguments import Within
 from ..arithmetic.compensated import PRECISIONS, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
+
+if TYPE_CHECKING:
+    from ..equations.scene_graph import SceneGraph
 
 Backend = Literal["auto", "lanes", "c", "vm"]
 BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
@@ -33,9 +36,8 @@ class Rung:
         ``double``, or ``single``: then no operation is on doubles. Phases are kept in pairs of numbers, so that many turns cost no
         digits.
     newton
-        None solves loops in closed form where there is one, and iterates the others until they are closed. A number, at most
-        1000, takes exactly so many steps of Newton's method for every loop, from the instant before; at the first instant every
-        loop is closed.
+        Of loops that have no closed form: None iterates them until they are closed. A number, at most 1000, takes exactly so many
+        steps of Newton's method, from the instant before; at the first instant they are closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags
@@ -75,6 +77,14 @@ class Rung:
             raise DeclarationError("backend 'vm' computes in doubles only; precision 'single' needs lanes or c")
         if self.backend == "vm" and words:
             raise DeclarationError(f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c")
+
+    def check(self, graph: SceneGraph) -> None:
+        """Raise :class:`DeclarationError` where a graph has nothing that the rung chooses."""
+        if self.newton is not None and graph.newton is None:
+            raise DeclarationError(
+                f"newton: no loop of '{graph.scene.mechanism.name}' is iterated; leave newton out: "
+                "closed forms are exact and faster"
+            )
 
     @property
     def options(self) -> str:

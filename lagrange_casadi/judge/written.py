@@ -16,6 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
+from ..system.symbolic import symbolic
 from .touching import Touch, touches_of
 
 
@@ -54,6 +55,7 @@ class Written:
         return np.asarray(self.slopes(places, rates, t[None]).full())
 
 
+@symbolic
 def written(mechanism: Mechanism, values: Mapping[str, float]) -> tuple[Written, ...]:
     """All constraints and rows of a mechanism, for values of its parameters."""
     given = [

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic.compensated import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.density import Array
 from ..declare.scene import Scene
@@ -42,10 +43,11 @@ _NIL = 1e-9
 _LEAST = 2e-3
 
 COMPILED = (
-    *(Rung(backend, precision) for precision in ("double", "single") for backend in ("lanes", "c")),
+    *(Rung(backend, precision) for precision in PRECISIONS for backend in ("lanes", "c")),
     *(Rung("c", flags=flags) for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")),
     Rung("lanes", flags="-ffast-math"),
-    *(Rung("lanes", newton=steps) for steps in (1, 2, 3)),
+    *(Rung(backend, precision, newton=1) for precision in PRECISIONS for backend in ("lanes", "c")),
+    *(Rung(backend, newton=2) for backend in ("lanes", "c")),
     *(Rung("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
     *(Rung("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
 )
@@ -91,6 +93,11 @@ class Trade:
                 found.append(one)
         return tuple(found)
 
+    @property
+    def exported(self) -> Trade:
+        """The same of what exported C can be: one instant at a time, by a compiler's usual flags."""
+        return replace(self, measurements=tuple(one for one in self.measurements if one.rung.backend == "c" and not one.rung.flags))
+
     def fastest(self, accuracy: float) -> Measurement:
         """The fastest rung whose largest error is at most ``accuracy``, relative to the peak.
 
@@ -133,17 +140,16 @@ def trade(
     values = np.array(list(told.values()))
     times = scene.instants(scene.timing(t, over), told).t
     scene = assembled(scene, told, wanted)
-    graphs = {iterate: derive(scene, wanted, iterate=iterate) for iterate in (False, True)}
+    graph = derive(scene, wanted)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
-    truth = _Truth(graphs[False], times, compared, values)
+    truth = _Truth(graph, times, compared, values)
     refused: dict[str, str] = {}
     works: dict[Rung, tuple[Callable[[], Any], int]] = {}
     found: dict[Rung, tuple[float, float, str, str]] = {}
     for rung in rungs:
         progress(rung)
-        if _same(rung, graphs):
+        if rung.newton is not None and graph.newton is None:
             continue
-        graph = graphs[rung.newton is not None]
         try:
             evaluated, _ = columns(graph, times, values, rung, 1)
             if unfinished(graph, evaluated).any():
@@ -209,11 +215,6 @@ def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
     return {
         unit + per: size * rate**power for unit, size in units for power, per in enumerate(("", "/s", "/s^2")) if unit + per != "1"
     }
-
-
-def _same(rung: Rung, graphs: Mapping[bool, SceneGraph]) -> bool:
-    """Whether a rung of Newton steps is no other than the default, for want of loops."""
-    return rung.newton is not None and graphs[True].newton is None
 
 
 def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:

@@ -146,7 +146,7 @@ class Plan:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
-        task = Task(names, scene.timing(t, over), ratios, keep, rung, _assembly(scene, designs, values, names, rung))
+        task = Task(names, scene.timing(t, over), ratios, keep, rung, _assembly(scene, designs, values, names))
         scene = task.scene(scene)
         harvest = task.harvest(scene)
         largest = max(harvest.columns, key=lambda column: column.width)
@@ -238,22 +238,19 @@ class Plan:
         return told
 
 
-def _assembly(
-    scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str], rung: Rung
-) -> tuple[tuple[str, float], ...]:
+def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> tuple[tuple[str, float], ...]:
     """Parameters to assemble a scene with: none where its own serve, else those of the first of some designs that can be assembled.
 
     Raises what :func:`.derive` does for the scene's own where there is none.
     """
-    iterate = rung.newton is not None
     try:
-        derive(scene, wanted, iterate=iterate)
+        derive(scene, wanted)
     except (AssemblyError, MobilityError):
         for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
             row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
             try:
                 tried = dataclasses.replace(scene, assembly={**values, **row})
-                derive(tried, wanted, iterate=iterate)
+                derive(tried, wanted)
             except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tuple(tried.assembly.items())
