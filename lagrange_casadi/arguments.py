@@ -384,6 +384,11 @@ def _is_whole(value: object) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
 
 
+def _is_small(value: object) -> bool:
+    """Whether it is one of Python's own whole numbers, and as a double the same: it stays whole, as a count may be told by it."""
+    return type(value) is int and abs(value) < 2**53
+
+
 def _double(value: Any) -> float | None:
     """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and symbols."""
     if isinstance(value, ca.SX | ca.DM):
@@ -400,7 +405,7 @@ _SIMPLE: dict[type, _Kind] = {
     str: _if("a text", lambda value: isinstance(value, str)),
     bool: _Kind("True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE),
     int: _Kind("a whole number", lambda value: int(value) if _is_whole(value) else _NONE),
-    float: _Kind("a number", lambda value: _NONE if (found := _double(value)) is None else found),
+    float: _Kind("a number", lambda value: _NONE if (found := _double(value)) is None else value if _is_small(value) else found),
     Path: _if("a path", _is_path),
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]
