@@ -51,7 +51,7 @@ class Motor:
     rated_speed: Positive
     peak_torque: NotNegative
     max_speed: Positive
-    inertia: Positive
+    inertia: NotNegative
     knee_speed: NotNegative | None = None
     end_torque: NotNegative | None = None
     time_constant: float = math.inf
