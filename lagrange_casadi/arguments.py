@@ -385,8 +385,8 @@ def _is_whole(value: object) -> bool:
 
 
 def _is_small(value: object) -> bool:
-    """Whether it is one of Python's own whole numbers, and as a double the same: it stays whole, as a count may be told by it."""
-    return type(value) is int and abs(value) < 2**53
+    """Whether it is one of Python's own whole numbers, of 64 bits: it stays whole, for it may be a count."""
+    return type(value) is int and abs(value) < 2**63
 
 
 def _double(value: Any) -> float | None:

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.quick
 WRONG = [
     ({"backend": "gpu"}, UnknownNameError, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
     ({"precision": "half"}, UnknownNameError, "unknown precision 'half'; valid: double, single"),
-    ({"newton": 0}, DeclarationError, "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got 0"),
+    ({"newton": 0}, DeclarationError, "newton: expected a whole number from 1 to 1000, got 0"),
     (
         {"newton": 2.0},
         DeclarationError,
@@ -83,7 +83,7 @@ def test_a_rung_as_options(rung, options, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--newton", "0"], "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got 0"),
+        (["--newton", "0"], "newton: expected a whole number from 1 to 1000, got 0"),
         (["--newton", "two"], "Invalid value for '--newton': 'two' is not a valid integer"),
         (["--table", "3"], "table: expected a number of nodes, at least 8, or an accuracy between 0 and 1, got 3"),
         (["--table", "2.5"], "an accuracy between 0 and 1, got 2.5"),

@@ -68,7 +68,7 @@ def test_the_front_and_the_fastest():
     ):
         found.fastest(1e-16)
     for wrong in (0.0, -1.0, float("nan")):
-        with pytest.raises(DeclarationError, match="accuracy: expected a number above 0"):
+        with pytest.raises(DeclarationError, match="accuracy: expected a finite number above 0"):
             found.fastest(wrong)
 
 
@@ -175,5 +175,5 @@ def test_a_wrong_name_is_said_before_anything_is_measured(words, tmp_path, monke
 def test_a_wrong_accuracy_is_said_before_anything_is_measured(accuracy, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     assert main(["trade", str(CASES / "slider_crank"), "--accuracy", accuracy]) == 2
-    assert capfd.readouterr().err.startswith("error: accuracy: expected a number above 0")
+    assert capfd.readouterr().err.startswith("error: accuracy: expected a finite number above 0")
     assert not list(tmp_path.iterdir())

@@ -57,9 +57,7 @@ class Rung:
             if name not in valid:
                 raise UnknownNameError(kind, str(name), valid)
         if self.newton is not None and (type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS):
-            raise DeclarationError(
-                f"newton: expected a number of steps, from 1 to {MOST_STEPS} (after some ten nothing changes), got {self.newton!r}"
-            )
+            raise DeclarationError(f"newton: expected a whole number from 1 to {MOST_STEPS}, got {self.newton!r}")
         if self.table is not None and not _tabulates(self.table):
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
