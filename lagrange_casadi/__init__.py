@@ -1,32 +1,32 @@
 """Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
 
-from .system import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
+from .base import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
 
 # isort: split
 from . import beams, bearings, density, figures, motion, strength
+from .base.symbolic import symbolic
 from .case import Case, load_case
 from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
 from .declare.scene import Scene
 from .declare.shaking import shaking
 from .declare.spatial import SpatialMechanism
-from .designs.prepared import Prepared, prepare
 from .elastic.vibration import vibration
 from .equations.derive import derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
-from .evaluate import evaluate
-from .export import export
+from .exports import export
 from .instants.holding import holding
 from .instants.solution import Peak, Solution
-from .optimise import Front, Optimum, optimise
 from .store.runs import check, load, save
-from .study.peaks import refine
-from .study.sensitivities import Sensitivities, sensitivities
-from .study.tolerances import tolerances
-from .study.tool import tool_deflection
-from .sweep import Sweep, best, read_designs, sweep
-from .system.symbolic import symbolic
+from .studies.designs.prepared import Prepared, prepare
+from .studies.evaluate import evaluate
+from .studies.optimise import Front, Optimum, optimise
+from .studies.peaks import refine
+from .studies.sensitivities import Sensitivities, sensitivities
+from .studies.sweep import Sweep, best, read_designs, sweep
+from .studies.tolerances import tolerances
+from .studies.tool import tool_deflection
 from .version import __version__
 
 __all__ = [

@@ -20,9 +20,9 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, TypeVar
 import casadi as ca
 import numpy as np
 
+from .base.numerals import real
+from .base.room import MOST_THREADS
 from .errors import DeclarationError, NumberError, shown
-from .system.numerals import real
-from .system.room import MOST_THREADS
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.radians(1.0), "turn": math.tau},

@@ -15,9 +15,9 @@ from truth import true_errors, truth
 
 from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.quantities import Output
 
 FACTOR = 10.0
 MOST = 0.8

@@ -18,13 +18,13 @@ from stepped import iterated, pinned
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.judge.accuracy import explained
 from lagrange_casadi.judge.certificate import LOOSE, TOLERANCE, certify, tolerance
-from lagrange_casadi.quantities import Output
 
 ITERATED = ("beam_pump", "rrr3")
 """Of the planar cases."""
@@ -238,7 +238,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "derive", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.evaluate"], "derive", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4

@@ -9,7 +9,7 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.peaks import refine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

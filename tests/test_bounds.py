@@ -12,11 +12,11 @@ from mechanisms import slider_crank
 from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
+from lagrange_casadi.base import room
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.sweep import plan, workers
-from lagrange_casadi.system import room
+from lagrange_casadi.studies.sweep import plan, workers
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -116,7 +116,7 @@ def test_points_are_refused_before_they_are_made(monkeypatch):
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
-    module = sys.modules["lagrange_casadi.evaluate"]
+    module = sys.modules["lagrange_casadi.studies.evaluate"]
     monkeypatch.setattr(module, "_LONG", 1e-9)
     with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
         evaluate(iterated(), t=(0, 1, 1001), newton=5)

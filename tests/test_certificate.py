@@ -11,9 +11,9 @@ from conftest import CASES
 from mechanisms import far, ladder, parallelogram, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, save
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
 from lagrange_casadi.instants import refusal
@@ -22,8 +22,8 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.solution import Solution
 from lagrange_casadi.judge.certificate import LOOSE, certify
 from lagrange_casadi.judge.written import written
-from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check, load
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -13,12 +13,12 @@ from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.codegen import library
-from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.designs.reduction import KeptOutputs, stages_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
+from lagrange_casadi.studies.peaks import refine
 
 INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")

@@ -9,9 +9,9 @@ from mechanisms import press, slider_crank, uneven
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 TURN = math.tau
 ASKED = {
@@ -74,7 +74,7 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
     p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
     designs = DesignEngine.of(scene, rung=rung)
     whole = designs.evaluate(p, threads=1, histories=True)
-    monkeypatch.setattr("lagrange_casadi.designs.engine._PIECE", 5 * 41)
+    monkeypatch.setattr("lagrange_casadi.studies.designs.engine._PIECE", 5 * 41)
     for threads in (1, 3):
         other = designs.evaluate(p, threads=threads, histories=True)
         for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):

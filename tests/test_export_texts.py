@@ -18,8 +18,8 @@ from stepped import iterated
 from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.export import naming, text
-from lagrange_casadi.sweep.sheet import label
+from lagrange_casadi.portable import naming, text
+from lagrange_casadi.studies.sweep.sheet import label
 
 WICKED = [
     'x"),fopen("PWNED","w"),printf("',

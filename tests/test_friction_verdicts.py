@@ -9,13 +9,13 @@ from compiled import told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine, sweep
 from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
-from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.sweep.checking import check_sweep
 
 WEIGHT, ARM = 50.0, 0.2
 every = pytest.mark.parametrize("backend", ["lanes", "c", "vm"])

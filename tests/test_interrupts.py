@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 import sweeps
 
+from lagrange_casadi.base.interrupts import interrupts
 from lagrange_casadi.cli import progress
-from lagrange_casadi.system.interrupts import interrupts
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 LINE = "error: interrupted; nothing was left half-written\n"

@@ -14,7 +14,7 @@ from random_mechanisms import draw
 from random_verdict import compare, is_regular, judge
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.quantities import Output
+from lagrange_casadi.base.quantities import Output
 
 QUICK, LONG = range(10), range(10, 1000)
 REFUSED = 0.02

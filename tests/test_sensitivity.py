@@ -12,8 +12,8 @@ from precise import precise
 from truth import truth
 
 from lagrange_casadi import derive, load_case
+from lagrange_casadi.base.quantities import FORCES, Output
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.quantities import FORCES, Output
 from lagrange_casadi.sensitivity.curvatures import Curvatures, unit_ways
 from lagrange_casadi.sensitivity.series import at_instants
 from lagrange_casadi.sensitivity.slopes import Slopes

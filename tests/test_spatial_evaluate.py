@@ -10,7 +10,7 @@ from spatial_oracle import REACTION, SECTION
 from spatial_solutions import RATIOS, evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, load_case, motion, save
-from lagrange_casadi.quantities import Output
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.store.runs import check
 
 pytestmark = pytest.mark.usefixtures("interpreted")

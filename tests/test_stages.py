@@ -16,6 +16,7 @@ from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
@@ -23,7 +24,6 @@ from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.reference import reference
-from lagrange_casadi.quantities import Output
 
 DOUBLE = [Rung("vm"), Rung("c"), Rung("lanes")]
 BOUNDS = {"jansen_leg": 1e-5, "excavator": 3e-5, "cardan_shaft": 5e-6, "five_link_suspension": 1e-5}

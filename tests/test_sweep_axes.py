@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.sweep import Grid, Listed, Range, Values
-from lagrange_casadi.sweep.axes import check_designs, counted, size_of
+from lagrange_casadi.studies.sweep import Grid, Listed, Range, Values
+from lagrange_casadi.studies.sweep.axes import check_designs, counted, size_of
 
 pytestmark = pytest.mark.quick
 

@@ -9,8 +9,8 @@ import sweeps
 
 from lagrange_casadi import Mechanism
 from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, UnknownNameError
-from lagrange_casadi.sweep import read_designs
-from lagrange_casadi.sweep.axes import check_designs
+from lagrange_casadi.studies.sweep import read_designs
+from lagrange_casadi.studies.sweep.axes import check_designs
 
 pytestmark = pytest.mark.quick
 

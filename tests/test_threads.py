@@ -37,9 +37,9 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.declare.motion import samples
-from lagrange_casadi.draw import pictures
 from lagrange_casadi.figures import TimePlot
-from lagrange_casadi.sweep.plots import Peaks, draw_sweep
+from lagrange_casadi.shapes import pictures
+from lagrange_casadi.studies.sweep.plots import Peaks, draw_sweep
 
 
 def jobs(threads, folder, cache):

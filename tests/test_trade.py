@@ -14,7 +14,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AccuracyError, DeclarationError, StoreError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.trade import COMPARED, RUNGS, Measurement, Trade, trade
+from lagrange_casadi.studies.trade import COMPARED, RUNGS, Measurement, Trade, trade
 
 CASES = Path(__file__).parent.parent / "cases"
 SOME = (Rung("c"), Rung("vm"), Rung("c", "single"), Rung("lanes", newton=1), Rung("lanes", newton=2), Rung("c", table=1e-6))
@@ -118,8 +118,8 @@ def test_graphs_that_call_functions_have_no_reference():
 @pytest.mark.long
 def test_the_command(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("lagrange_casadi.study.trade.RUNGS", RUNGS)
-    monkeypatch.setattr("lagrange_casadi.study.trade.ROUNDS", 1)
+    monkeypatch.setattr("lagrange_casadi.studies.trade.RUNGS", RUNGS)
+    monkeypatch.setattr("lagrange_casadi.studies.trade.ROUNDS", 1)
     arguments = ["trade", str(CASES / "slider_crank"), "--want", "effort", "--t", "0:0.08:201"]
     assert main([*arguments, "--accuracy", "1e-9"]) == 0
     out, err = capfd.readouterr()

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments import public
-from ..draw.places import drawn_spots
-from ..draw.shapes import shapes
+from ..base.publish import replacing, writing
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..report.contents import require_poses
-from ..system.publish import replacing, writing
+from ..shapes.places import drawn_spots
+from ..shapes.shapes import shapes
 from .body_lines import mechanism, rim
 from .drawn import Picture
 from .forces import Forces, arrow_things, forces_of, ribbon_things

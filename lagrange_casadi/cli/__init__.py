@@ -15,9 +15,9 @@ from typing import Any
 
 import click
 
+from ..base.interrupts import SENTENCE, STATUS, interrupts
+from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
-from ..system.interrupts import SENTENCE, STATUS, interrupts
-from ..system.standard_streams import lead_nowhere
 from ..version import __version__
 from .animate import animate
 from .best import best

@@ -8,16 +8,16 @@ from pathlib import Path
 import click
 
 from ..animation import Film, check_ending, write_animation
+from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..evaluate import evaluate
 from ..judge.certificate import failure
 from ..store.runs import load
 from ..store.untrusted import told_as
-from ..system.publish import check_writable
+from ..studies.evaluate import evaluate
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by
 from .options import over as by_drive

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import check_writable
+from ..base.streams import is_standard_output
 from ..errors import NoDesignError
-from ..sweep import Sweep
-from ..sweep import best as find
-from ..sweep.axes import DESIGN, counted, grouped
-from ..sweep.best import missed, tally
-from ..system.publish import check_writable
-from ..system.streams import is_standard_output
+from ..studies.sweep import Sweep
+from ..studies.sweep import best as find
+from ..studies.sweep.axes import DESIGN, counted, grouped
+from ..studies.sweep.best import missed, tally
 from .echo import echo
 from .options import PATH
 from .rows import show, write_csv

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
+from ..base import cache as kept
 from ..errors import StoreError
-from ..sweep.axes import counted
-from ..system import cache as kept
+from ..studies.sweep.axes import counted
 from .echo import echo
 
 

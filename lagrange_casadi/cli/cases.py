@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import filling
 from ..errors import PathError
 from ..shipped_cases import shipped_cases
-from ..system.publish import filling
 from .echo import echo
 from .options import PATH
 

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import click
 
+from ..base.room import memory
 from ..codegen import programs
 from ..errors import LagrangeCasadiError, PathError, StoreError, one_line
-from ..optimise.file import check_optimum, is_optimum
 from ..store import runs as store
 from ..store.untrusted import parsed
-from ..sweep import is_sweep
-from ..sweep.checking import check_sweep, progress, unfinished
-from ..system.room import memory
+from ..studies.optimise.file import check_optimum, is_optimum
+from ..studies.sweep import is_sweep
+from ..studies.sweep.checking import check_sweep, progress, unfinished
 from .echo import echo
 from .options import PATH
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from ..base.publish import writing
 from ..declare.scene import Scene
-from ..draw.figures import Spec, default_figures, draw
-from ..draw.index import write_index
-from ..draw.postures import draw_postures
 from ..errors import LagrangeCasadiError, PostureError
+from ..figures.figures import Spec, default_figures, draw
+from ..figures.postures import draw_postures
 from ..instants.solution import Solution
-from ..system.publish import writing
+from ..shapes.index import write_index
 from .echo import echo
 
 

@@ -12,16 +12,16 @@ import click
 from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, read_motors, select
 from ..actuators.duty import slides
 from ..actuators.plot import check_picture
+from ..base.arrays import Array
+from ..base.numerals import real
 from ..case import load_case
-from ..declare.density import Array
 from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
-from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
-from ..system.numerals import real
+from ..studies.evaluate import evaluate
 from .echo import echo
 from .options import PATH, instants, length, parameters, separated, settings_by
 from .options import over as by_drive

@@ -10,7 +10,7 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..export import export as write
+from ..exports import export as write
 from .echo import echo
 from .options import PATH, arithmetic, parameters, settings_by, wanted
 

@@ -16,10 +16,10 @@ from ..equations.derive import derive
 from ..equations.described import described
 from ..instants.solution import Solution
 from ..store import runs as store
-from ..sweep import Sweep, is_sweep
-from ..sweep.axes import counted
-from ..sweep.checking import progress, unfinished
-from ..sweep.instant_axis import in_words
+from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.axes import counted
+from ..studies.sweep.checking import progress, unfinished
+from ..studies.sweep.instant_axis import in_words
 from .echo import echo
 from .options import PATH, wanted
 from .report import asked_line, peak_line

@@ -13,12 +13,12 @@ import click
 
 from ..arguments import number, typed
 from ..arithmetic.compensated import PRECISIONS
+from ..base.numerals import real, whole
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS
-from ..sweep import Axis, Range, Values
-from ..system.numerals import real, whole
+from ..studies.sweep import Axis, Range, Values
 
 EVEN_POINTS = "START:STOP:COUNT"
 OVER = "JOINT=START:STOP:COUNT"

@@ -9,15 +9,15 @@ import click
 from tqdm import tqdm
 
 from ..arguments import typed
-from ..draw.index import MANIFEST, NAME, write_index
-from ..draw.kept import parse_specs
+from ..base.publish import check_writable
 from ..errors import NoDesignError
+from ..shapes.index import MANIFEST, NAME, write_index
+from ..shapes.kept import parse_specs
 from ..store.runs import figure_specs, load
 from ..store.untrusted import told_as
-from ..sweep import Sweep, is_sweep
-from ..sweep.default_figures import default_plots
-from ..sweep.plots import Spec, draw_sweep
-from ..system.publish import check_writable
+from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.default_figures import default_plots
+from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import PATH, place

@@ -8,21 +8,21 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
-from ..evaluate import evaluate
-from ..export.wasm import check_zig
 from ..instants.solution import Solution
 from ..judge.certificate import failure
+from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
+from ..report.of_sweep import is_of, write_sweep_report
 from ..store.runs import load
 from ..store.untrusted import told_as
-from ..sweep import Sweep, is_sweep
-from ..sweep.page import is_of, write_sweep_report
-from ..system.publish import check_writable
+from ..studies.evaluate import evaluate
+from ..studies.sweep import Sweep, is_sweep
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive

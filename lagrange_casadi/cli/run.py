@@ -12,24 +12,24 @@ import click
 import numpy as np
 
 from ..arithmetic.compensated import Precision
+from ..base.publish import check_writable
+from ..base.room import MOST_THREADS
+from ..base.streams import is_standard_output
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene, fitted_of, strength_of
 from ..declare.times import Over, Timing
-from ..draw.index import MANIFEST
-from ..draw.kept import dump_specs
 from ..errors import CertificateError
-from ..evaluate import evaluate
 from ..instants.frames import TIME, columns
 from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
+from ..shapes.index import MANIFEST
+from ..shapes.kept import dump_specs
 from ..store.runs import check_target, save
-from ..study.peaks import forces, refine, resultants
-from ..system.publish import check_writable
-from ..system.room import MOST_THREADS
-from ..system.streams import is_standard_output
+from ..studies.evaluate import evaluate
+from ..studies.peaks import forces, refine, resultants
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_lines

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from ..base.numerals import real
 from ..beams.profiles import read_profiles
 from ..case import load_case
 from ..declare.even_points import EvenPoints
@@ -15,8 +16,7 @@ from ..declare.times import Over
 from ..strength.critical_plane import FINDLEY
 from ..strength.fatigue import CRITERIA
 from ..strength.stress import KINDS
-from ..study.sizing import Sized, size
-from ..system.numerals import real
+from ..studies.sizing import Sized, size
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by
 from .options import over as by_drive

@@ -9,18 +9,18 @@ from pathlib import Path
 import click
 
 from ..arithmetic.compensated import Precision
+from ..base.room import MOST_THREADS
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..instants.refusal import Status
 from ..instants.rung import Backend
-from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
-from ..sweep import sweep as carry_out
-from ..sweep.axes import counted, grouped
-from ..sweep.resting import resting_note
-from ..sweep.turning import turning_note
-from ..system.room import MOST_THREADS
+from ..studies.sweep import KEEPS, Axis, Keep, Sweep, read_designs
+from ..studies.sweep import sweep as carry_out
+from ..studies.sweep.axes import counted, grouped
+from ..studies.sweep.resting import resting_note
+from ..studies.sweep.turning import turning_note
 from .echo import echo
 from .options import AXIS, EVEN_POINTS, PATH, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
 from .options import over as by_drive

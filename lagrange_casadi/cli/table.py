@@ -9,14 +9,14 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import check_writable
+from ..base.streams import is_standard_output
 from ..errors import NoDesignError
-from ..sweep import Sweep, chosen
-from ..sweep.axes import counted, grouped
-from ..sweep.best import conditions_in, missed, tally
-from ..sweep.columns import STATUS
-from ..sweep.instant_axis import in_words
-from ..system.publish import check_writable
-from ..system.streams import is_standard_output
+from ..studies.sweep import Sweep, chosen
+from ..studies.sweep.axes import counted, grouped
+from ..studies.sweep.best import conditions_in, missed, tally
+from ..studies.sweep.columns import STATUS
+from ..studies.sweep.instant_axis import in_words
 from .echo import echo
 from .options import PATH
 from .rows import show, write_csv

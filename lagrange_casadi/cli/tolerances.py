@@ -10,14 +10,14 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import check_writable, writing
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS, Backend
-from ..study.tolerances import SAMPLES, Spreads
-from ..study.tolerances import tolerances as spreads_of
-from ..system.publish import check_writable, writing
+from ..studies.tolerances import SAMPLES, Spreads
+from ..studies.tolerances import tolerances as spreads_of
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive

@@ -10,16 +10,16 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
+from ..base.publish import check_writable, writing
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..draw.pictures import PICTURES
-from ..draw.trade_plot import draw_trade
 from ..errors import DeclarationError
+from ..figures.trade_plot import draw_trade
 from ..instants.rung import Rung
-from ..study.trade import RUNGS, Trade
-from ..study.trade import trade as measure
-from ..system.publish import check_writable, writing
+from ..shapes.pictures import PICTURES
+from ..studies.trade import RUNGS, Trade
+from ..studies.trade import trade as measure
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive

@@ -17,9 +17,9 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
+from ..base.symbolic import symbolic
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
-from ..system.symbolic import symbolic
 from .calls import Call
 from .split import split
 from .stages import Stages, plain

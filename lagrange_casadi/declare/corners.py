@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..system.symbolic import Graphs, symbolic
-from .density import Array
+from ..base.arrays import Array
+from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
 from .mechanism import Mechanism
 from .motion import smooth_laws

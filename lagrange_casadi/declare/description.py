@@ -10,9 +10,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.symbolic import Graphs, symbolic
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
-from ..system.symbolic import Graphs, symbolic
 from .density import Density, NumericDensity
 from .fitted import told_parts
 from .joints import Joint

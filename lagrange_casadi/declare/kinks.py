@@ -22,8 +22,8 @@ import numpy.typing as npt
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
+from ..base.arrays import Array
 from ..errors import DeclarationError
-from .density import Array
 from .limits_beside import Flags, Side, between, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9

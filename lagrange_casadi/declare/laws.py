@@ -9,8 +9,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.symbolic import Graphs, symbolic
 from ..errors import DeclarationError
-from ..system.symbolic import Graphs, symbolic
 from .curves import curve
 from .motion import Motion, motion_function
 

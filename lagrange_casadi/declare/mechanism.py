@@ -14,10 +14,10 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import Number, public
+from ..base.quantities import Kinds
+from ..base.symbolic import Graphs, symbolic
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from ..quantities import Kinds
-from ..system.symbolic import Graphs, symbolic
 from .constraints import constraint, row
 from .density import Density
 from .expressions import bound, check_line, check_name, value_of

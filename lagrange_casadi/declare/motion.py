@@ -15,8 +15,8 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import public
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
-from ..system.symbolic import symbolic
 from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import coordinates, scalar, symbols_of, told

@@ -11,9 +11,9 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..base.numerals import readable
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError
-from ..system.numerals import readable
-from ..system.symbolic import symbolic
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression

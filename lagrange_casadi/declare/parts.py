@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ..arguments import Symbolic, in_words, number, public
+from ..base.numerals import readable
 from ..beams.beam import Beam
 from ..errors import NumberError, ParameterError, shown
 from ..geometry.vectors import Expression as Expression
 from ..geometry.vectors import Vector as Vector
-from ..system.numerals import readable
 from .density import Density
 
 if TYPE_CHECKING:

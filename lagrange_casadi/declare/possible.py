@@ -14,10 +14,10 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
+from ..base.numerals import readable
+from ..base.symbolic import symbolic
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
-from ..system.numerals import readable
-from ..system.symbolic import symbolic
 from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends

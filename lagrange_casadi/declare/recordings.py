@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..arguments import UNITS, count, number, public
+from ..base.arrays import Array
+from ..base.csv_rows import read_rows
 from ..errors import DeclarationError, NumberError, UnknownNameError, one_line
-from ..system.csv_rows import read_rows
 from .curves import Curve, curve
-from .density import Array
 from .expressions import coordinates, scalar, symbols_of
 from .motion import Motion
 from .parts import Expression

@@ -12,9 +12,9 @@ from typing import Any, NoReturn
 
 from ..arguments import Outputs, number, public, texts, within
 from ..arithmetic.compensated import Precision
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import ANGLE, LENGTH
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
-from ..system.symbolic import Graphs, symbolic
-from ..tables import ANGLE, LENGTH
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked

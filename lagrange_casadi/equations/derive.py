@@ -11,14 +11,14 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Outputs, public
+from ..base import cache
+from ..base.quantities import Output
+from ..base.symbolic import symbolic
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
 from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
-from ..quantities import Output
-from ..system import cache
-from ..system.symbolic import symbolic
 from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections

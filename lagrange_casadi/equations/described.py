@@ -6,9 +6,9 @@ import functools
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ..base.symbolic import symbolic
 from ..declare.description import Description, Template
 from ..declare.scene import Scene
-from ..system.symbolic import symbolic
 from .tree import span
 
 

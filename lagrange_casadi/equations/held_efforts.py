@@ -8,9 +8,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene, Wanted
-from ..quantities import Output
-from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column
 from .meshes import transmissions_of
 from .mobility import internal_forces

@@ -10,14 +10,15 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.quantities import Kinds
+from ..base.symbolic import Graphs, symbolic
 from ..beams.material import Material
-from ..declare.density import Array, Density
+from ..declare.density import Density
 from ..declare.description import Description, Template
 from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
-from ..quantities import Kinds
-from ..system.symbolic import Graphs, symbolic
 from .described import template
 from .gaps import extent
 

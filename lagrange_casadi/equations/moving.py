@@ -9,14 +9,14 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Kinds, Output, force_members
+from ..base.tables import ANGLE
 from ..declare.ends import beyond_ends
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from ..geometry.vectors import ZERO, dot
-from ..quantities import Kinds, Output, force_members
-from ..tables import ANGLE
 from . import kinematics
 from .assembly import assemble
 from .bars import across_bar

@@ -8,13 +8,13 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.compensated import Precision
+from ..base.quantities import Output
+from ..base.tables import Table, table_of
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.parts import Link
 from ..declare.results import Asked
 from ..errors import DeclarationError
-from ..quantities import Output
-from ..tables import Table, table_of
 from .checks import Column
 from .kinematics import Kinematics
 from .mobility import stations_of

@@ -11,11 +11,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output, law_members, station_members
+from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
-from ..quantities import Output, law_members, station_members
-from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
 from .mobility import stations_of

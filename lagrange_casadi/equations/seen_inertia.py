@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..base.quantities import Output
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
-from ..quantities import Output
 from . import kinematics
 from .assembly import assemble
 from .checks import Column

@@ -19,11 +19,11 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.tables import Terms, table_of
 from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
-from ..quantities import Output
-from ..tables import Terms, table_of
 from .checks import Column
 from .multibody import Multibody
 

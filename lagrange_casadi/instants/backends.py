@@ -16,12 +16,12 @@ import numpy.typing as npt
 
 from .. import codegen
 from ..arithmetic.compensated import DTYPES
+from ..base.arrays import Array
+from ..base.room import cores
 from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from ..codegen.stages import Stages, compensated, plain, turns_many
-from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..errors import CompilerError, warn
-from ..system.room import cores
 from ..version import __version__
 from . import grids
 from .cycle_table import CycleTable

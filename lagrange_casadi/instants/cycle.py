@@ -15,14 +15,14 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
+from ..base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..system.symbolic import symbolic
-from ..tables import ANGLE, FORCE, LENGTH, MOMENT
 
 TURNS = 4
 """Of the longest period."""

@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.room import require
 from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
-from ..declare.density import Array
 from ..declare.limits import END
 from ..errors import CompilerError, DeclarationError, warn
-from ..system.room import require
 
 WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""

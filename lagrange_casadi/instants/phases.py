@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.interpret import followable, interpret, numpy_arithmetic
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 
 _TURN = np.longdouble("6.283185307179586476925286766559005768")
 

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES, Precision
+from ..base.arrays import Array
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
-from ..declare.density import Array
 from ..declare.ends import share_beyond
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from ..arithmetic.compensated import ROUNDING, Precision
+from ..base.quantities import Output
+from ..base.tables import MOMENT
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import REACH
-from ..quantities import Output
-from ..tables import MOMENT
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""

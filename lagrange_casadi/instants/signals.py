@@ -10,17 +10,18 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import table_of
 from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
-from ..declare.density import Array, NumericDensity
+from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks
 from ..summits.sharpness import Sharpness, bent
-from ..tables import table_of
 from .backends import follow
 from .laws import law_of
 from .sizes import size_of

@@ -14,14 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import Table
 from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError, shown
-from ..quantities import Output
-from ..tables import Table
 from .derivatives import Derivatives
 from .elasticity import Elasticity
 from .frames import dataset, frame
@@ -77,7 +77,7 @@ class Peak:
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``outputs`` holds every array over time, each of shape (t,); :mod:`.tables` says what each means, its unit and its sign.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.base.tables` says what each means, its unit and its sign.
     ``t`` are the instants [s], ``xi`` the ratios xi/l of the section grids. ``left_open`` are outputs that equilibrium does not
     determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead

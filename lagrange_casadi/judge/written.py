@@ -13,10 +13,10 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
-from ..system.symbolic import symbolic
 from .touching import Touch, touches_of
 
 

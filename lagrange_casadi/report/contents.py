@@ -9,11 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import Description
-from ..draw.shapes import joint_shapes, load_shapes, path_spots, shapes
-from ..draw.solid import COLOURS
-from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.derivatives import derivatives
 from ..instants.held import held_outputs
@@ -21,7 +19,9 @@ from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
-from ..quantities import Output
+from ..shapes.shapes import joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.solid import COLOURS
+from ..shapes.views import upright
 from ..strength.parts import looked
 from .arrays import Arrays, finite
 from .instants import shown_instants

@@ -9,9 +9,9 @@ from html import escape
 from ..declare.scene import Scene
 from ..declare.times import span_of
 from ..errors import DeclarationError, LagrangeCasadiError
-from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..instants.told import told
+from ..studies.evaluate import evaluate
 from .contents import require_poses
 from .page import page
 from .still import still

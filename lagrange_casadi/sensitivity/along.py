@@ -11,13 +11,13 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.tables import Terms, table_of
 from ..equations.checks import Column
 from ..equations.mobility import stations_of
 from ..equations.model_data import ModelData
 from ..equations.own import sight
 from ..equations.spreads import felt_along, spreads_of
-from ..quantities import Output
-from ..tables import Terms, table_of
 
 
 @dataclass(frozen=True, eq=False)

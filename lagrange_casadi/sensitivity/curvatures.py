@@ -16,11 +16,11 @@ import casadi as ca
 import numpy as np
 
 from .. import codegen
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
-from ..system.symbolic import symbolic
 from .batches import at_points
 from .points import PointFunction
 from .slopes import Numbers, Slopes

@@ -11,7 +11,7 @@ import itertools
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .slopes import AtPoints, Numbers, Slopes
 
 _NUDGE_T, _NUDGE_XI = 1e-3, 1e-3

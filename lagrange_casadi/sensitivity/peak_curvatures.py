@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .curvatures import Bends, Curvatures, unit_ways
 from .ends import implicit_bends
 from .peaks import PeakKind, PeakSlopes

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..summits.panels import SIDE, SPACING
 from ..summits.sharpness import Kind, Watch
 from .nearby import at_peaks, on_their_side

@@ -17,14 +17,14 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
 from ..equations.checks import Column
 from ..equations.model_data import ModelData
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 from ..summits.sharpness import Kind, Sharpness, Watch
-from ..system.symbolic import Graphs, symbolic
-from ..tables import table_of
 from .along import Along, Place
 
 SAME_PLACE = 1e-9

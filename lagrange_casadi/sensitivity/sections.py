@@ -7,9 +7,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.tables import table_of
 from ..equations.model_data import ModelData
-from ..quantities import Output
-from ..tables import table_of
 from .along import Along, Place
 
 

@@ -9,17 +9,17 @@ import casadi as ca
 import numpy as np
 
 from .. import codegen
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.room import require
+from ..base.symbolic import symbolic
 from ..codegen.stages import plain
-from ..declare.density import Array
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.laws import made_of
 from ..instants.rung import Rung
 from ..instants.solution import Solution
-from ..quantities import Output
-from ..system.room import require
-from ..system.symbolic import symbolic
 from .batches import at_points
 from .following import iterated
 from .sections import section_slopes

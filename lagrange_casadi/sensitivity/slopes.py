@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import codegen
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..codegen.stages import plain
-from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
-from ..quantities import Output
 from ..summits.sharpness import Sharpness
 from .following import iterated
 from .points import PointFunction

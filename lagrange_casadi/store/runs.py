@@ -21,7 +21,11 @@ import h5py
 import numpy as np
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
+from ..base.quantities import Output
+from ..base.seal import kind_of, seal
+from ..base.tables import ANGLE, CF, LENGTH, SPACE
 from ..declare.description import Description, check_places, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
@@ -32,10 +36,6 @@ from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..judge.certificate import LOOSE, blur, certify
-from ..quantities import Output
-from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
-from ..system.seal import kind_of, seal
-from ..tables import ANGLE, CF, LENGTH, SPACE
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
 from .panels import SIDE, SPACING, CurveSource, Panel, Samples, Summit, sides

@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
+from ..base.tables import LARGEST
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
-from ..system.symbolic import symbolic
-from ..tables import LARGEST
 
 
 class Kind(enum.IntEnum):
