@@ -238,7 +238,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.evaluate"], "derive", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.solving"], "derive", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4

@@ -60,7 +60,7 @@ def no_certificate(monkeypatch):
     def residuals(solution, *_):
         return {name: np.zeros(solution.t.size) for name in ("balance", "power", "closure", "ends")}
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.evaluate"], "residuals_of", residuals)
+    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.solving"], "residuals_of", residuals)
 
 
 def test_a_solution_names_its_quantities(solution):

@@ -20,7 +20,8 @@ from ..instants.determinacy import determinate
 from ..instants.from_table import drive_of, table_of
 from ..instants.rung import Rung
 from ..judge.certificate import failure
-from ..studies.evaluate import checked_span, evaluate
+from ..studies.evaluate import evaluate
+from ..studies.solving import checked_span
 from .contract import contract
 from .data import check_size
 from .golden import golden

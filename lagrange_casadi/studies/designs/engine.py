@@ -36,7 +36,7 @@ from ...sensitivity.curvatures import Curvatures
 from ...sensitivity.peaks import PeakSlopes
 from ...sensitivity.slopes import Slopes
 from ...summits.sharpness import bent, with_watched
-from ..evaluate import checked_span, outputs_of
+from ..solving import checked_span, outputs_of
 from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of

@@ -24,7 +24,7 @@ from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ...judge.accuracy import estimate
 from ...judge.certificate import LOOSE, tolerance
-from ..evaluate import outputs_of, residuals_of
+from ..solving import outputs_of, residuals_of
 
 INSTANTS = 5
 _WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
