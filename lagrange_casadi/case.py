@@ -21,8 +21,8 @@ from .arguments import public
 from .declare.expressions import told
 from .declare.scene import Scene
 from .errors import CaseError, LagrangeCasadiError, shown
-from .figures.figures import Spec
 from .shapes.kept import dump_specs
+from .shapes.specs import Spec
 from .shipped_cases import shipped_cases
 
 

@@ -15,8 +15,7 @@ from ..arguments import public
 from ..base.publish import replacing, writing
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..report.contents import require_poses
-from ..shapes.places import drawn_spots
+from ..shapes.places import drawn_spots, require_poses
 from ..shapes.shapes import shapes
 from .body_lines import mechanism, rim
 from .drawn import Picture

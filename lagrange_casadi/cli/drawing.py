@@ -12,10 +12,11 @@ from tqdm import tqdm
 from ..base.publish import writing
 from ..declare.scene import Scene
 from ..errors import LagrangeCasadiError, PostureError
-from ..figures.figures import Spec, default_figures, draw
+from ..figures.figures import default_figures, draw
 from ..figures.postures import draw_postures
 from ..instants.solution import Solution
 from ..shapes.index import write_index
+from ..shapes.specs import Spec
 from .echo import echo
 
 

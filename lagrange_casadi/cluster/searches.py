@@ -49,6 +49,11 @@ class Workers:
             yield number, trail
 
 
+def searching(address: str, case: Case) -> Workers:
+    """The workers of the Dask scheduler at an address, for searches. Raises :class:`.DeclarationError` for what is no address."""
+    return Workers(Cluster(address, case), case)
+
+
 def _descend(sent: SentCase, question: bytes, words: Mapping[str, Any], errand: Errand) -> Trail:
     """On a worker: the way of an errand."""
     try:

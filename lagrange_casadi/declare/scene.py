@@ -15,6 +15,7 @@ from ..arithmetic.compensated import Precision
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import ANGLE, LENGTH
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
+from ..methods import method
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked
@@ -319,9 +320,8 @@ class Scene(Graphs):
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing at the first instant, where it can be assembled, and the parts."""
-        from ..report import scene_summary
-
-        return scene_summary(self)
+        found: str = method("Scene._repr_html_")(self)
+        return found
 
     @public
     def report(
@@ -338,9 +338,7 @@ class Scene(Graphs):
         :meth:`.Solution.report`; with ``live`` :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError`
         where there is no parameter to change.
         """
-        from ..report import scene_report
-
-        scene_report(self, path, parameters, wanted, live)
+        method("Scene.report")(self, path, parameters, wanted, live)
 
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.

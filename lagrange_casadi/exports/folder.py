@@ -19,6 +19,7 @@ from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError
 from ..instants.rung import Rung, Steps
 from ..portable.contract import Contract
+from ..portable.data import LARGEST
 from ..portable.header import header
 from ..portable.source import Source
 from ..portable.sourced import sourced
@@ -28,9 +29,6 @@ from ..version import __version__
 from .companions import companions
 from .fmu import check_tools
 from .fmu import fmu as archive
-
-LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
-"""Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
 MANIFEST = Manifest(
     "export.json",

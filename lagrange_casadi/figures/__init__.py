@@ -1,6 +1,6 @@
-"""What figures a case may want: the public part of :mod:`.figures.figures`."""
+"""Figures: what a case may want drawn, and the drawing of it."""
 
-from .figures import (
+from ..shapes.specs import (
     DeflectionPlot,
     MechanismDrawing,
     SectionMaps,
@@ -9,9 +9,8 @@ from .figures import (
     StrengthPlot,
     TimePlot,
     UtilisationPlot,
-    default_figures,
-    draw,
 )
+from .figures import default_figures, draw
 
 __all__ = [
     "DeflectionPlot",

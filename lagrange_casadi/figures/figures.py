@@ -1,21 +1,17 @@
-"""Pictures of a solution: what is drawn is declared as frozen specs, which a case may give and a file keeps.
-
-Specs are known wherever cases are; matplotlib is imported when something is drawn.
-"""
+"""Pictures of a solution, by the specs that say what is drawn (:mod:`.shapes.specs`); matplotlib is imported when one is drawn."""
 
 from __future__ import annotations
 
 import os
 import re
 import textwrap
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import Finite, public
+from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import PLANE, SPACE
@@ -24,7 +20,7 @@ from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.solution import Peak, Solution
 from ..shapes.pictures import one_at_a_time, save
 from ..shapes.readable import scale_for
-from ..shapes.views import AZIMUTH, ELEVATION
+from ..shapes.specs import DeflectionPlot, MechanismDrawing, SectionMaps, SpanPlot, Spec, StrengthPlot, TimePlot, UtilisationPlot
 from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
 
 if TYPE_CHECKING:
@@ -33,244 +29,7 @@ if TYPE_CHECKING:
 _PIXELS, _LABEL = 1600, 40
 
 
-@public
-@dataclass(frozen=True)
-class TimePlot:
-    """Quantities over time, those of each unit on axes of their own; of a section force, one curve for each ratio in ``xi``.
-
-    ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which ``note`` then names.
-    """
-
-    kind: ClassVar[str] = "time"
-    name: str
-    quantities: tuple[str, ...]
-    title: str = ""
-    xi: tuple[float, ...] = ()
-    factor: Finite = 1.0
-    note: str = ""
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return self.quantities
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        units: dict[str, list[str]] = {}
-        for name in self.quantities:
-            units.setdefault(solution.unit(name), []).append(name)
-        figure, panels = _figure(len(units))
-        for axes, names in zip(panels, units.values(), strict=True):
-            for name in names:
-                self._draw(axes, solution, name)
-            first, last = axes is panels[0], axes is panels[-1]
-            title = (self.title or self.quantities[0]) if first else ""
-            _finish(figure, axes, solution, names, title, self.note if last else "", _along(solution)[1] if last else "", si)
-        return figure
-
-    def _draw(self, axes: Any, solution: Solution, name: str) -> None:
-        output = Output.of(name)
-        label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
-        if output.group != "section":
-            axes.plot(_along(solution)[0], self.factor * solution.array(output), label=label)
-            return
-        values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
-        for xi, curve in zip(self.xi, values.T, strict=True):
-            of = f"{label}, " if label else ""
-            axes.plot(_along(solution)[0], self.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
-
-
-@public
-@dataclass(frozen=True)
-class SpanPlot:
-    """A section force along its link at the instant nearest to ``t``."""
-
-    kind: ClassVar[str] = "span"
-    name: str
-    quantity: str
-    t: Finite
-    title: str = ""
-    factor: Finite = 1.0
-    note: str = ""
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return (self.quantity,)
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        figure, (axes,) = _figure()
-        i = int(np.argmin(np.abs(solution.t - self.t)))
-        output = Output.of(self.quantity)
-        values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
-        axes.plot(solution.xi, self.factor * values[0])
-        at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
-        title = f"{self.title}, {at}" if self.title else at
-        _finish(figure, axes, solution, [self.quantity], title, self.note, r"$\xi/l$", si)
-        return figure
-
-
-@public
-@dataclass(frozen=True)
-class SectionMaps:
-    """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned.
-
-    In space there are six, and the resultants of shear and bending.
-    """
-
-    kind: ClassVar[str] = "maps"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        from matplotlib.figure import Figure
-
-        names = [Output("section", self.link, force) for force in solution.table.forces]
-        names = [name for name in names if solution.determined(name)]
-        across = 1 if solution.table is PLANE else 2
-        down = -(-len(names) // across)
-        figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
-        instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
-        law, xi = solution.section(self.link).law.during(instants), solution.xi[ratios]
-        places, along = _along(solution)
-        basis = law.basis(xi)
-        plots = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
-        for axes, name in zip(plots, names, strict=False):
-            values, peak = law.on_grid(name.member, basis), solution.peak(name)
-            bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
-            colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
-            picture = axes.pcolormesh(
-                places[instants], xi, values.T, cmap=colours, vmin=least, vmax=bound, shading="nearest", rasterized=True
-            )
-            scale = scale_for(peak.unit, abs(peak.value), si)
-            x, at = _place_of(peak, solution)
-            axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-            axes.set_title(
-                f"{name.meant(solution.table).long_name}: peak {scale.said(peak.value)} at {at}, "
-                rf"$\xi/l$ = {peak.xi:.3f}",
-                fontsize=10,
-            )
-            axes.set_ylabel(r"$\xi/l$")
-            bar = figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]")
-            scale.put(bar.ax.yaxis)
-        for axes in plots[-across:]:
-            axes.set_xlabel(along)
-        for axes in plots[len(names) :]:
-            axes.set_axis_off()
-        figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
-        return figure
-
-
-@public
-@dataclass(frozen=True)
-class MechanismDrawing:
-    """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself; postures that are the same once.
-
-    With ``overlay`` they are in one picture, the first strong and the others faint. One in space is always drawn so: from above,
-    from the front, from the right, and from ``azimuth`` and ``elevation`` [deg], the angle about the upward axis, and that above
-    the level, of the direction from which it is looked at. The upward axis is the ground's axis that is most against gravity.
-    """
-
-    kind: ClassVar[str] = "drawing"
-    name: str = "mechanism"
-    count: int = 4
-    azimuth: float = AZIMUTH
-    elevation: float = ELEVATION
-    overlay: bool = False
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws; the poses of all bodies besides."""
-        return ()
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        from .drawing import draw_mechanism
-        from .space_drawing import draw_in_space
-
-        if solution.table is SPACE:
-            return draw_in_space(solution, self.count, self.azimuth, self.elevation, si)
-        return draw_mechanism(solution, self.count, self.overlay, si)
-
-
-@public
-@dataclass(frozen=True)
-class StrengthPlot:
-    """Von Mises' stress of a link that has a beam, over time and along it, and its swings in Goodman's diagram."""
-
-    kind: ClassVar[str] = "strength"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return SectionMaps(self.name, self.link).needs()
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        from .strength_plot import draw_strength
-
-        return draw_strength(solution, self.link, *_along(solution), si)
-
-
-@public
-@dataclass(frozen=True)
-class UtilisationPlot:
-    """How far links that have a beam are used, and joints that have pins or bearings, against each way to fail."""
-
-    kind: ClassVar[str] = "utilisation"
-    name: str
-    links: tuple[str, ...]
-    joints: tuple[str, ...] = ()
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        reactions = [str(Output("reaction", joint, member)) for joint in self.joints for member in ("fx", "fy")]
-        return (*(name for link in self.links for name in SectionMaps(self.name, link).needs()), *reactions)
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        from .strength_plot import draw_utilisation
-
-        return draw_utilisation(solution, (*self.links, *self.joints))
-
-
-@public
-@dataclass(frozen=True)
-class DeflectionPlot:
-    """The deflection of a link that has a beam, over time and along it, and the harmonics of its bending."""
-
-    kind: ClassVar[str] = "deflection"
-    name: str
-    link: str
-
-    def needs(self) -> tuple[str, ...]:
-        """Full names of the quantities it draws."""
-        return SectionMaps(self.name, self.link).needs()
-
-    @one_at_a_time()
-    def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure."""
-        from .deflection_plot import draw_deflection
-
-        return draw_deflection(solution, self.link, *_along(solution), si)
-
-
-Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot | DeflectionPlot
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
-KINDS: dict[str, type[Spec]] = {
-    spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot, DeflectionPlot)
-}
-"""By the word for it in files."""
 
 
 @public
@@ -351,6 +110,127 @@ def _has(solution: Solution, spec: Spec) -> bool:
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
     return all(str(component) in names for name in spec.needs() for component in Output.of(name).components(solution.table))
+
+
+@one_at_a_time()
+def drawn(spec: Spec, solution: Solution, si: bool = False) -> Figure:
+    """The figure of a spec."""
+    return _FIGURES[type(spec)](spec, solution, si)
+
+
+def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
+    units: dict[str, list[str]] = {}
+    for name in spec.quantities:
+        units.setdefault(solution.unit(name), []).append(name)
+    figure, panels = _figure(len(units))
+    for axes, names in zip(panels, units.values(), strict=True):
+        for name in names:
+            _draw_time(spec, axes, solution, name)
+        first, last = axes is panels[0], axes is panels[-1]
+        title = (spec.title or spec.quantities[0]) if first else ""
+        _finish(figure, axes, solution, names, title, spec.note if last else "", _along(solution)[1] if last else "", si)
+    return figure
+
+
+def _draw_time(spec: TimePlot, axes: Any, solution: Solution, name: str) -> None:
+    output = Output.of(name)
+    label = name.partition(":")[2].replace(":", " ") if len(spec.quantities) > 1 else None
+    if output.group != "section":
+        axes.plot(_along(solution)[0], spec.factor * solution.array(output), label=label)
+        return
+    values = solution.section(output.part).law.on_grid(output.member, np.array(spec.xi))
+    for xi, curve in zip(spec.xi, values.T, strict=True):
+        of = f"{label}, " if label else ""
+        axes.plot(_along(solution)[0], spec.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
+
+
+def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
+    figure, (axes,) = _figure()
+    i = int(np.argmin(np.abs(solution.t - spec.t)))
+    output = Output.of(spec.quantity)
+    values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
+    axes.plot(solution.xi, spec.factor * values[0])
+    at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
+    title = f"{spec.title}, {at}" if spec.title else at
+    _finish(figure, axes, solution, [spec.quantity], title, spec.note, r"$\xi/l$", si)
+    return figure
+
+
+def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
+    from matplotlib.figure import Figure
+
+    names = [Output("section", spec.link, force) for force in solution.table.forces]
+    names = [name for name in names if solution.determined(name)]
+    across = 1 if solution.table is PLANE else 2
+    down = -(-len(names) // across)
+    figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
+    instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
+    law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
+    places, along = _along(solution)
+    basis = law.basis(xi)
+    plots = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
+    for axes, name in zip(plots, names, strict=False):
+        values, peak = law.on_grid(name.member, basis), solution.peak(name)
+        bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
+        colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
+        picture = axes.pcolormesh(
+            places[instants], xi, values.T, cmap=colours, vmin=least, vmax=bound, shading="nearest", rasterized=True
+        )
+        scale = scale_for(peak.unit, abs(peak.value), si)
+        x, at = _place_of(peak, solution)
+        axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+        axes.set_title(
+            f"{name.meant(solution.table).long_name}: peak {scale.said(peak.value)} at {at}, "
+            rf"$\xi/l$ = {peak.xi:.3f}",
+            fontsize=10,
+        )
+        axes.set_ylabel(r"$\xi/l$")
+        bar = figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]")
+        scale.put(bar.ax.yaxis)
+    for axes in plots[-across:]:
+        axes.set_xlabel(along)
+    for axes in plots[len(names) :]:
+        axes.set_axis_off()
+    figure.suptitle(f"{solution.case}: section forces of {spec.link}, as the tip's side acts on the base's", fontsize=11)
+    return figure
+
+
+def _mechanism(spec: MechanismDrawing, solution: Solution, si: bool) -> Figure:
+    from .drawing import draw_mechanism
+    from .space_drawing import draw_in_space
+
+    if solution.table is SPACE:
+        return draw_in_space(solution, spec.count, spec.azimuth, spec.elevation, si)
+    return draw_mechanism(solution, spec.count, spec.overlay, si)
+
+
+def _strength(spec: StrengthPlot, solution: Solution, si: bool) -> Figure:
+    from .strength_plot import draw_strength
+
+    return draw_strength(solution, spec.link, *_along(solution), si)
+
+
+def _utilisation(spec: UtilisationPlot, solution: Solution, si: bool) -> Figure:
+    from .strength_plot import draw_utilisation
+
+    return draw_utilisation(solution, (*spec.links, *spec.joints))
+
+
+def _deflection(spec: DeflectionPlot, solution: Solution, si: bool) -> Figure:
+    from .deflection_plot import draw_deflection
+
+    return draw_deflection(solution, spec.link, *_along(solution), si)
+
+
+_FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
+    TimePlot: _time,
+    SpanPlot: _span,
+    SectionMaps: _maps,
+    MechanismDrawing: _mechanism,
+    StrengthPlot: _strength,
+    UtilisationPlot: _utilisation,
+    DeflectionPlot: _deflection,
+}
 
 
 def _along(solution: Solution) -> tuple[Array, str]:

@@ -7,9 +7,10 @@ from typing import BinaryIO
 import numpy as np
 
 from ..declare.scene import Scene
-from ..shapes.pictures import draw_into, one_at_a_time, save
+from ..shapes.pictures import one_at_a_time, save
 from ..studies.evaluate import evaluate
 from ..studies.optimise.optimum import Optimum
+from .into import draw_into
 
 _TEXT = 40
 

@@ -10,8 +10,9 @@ from typing import BinaryIO
 from ..declare.scene import Scene
 from ..errors import AssemblyError, PostureError
 from ..instants.solution import Solution
-from ..shapes.pictures import draw_into, one_at_a_time, save
+from ..shapes.pictures import one_at_a_time, save
 from ..studies.evaluate import evaluate
+from .into import draw_into
 
 _MOST, _LARGE = 8, 40
 """How many ways are drawn, and of how many bodies a mechanism may be: each way is derived."""

@@ -8,10 +8,14 @@ from importlib import resources
 
 import numpy as np
 
+from ..arithmetic.compensated import Precision
 from ..arithmetic.lookups import lookup
 from ..base.arrays import Array
 from ..errors import SizeError
 from .program import Format, Program, Samples, literal
+
+LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
+"""Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
 _LINE = 6
 _HALF, _SIXTH = 1 / 2, 1 / 6

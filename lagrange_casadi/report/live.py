@@ -26,9 +26,9 @@ from ..declare.parts import Link, PointMass, RigidMass
 from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import DeclarationError
-from ..exports.folder import LARGEST
 from ..instants.rung import Rung
 from ..instants.solution import Solution
+from ..portable.data import LARGEST
 from ..portable.sourced import sourced
 from ..portable.wasm import check_zig, layout, module, places
 from .arrays import Arrays

@@ -11,8 +11,8 @@ from ..declare.times import span_of
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.solution import Solution
 from ..instants.told import told
+from ..shapes.places import require_poses
 from ..studies.evaluate import evaluate
-from .contents import require_poses
 from .page import page
 from .still import still
 from .words import what

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..errors import StoreError, one_line
-from ..figures.figures import KINDS, Spec
 from ..store.untrusted import parsed
+from .specs import KINDS, Spec
 
 
 def dump_specs(specs: Sequence[Spec]) -> str:

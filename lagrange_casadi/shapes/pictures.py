@@ -1,4 +1,4 @@
-"""What all pictures share: how they become files, and a mechanism drawn into axes of theirs."""
+"""How all pictures become files: their kinds, one at a time, with the same bytes each time."""
 
 from __future__ import annotations
 
@@ -7,9 +7,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, BinaryIO
-
-from ..base.tables import SPACE
-from ..instants.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,10 +36,3 @@ def save(figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = 
     # Names within an SVG are drawn at random where nothing is given.
     with one_at_a_time({"svg.hashsalt": "lagrange_casadi"}):
         figure.savefig(file, format=ending.removeprefix("."), dpi=dpi, metadata=PICTURES[ending])
-
-
-def draw_into(axes: Any, solution: Solution) -> None:
-    """The mechanism at its first instant, into axes of a figure; in space as it is seen from one side."""
-    from ..figures import drawing, space_drawing
-
-    (space_drawing if solution.table is SPACE else drawing).draw_into(axes, solution)

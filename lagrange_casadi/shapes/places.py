@@ -1,4 +1,4 @@
-"""Where the places of a picture are, over the instants of a solution."""
+"""Where the places of a picture are, over the instants of a solution, which must have its motion."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import Description
+from ..errors import DeclarationError
 from ..instants.solution import Solution
 from .shapes import Spot, joint_shapes, path_spots, shapes
 
@@ -42,3 +44,13 @@ def placed(solution: Solution, spot: Spot) -> Array:
         turned = (local[0] + 1j * local[1]) * np.exp(1j * pose.angle)
         place = place + np.column_stack([turned.real, turned.imag, z])
     return place
+
+
+def require_poses(solution: Solution, what: str = "a report") -> None:
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would show it."""
+    lacking = [body for body in solution.description["bodies"] if Output("pose", body, "x") not in solution.outputs]
+    if lacking:
+        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (f" and {len(lacking) - 3} more" if len(lacking) > 3 else "")
+        raise DeclarationError(
+            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
+        )

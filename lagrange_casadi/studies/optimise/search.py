@@ -14,6 +14,7 @@ from ...declare.scene import Scene
 from ...declare.times import Times
 from ...errors import DeclarationError
 from ...instants.rung import Backend
+from ...methods import method
 from ...store.runs import check_target
 from .file import SCHEMA, save
 from .finder import Finder
@@ -175,7 +176,5 @@ def _hired(dask: str | None, scene: Scene | Case) -> Hands:
         return Here()
     if not isinstance(scene, Case):
         raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
-    from ...cluster.searches import Workers
-    from ...cluster.sweeps import Cluster
-
-    return Workers(Cluster(dask, scene), scene)
+    cluster: Hands = method("optimise.dask")(dask, scene)
+    return cluster

@@ -21,6 +21,7 @@ from ...base.seal import Seen, kind_of, verify
 from ...base.tables import ANGLE, LENGTH
 from ...declare.description import coordinates_of
 from ...errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
+from ...methods import method
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
@@ -78,9 +79,8 @@ class Sweep:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: what was swept, how many designs have a result, and the smallest and largest of columns."""
-        from ...report.sweep_summary import summary
-
-        return summary(self)
+        found: str = method("Sweep._repr_html_")(self)
+        return found
 
     def report(self, path: str | os.PathLike[str], scene: Scene | None = None) -> None:
         """Write a page for browsers: maps, fronts, a table, and with the ``scene`` that was swept the mechanism in motion.
@@ -88,9 +88,7 @@ class Sweep:
         Raises :class:`DeclarationError` for another scene, for a path that does not end in .html, and where no column has one value
         for each design; :class:`LagrangeCasadiError` where ``scene`` lacks ziglang.
         """
-        from ...report.of_sweep import write_sweep_report
-
-        write_sweep_report(self, path, scene)
+        method("Sweep.report")(self, path, scene)
 
     @property
     def case(self) -> str:

@@ -19,6 +19,7 @@ from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...errors import DeclarationError
 from ...instants.rung import Backend, Rung, Steps
+from ...methods import method
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
 from .columns import Keep
@@ -130,6 +131,5 @@ def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
         raise DeclarationError("workers and dask exclude each other: a cluster has workers of its own")
     if case is None:
         raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
-    from ...cluster.sweeps import Cluster
-
-    return Cluster(dask, case)
+    cluster: Workers = method("sweep.dask")(dask, case)
+    return cluster
