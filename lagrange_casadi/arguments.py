@@ -175,15 +175,15 @@ _NONE: Any = object()
 
 def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
     """A function that looks at its arguments before it runs."""
-    signature = inspect.signature(function)
-    known: dict[str, _Kind] = {}
-    looked: list[bool] = []
+
+    @functools.cache
+    def asked() -> tuple[inspect.Signature, dict[str, _Kind]]:  # a module's names are not all there when it is read
+        signature = inspect.signature(function)
+        return signature, _kinds(function, signature)
 
     @functools.wraps(function)
     def called(*given: Any, **named: Any) -> Any:
-        if not looked:  # a module's names are not all there when it is read
-            known.update(_kinds(function, signature))
-            looked.append(True)
+        signature, known = asked()
         try:
             bound = signature.bind(*given, **named)
         except TypeError as wrong:

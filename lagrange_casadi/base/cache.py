@@ -22,8 +22,6 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import platformdirs
-
 from ..errors import DeclarationError, PathError, lacking, warn
 from .numerals import real
 
@@ -63,6 +61,8 @@ def limit() -> int:
 
 def place() -> Path:
     """Where the folder is, or would be."""
+    import platformdirs
+
     return Path(platformdirs.user_cache_dir("lagrange_casadi", appauthor=False))
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import casadi as ca
-import h5py
 import numpy as np
 import numpy.typing as npt
 
@@ -169,6 +168,8 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
 
 def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
     """How numbers were made, with the versions of what made them."""
+    import h5py  # which takes its time, and is needed for files alone
+
     versions = {
         "lagrange_casadi": __version__,
         "casadi": ca.CasadiMeta.version(),

@@ -10,7 +10,6 @@ import ctypes
 import functools
 import math
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
 from typing import Any
 
@@ -108,6 +107,8 @@ def fill(
     if shares == 1:
         run(0)
         return
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(shares - 1) as pool:
         others = pool.map(run, range(size, n, size))
         run(0)

@@ -9,8 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arguments import Outputs, ThreadCount, public
-from ..arithmetic.compensated import Precision
+from ..arguments import Outputs, ThreadCount
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import cores, in_words, require
@@ -38,7 +37,7 @@ from ..instants.holding import holding
 from ..instants.ordering import in_order
 from ..instants.phases import phases
 from ..instants.refusal import refuse
-from ..instants.rung import Backend, Rung, Steps
+from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance
@@ -53,60 +52,20 @@ _LONG = 60.0
 """Seconds of which nothing need be said."""
 
 
-@public
-def evaluate(
+def solve(
     scene: Scene,
+    rung: Rung,
     *,
-    parameters: Mapping[str, float] | None = None,
-    t: Times | None = None,
-    over: Over | None = None,
-    xi: EvenPoints | None = None,
-    wanted: Outputs | None = None,
-    backend: Backend = "auto",
-    precision: Precision = "double",
-    newton: Steps | None = None,
-    table: float | None = None,
-    flags: str = "",
-    threads: ThreadCount | None = None,
-    certificate: bool = True,
-    elastic: Elastic | None = None,
+    parameters: Mapping[str, float] | None,
+    t: Times | None,
+    over: Over | None,
+    xi: EvenPoints | None,
+    wanted: Outputs | None,
+    threads: ThreadCount | None,
+    certificate: bool,
+    elastic: Elastic | None,
 ) -> Solution:
-    """Evaluate a scene, with its own grids and outputs or with others.
-
-    Parameters
-    ----------
-    parameters
-        Values that replace defaults, by name; of a parameter in rad a text such as ``"30 deg"`` too. Nothing is derived or compiled
-        again for them where the defaults can be assembled.
-    t, xi
-        Start, stop and count of the instants [s] and of the section ratios xi/l.
-    over
-        Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
-    wanted
-        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them the derivatives of all others too, by all
-        parameters or by some: see :class:`.Derivatives`.
-    backend, precision, newton, table, flags
-        How it is evaluated: see :class:`.Rung`.
-    threads
-        How many threads share the instants; default: one a core. The result does not depend on it.
-    certificate
-        Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and to estimate its errors by
-        :mod:`.accuracy`.
-    elastic
-        Whether least strain energy tells what equilibrium leaves open: see :class:`.Scene`.
-
-    Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.base.tables` lists
-    units and signs. A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and
-    :class:`CertificateWarning` is given. The method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for
-    calculus of internal forces in a mechanism*; ``docs/method.md`` follows it step by step.
-
-    Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError` where the outputs over time do not
-    fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
-    :class:`DeclarationError`.
-    """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    rung = Rung(backend, precision, newton, table, flags)
+    """Evaluate a scene by one method: see :func:`.evaluate`."""
     values = scene.mechanism.values(parameters)
     timing = scene.timing(t, over)
     span = checked_span(scene, timing, values)
@@ -114,7 +73,7 @@ def evaluate(
     ratios = checked_ratios(scene.xi if xi is None else xi)
     gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
     scene = scene if gives == scene.elastic else _giving(scene, gives)
-    if gives and table is not None:
+    if gives and rung.table is not None:
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
     asked = [*names, *felt(scene.mechanism)] if gives else wanted
@@ -126,7 +85,7 @@ def evaluate(
     times = instants.t
     p = np.array(list(values.values()))
     left_open: tuple[Output, ...] = ()
-    if table is not None:
+    if rung.table is not None:
         graph, left_open = determinate(graph, times, p)
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
