@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arguments import public
 from ..base.publish import replacing, writing
+from ..base.vocabulary import RATE, SECONDS, WIDTH
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..shapes.places import drawn_spots, require_poses
@@ -44,9 +45,9 @@ class Film:
     links. ``names`` writes the joints' names beside them. Raises :class:`.DeclarationError` for what is out of range.
     """
 
-    width: int = 640
-    rate: float = 25.0
-    seconds: float = 4.0
+    width: int = WIDTH
+    rate: float = RATE
+    seconds: float = SECONDS
     forces: bool = False
     section: str = ""
     names: bool = True

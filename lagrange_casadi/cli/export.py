@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Precision
 from ..case import load_case
 from ..exports import export as write
 from .echo import echo

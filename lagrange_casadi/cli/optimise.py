@@ -13,16 +13,15 @@ from tqdm import tqdm
 from ..arguments import typed
 from ..base.numerals import real
 from ..base.publish import check_writable, writing
+from ..base.vocabulary import BACKENDS, POINTS, Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..errors import DeclarationError
 from ..figures.front import draw_front
 from ..figures.optimum import draw_optimum
-from ..instants.rung import BACKENDS, Backend
 from ..shapes.pictures import PICTURES
 from ..studies.optimise import Front, Optimum
 from ..studies.optimise import optimise as search
-from ..studies.optimise.front import POINTS
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
 from .options import PATH, instants, parameters, settings_by

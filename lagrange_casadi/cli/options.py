@@ -12,12 +12,11 @@ from typing import Any, TypeVar
 import click
 
 from ..arguments import number, typed
-from ..arithmetic.compensated import PRECISIONS
 from ..base.numerals import real, whole
+from ..base.vocabulary import BACKENDS, PRECISIONS
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
-from ..instants.rung import BACKENDS
 from ..studies.sweep import Axis, Range, Values
 
 EVEN_POINTS = "START:STOP:COUNT"

@@ -11,10 +11,10 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..base.publish import check_writable
 from ..base.room import MOST_THREADS
 from ..base.streams import is_standard_output
+from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
@@ -22,7 +22,6 @@ from ..declare.scene import Scene, fitted_of, strength_of
 from ..declare.times import Over, Timing
 from ..errors import CertificateError
 from ..instants.frames import TIME, columns
-from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..shapes.index import MANIFEST

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator
 
 from ..base.quantities import AVERAGED, Output
+from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError
-from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..instants.told import told
 from ..sensitivity.peaks import PeakKind

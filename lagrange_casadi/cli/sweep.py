@@ -8,14 +8,13 @@ from pathlib import Path
 
 import click
 
-from ..arithmetic.compensated import Precision
 from ..base.room import MOST_THREADS
+from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..instants.refusal import Status
-from ..instants.rung import Backend
 from ..studies.sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped

@@ -11,12 +11,12 @@ from pathlib import Path
 import click
 
 from ..base.publish import check_writable, writing
+from ..base.vocabulary import BACKENDS, SAMPLES, Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
-from ..instants.rung import BACKENDS, Backend
-from ..studies.tolerances import SAMPLES, Spreads
+from ..studies.tolerances import Spreads
 from ..studies.tolerances import tolerances as spreads_of
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by, wanted

@@ -20,11 +20,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Pair, Pairs, Precision
+from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
+from ..base.vocabulary import Precision
 from ..declare.laws import Laws
 from ..equations.scene_graph import SceneGraph
 

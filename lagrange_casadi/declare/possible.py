@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..base.numerals import readable
 from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
 from .density import Density, Slices

@@ -11,9 +11,9 @@ from types import MappingProxyType
 from typing import Any, NoReturn
 
 from ..arguments import Outputs, number, public, texts, within
-from ..arithmetic.compensated import Precision
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import ANGLE, LENGTH
+from ..base.vocabulary import Precision
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
 from .density import Density

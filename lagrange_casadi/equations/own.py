@@ -7,9 +7,9 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.compensated import Precision
 from ..base.quantities import Output
 from ..base.tables import Table, table_of
+from ..base.vocabulary import Precision
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.parts import Link

@@ -11,9 +11,9 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import Outputs, public
-from ..arithmetic.compensated import Precision
 from ..base.manifest import Manifest
 from ..base.publish import check_writable
+from ..base.vocabulary import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError

@@ -17,6 +17,7 @@ from .. import codegen
 from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
 from ..base.room import cores
+from ..base.vocabulary import Backend
 from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..equations.scene_graph import SceneGraph
@@ -24,7 +25,7 @@ from ..errors import CompilerError, warn
 from ..version import __version__
 from . import grids
 from .cycle_table import CycleTable
-from .rung import Backend, Rung
+from .rung import Rung
 from .solution import Provenance
 
 _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {"auto": ("c++", "c"), "lanes": ("c++",), "c": ("c",), "vm": ()}

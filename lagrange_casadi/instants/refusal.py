@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.compensated import DTYPES, Precision
+from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
+from ..base.vocabulary import Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.ends import share_beyond

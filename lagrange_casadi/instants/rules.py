@@ -12,9 +12,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from ..arithmetic.compensated import ROUNDING, Precision
+from ..arithmetic.compensated import ROUNDING
 from ..base.quantities import Output
 from ..base.tables import MOMENT
+from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from ..arguments import Within
-from ..arithmetic.compensated import PRECISIONS, Precision
+from ..base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 
 if TYPE_CHECKING:
     from ..equations.scene_graph import SceneGraph
 
-Backend = Literal["auto", "lanes", "c", "vm"]
-BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
 
 FEWEST_NODES = 8
 MOST_STEPS = 1000

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
+from ..base.vocabulary import Precision
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..equations.spreads import spreads_of

@@ -8,9 +8,9 @@ from importlib import resources
 
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..arithmetic.lookups import lookup
 from ..base.arrays import Array
+from ..base.vocabulary import Precision
 from ..errors import SizeError
 from .program import Format, Program, Samples, literal
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import ROUNDING, Precision
+from ..arithmetic.compensated import ROUNDING
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.vocabulary import Precision
 from ..codegen.stages import compensated
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import run

@@ -10,10 +10,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
 from ..codegen.stages import controlled

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ..arguments import Outputs, ThreadCount, public
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Backend, Precision
 from ..declare.even_points import EvenPoints
 from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError
-from ..instants.rung import Backend, Rung, Steps
+from ..instants.rung import Rung, Steps
 
 if TYPE_CHECKING:
     from ..instants.solution import Solution

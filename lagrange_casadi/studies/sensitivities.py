@@ -11,10 +11,11 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.rung import Backend, Rung
+from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..instants.statistics import shares
 from ..sensitivity.curvatures import Curvatures

@@ -11,15 +11,14 @@ import numpy as np
 from ..arguments import Outputs, Within, public
 from ..base.arrays import Array
 from ..base.numerals import real
+from ..base.vocabulary import SAMPLES, Backend
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
-from ..instants.rung import Backend
 from .designs.prepared import prepare
 
-SAMPLES = 2000
 _LARGEST = 1_000_000
 _UNITS = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "m": ("m", 1.0), "deg": ("rad", np.pi / 180.0), "rad": ("rad", 1.0)}
 _UNITS |= {"g": ("kg", 1e-3), "kg": ("kg", 1.0)}

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.compensated import PRECISIONS
 from ..base.arrays import Array
 from ..base.tables import ANGLE, LENGTH
+from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.scene import Scene
 from ..declare.times import Over, Times

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...arguments import Numeric, Outputs, ThreadCount, public
-from ...arithmetic.compensated import Precision
 from ...base.arrays import Array
+from ...base.vocabulary import Backend, Precision
 from ...declare.scene import Scene, without_fitted, without_life
 from ...declare.times import Over, Times
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.refusal import Status
-from ...instants.rung import Backend, Rung, Steps
+from ...instants.rung import Rung, Steps
 from ...instants.solution import Solution
 from ..evaluate import evaluate
 from .engine import DesignEngine, Outcome

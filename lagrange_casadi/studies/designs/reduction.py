@@ -7,11 +7,11 @@ from typing import Any
 
 import casadi as ca
 
-from ...arithmetic.compensated import Precision
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
+from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
 from ...codegen.stages import Stages, compensated, plain, turns_many

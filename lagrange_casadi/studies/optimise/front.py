@@ -23,9 +23,6 @@ from .problem import Problem
 from .searching import Search
 from .terms import Constraint, Term
 
-POINTS = 11
-"""Points of a front, where nothing else is said."""
-
 _END = 1e-4
 """Of the range of an objective: by how much the ends of a front are from its least."""
 

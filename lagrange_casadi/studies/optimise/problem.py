@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.vocabulary import Backend
 from ...declare.scene import Scene, Wanted
 from ...declare.times import Times, Timing
 from ...equations.described import described
 from ...equations.fingerprint import fingerprint, sources
 from ...errors import DeclarationError, UnknownNameError, check_kind
-from ...instants.rung import Backend, Rung
+from ...instants.rung import Rung
 from ..designs.engine import DesignEngine
 from ..peaks import wanted_for
 from .fatigue import tired_link

@@ -9,16 +9,16 @@ from typing import Annotated, Any, overload
 
 from ...arguments import Within, public
 from ...base.publish import uninterrupted
+from ...base.vocabulary import POINTS, Backend
 from ...case import Case
 from ...declare.scene import Scene
 from ...declare.times import Times
 from ...errors import DeclarationError
-from ...instants.rung import Backend
 from ...methods import method
 from ...store.runs import check_target
 from .file import SCHEMA, save
 from .finder import Finder
-from .front import POINTS, Front, front_of
+from .front import Front, front_of
 from .hands import Hands, Here
 from .journal import kept
 from .optimum import Optimum

@@ -1,8 +1,8 @@
 """Sweeps: one scene over many designs, in blocks that survive, into one file; ``docs/sweeps.md`` says how."""
 
+from ...base.vocabulary import KEEPS, Keep
 from .axes import Axis, Grid, Listed, Range, Values
 from .best import Condition, Design, best, chosen
-from .columns import KEEPS, Keep
 from .listing import read_designs
 from .reading import Sweep, is_sweep
 from .sweeping import sweep

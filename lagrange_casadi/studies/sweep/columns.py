@@ -10,13 +10,14 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output, quotient
 from ...base.tables import Table, table_of
+from ...base.vocabulary import KEEPS, Keep
 from ...declare.mechanism import Mechanism
 from ...declare.wanted_slopes import SENSITIVITY
 from ...errors import DeclarationError, UnknownNameError
@@ -29,9 +30,6 @@ from .engine import STATUSES, Engine
 from .instant_axis import InstantAxis
 from .matter import Matter
 from .strength import LEAST, LIFE, MASS, Kept
-
-Keep = Literal["peaks", "laws", "histories"]
-KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 
 STATUS = "status"
 """The one column whose name stands alone: why a design has no result, 0 where it has one."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.room import in_words, require
+from ...base.vocabulary import Keep
 from ...declare.description import Description, shape_of
 from ...declare.even_points import EvenPoints, points
 from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
@@ -30,7 +31,7 @@ from ..designs.engine import DesignEngine
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .column import Column
-from .columns import Harvest, Keep, check_keep
+from .columns import Harvest, check_keep
 from .engine import Engine
 from .instant_axis import InstantAxis
 

@@ -11,18 +11,17 @@ from pathlib import Path
 from typing import Any
 
 from ...arguments import Outputs, ThreadCount, public
-from ...arithmetic.compensated import Precision
 from ...base.room import MOST_THREADS
+from ...base.vocabulary import Backend, Keep, Precision
 from ...case import Case
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...errors import DeclarationError
-from ...instants.rung import Backend, Rung, Steps
+from ...instants.rung import Rung, Steps
 from ...methods import method
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
-from .columns import Keep
 from .plan import Plan
 from .reading import Sweep
 from .workers import Threads, Workers
