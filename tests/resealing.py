@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import json
 import os
 import random
@@ -27,7 +28,7 @@ from lagrange_casadi.errors import LagrangeCasadiError
 from lagrange_casadi.studies.optimise.journal import kept
 
 SECONDS = 10.0
-answer = sys.modules["lagrange_casadi.cli.check"].answer
+answer = importlib.import_module("lagrange_casadi.cli.check").answer
 
 
 def contents(path: Path) -> str:

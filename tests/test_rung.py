@@ -1,7 +1,7 @@
 """The rungs: what goes together, what they are called, and how their mistakes are told."""
 
+import importlib
 import shlex
-import sys
 
 import numpy as np
 import pytest
@@ -74,7 +74,9 @@ def test_a_rung_as_options(rung, options, tmp_path, monkeypatch):
     words = [] if options == "(default)" else shlex.split(options)
     taken = []
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys.modules["lagrange_casadi.cli.run"], "evaluate", lambda scene, **given: taken.append(given) or 1 / 0)
+    monkeypatch.setattr(
+        importlib.import_module("lagrange_casadi.cli.run"), "evaluate", lambda scene, **given: taken.append(given) or 1 / 0
+    )
     with pytest.raises(ZeroDivisionError):
         main(["run", str(CASE), "--no-figures", *words])
     assert Rung(**{name: taken[0][name] for name in vars(rung)}) == rung

@@ -1,8 +1,8 @@
 """The trade: every rung measured, errors that are true, a front that nothing beats, and recommendations that hold."""
 
 import errno
+import importlib
 import json
-import sys
 from pathlib import Path
 
 import casadi as ca
@@ -142,7 +142,7 @@ def test_the_command(tmp_path, monkeypatch, capfd):
 def test_both_files_or_none(tmp_path, monkeypatch, capfd, failing):
     """Neither a drawing that fails nor a disk that is full at the second file leaves the first."""
     monkeypatch.chdir(tmp_path)
-    command = sys.modules["lagrange_casadi.cli.trade"]
+    command = importlib.import_module("lagrange_casadi.cli.trade")
     monkeypatch.setattr(command, "measure", lambda *_, **__: Trade("x", 1, 1, (entry(1, 1e-3),), {}))
     (tmp_path / "x.json").write_text("of before")
 

@@ -28,3 +28,9 @@ SAMPLES = 2000
 
 WIDTH, RATE, SECONDS = 640, 25.0, 4.0
 """Of an animation: pixels of its width, frames a second, seconds that a cycle takes."""
+
+TIME_LIMIT = 60.0
+"""Seconds that reading a file of unknown origin may take."""
+
+SIMPLE = "four_bar"
+"""The case that another one begins as."""

@@ -19,26 +19,8 @@ from ..base.interrupts import SENTENCE, STATUS, interrupts
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..version import __version__
-from .animate import animate
-from .best import best
-from .cache import cache
-from .cases import cases
-from .check import check
-from .drawing import drawn_ways
-from .drive import drive_command as drive
+from .commands import COMMANDS
 from .echo import echo
-from .export import export
-from .info import info
-from .new import new
-from .optimise import optimise
-from .plot import plot
-from .report_page import report
-from .run import run
-from .size import size_command as size
-from .sweep import sweep
-from .table import table
-from .tolerances import tolerances
-from .trade import trade
 
 _OPTIONS = {
     "resume=True": "--resume",
@@ -80,12 +62,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (
-    run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, size, drive, cases, new, cache
-)  # fmt: skip
-
-
-@click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=_Commands, commands=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="lagrange-casadi")
 def program() -> None:
     """Efforts, reactions and section forces of a mechanism that must make a given motion."""
@@ -102,6 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
         except PostureError as error:
+            from .drawing import drawn_ways
+
             return _fail(f"{error}{drawn_ways(error)}", error.exit_status)
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)

@@ -20,33 +20,15 @@ from ..studies.sweep.default_figures import default_plots
 from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import PATH, place
 from .strength_lines import untold_lines
 
 _UNDRAWN = "cannot be drawn"
 
 
-@click.command()
-@click.argument("file", type=PATH)
-@click.option("--out", type=PATH, required=True, help="The figures' folder.")
-@click.option(
-    "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
-)
-@click.option(
-    "--at",
-    type=place,
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="Of a sweep: where another parameter stays, or which designs of a list.",
-)
-@click.option(
-    "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
-)
-@click.option("--si", is_flag=True, help="Axes in SI without prefixes, in place of units that people read, as kN and mm.")
 def plot(
     file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]], si: bool
 ) -> None:
-    """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
+    """See :func:`.commands.plot`."""
     check_writable(out, folder=True)
     MANIFEST.check(out)
     if is_sweep(file):

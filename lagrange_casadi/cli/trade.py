@@ -21,19 +21,9 @@ from ..shapes.pictures import PICTURES
 from ..studies.trade import RUNGS, Trade
 from ..studies.trade import trade as measure
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by, wanted
-from .options import over as by_drive
+from .options import parameters
 
 
-@click.command()
-@click.argument("case", type=PATH)
-@settings_by()
-@instants()
-@by_drive
-@wanted()
-@click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
-@click.option("--out", type=PATH, help="The numbers, as JSON; default: <case>_trade.json here.")
-@click.option("--figure", type=PATH, help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
@@ -44,7 +34,7 @@ def trade(
     out: Path | None,
     figure: Path | None,
 ) -> None:
-    """Measure time and error of every method on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
+    """See :func:`.commands.trade`."""
     if accuracy is not None and not 0.0 < accuracy < math.inf:
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
