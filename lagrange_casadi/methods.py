@@ -13,6 +13,7 @@ from typing import Any
 from .errors import MissingPackageError
 
 METHODS: dict[str, str] = {
+    "PostureError.drawn": "figures.postures:draw_postures",
     "Scene._repr_html_": "report:scene_summary",
     "Scene.report": "report:scene_report",
     "Solution._repr_html_": "report:summary",
@@ -27,6 +28,8 @@ METHODS: dict[str, str] = {
     "Spec.draw": "figures.figures:drawn",
     "Sweep._repr_html_": "report.sweep_summary:summary",
     "Sweep.report": "report.of_sweep:write_sweep_report",
+    "figures.default_figures": "figures:default_figures",
+    "figures.draw": "figures:draw",
     "optimise.dask": "cluster.searches:searching",
     "sweep.dask": "cluster.sweeps:Cluster",
 }

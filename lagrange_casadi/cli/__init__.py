@@ -18,6 +18,7 @@ import click
 from ..base.interrupts import SENTENCE, STATUS, interrupts
 from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
+from ..methods import missing
 from ..version import __version__
 from .commands import COMMANDS
 from .echo import echo
@@ -95,6 +96,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except _Unread:
             lead_nowhere()
             return 1
+        except ModuleNotFoundError as error:
+            lacking = missing(error, "this")
+            if lacking is error:
+                raise
+            return _fail(str(lacking), 1)
         except MemoryError as error:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours
