@@ -104,7 +104,7 @@ class Trade:
         Raises :class:`AccuracyError` where none is; it names the most accurate one.
         """
         if not accuracy > 0.0:
-            raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
+            raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
         for one in self.measurements:
             if one.largest <= accuracy:
                 return one
