@@ -1,9 +1,9 @@
 """Estimates of errors against the errors themselves, which fifty digits tell."""
 
 import functools
+import importlib
 import itertools
 import math
-import sys
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -238,7 +238,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.solving"], "derive", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "derive", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4
@@ -256,7 +256,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         table.out[arguments[0].names.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.instants.from_table"], "run", spoilt)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.instants.from_table"), "run", spoilt)
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))
     assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)

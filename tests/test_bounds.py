@@ -1,8 +1,8 @@
 """Numbers without bound: said before anything starts, and refused where they cannot be meant."""
 
+import importlib
 import re
 import resource
-import sys
 from pathlib import Path
 
 import psutil
@@ -116,7 +116,7 @@ def test_points_are_refused_before_they_are_made(monkeypatch):
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
-    module = sys.modules["lagrange_casadi.studies.solving"]
+    module = importlib.import_module("lagrange_casadi.studies.solving")
     monkeypatch.setattr(module, "_LONG", 1e-9)
     with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
         evaluate(iterated(), t=(0, 1, 1001), newton=5)

@@ -1,8 +1,8 @@
 """What follows from the section laws of a spatial scene: its solution and file, peaks between instants, sweeps, figures, C."""
 
+import importlib
 import itertools
 import subprocess
-import sys
 
 import h5py
 import numpy as np
@@ -60,7 +60,7 @@ def no_certificate(monkeypatch):
     def residuals(solution, *_):
         return {name: np.zeros(solution.t.size) for name in ("balance", "power", "closure", "ends")}
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.studies.solving"], "residuals_of", residuals)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "residuals_of", residuals)
 
 
 def test_a_solution_names_its_quantities(solution):

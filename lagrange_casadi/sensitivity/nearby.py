@@ -101,7 +101,7 @@ def on_their_side(
         nearer = gaps[side, here] < _NEARER * off[left]
         times[left[nearer]] = beside.reshape(2, -1)[side, here][nearer]
         left = left[~nearer]
-    return times
+    return np.asarray(times)
 
 
 def _along(
