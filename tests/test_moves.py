@@ -323,3 +323,18 @@ def test_info_tells_moves_and_jumps(here, capsys):
         "    the acceleration jumps at 0 s where 'out' begins, 0.0833333 s within 'out', 0.166667 s within 'out'",
     ):
         assert any(found.replace("from 0 rad (0 deg) to 0 rad (0 deg), ", "").startswith(line) for found in lines), line
+
+
+@pytest.mark.parametrize("options", [{}, {"backend": "vm"}, {"backend": "c"}, {"precision": "single"}])
+def test_at_the_seam_the_next_cycle_begins(options):
+    """An acceleration jumps there: each seam shows what the first one does, by every way of evaluation."""
+    m = Mechanism("indexed")
+    takt = m.parameter("takt", 1.475, "s")
+    m.revolute("J", m.ground, m.link("arm", length=0.4, mass=3.0))
+    parts = [move("60 deg", time=0.4, law="simple_harmonic"), dwell(0.1), move(0, time=0.5), dwell()]
+    law = moves(parts, cyclic=True, period=takt)
+    scene = Scene(m, {"J": law}, wanted=["motion"], t=(0, 3 * takt, 61))
+    solution, seams = evaluate(scene, **options), [0, 20, 40, 60]
+    size = math.pi / 3 / 2 * (math.pi / 0.4) ** 2
+    assert solution.motion("J").acceleration[seams] == pytest.approx(size, rel=1e-6)
+    assert prepare(scene, **options)()["motion:J_acceleration"][seams] == pytest.approx(size, rel=1e-6)

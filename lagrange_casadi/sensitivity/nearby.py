@@ -86,7 +86,8 @@ def on_their_side(
     be of the other one. It is as large as the peak a little before or after.
     """
     value, t, xi = peaks
-    times, off = t.copy(), np.abs(found - value)
+    times: Array = t.copy()
+    off = np.abs(found - value)
     left = np.flatnonzero(off > _ASIDE * np.abs(value))
     for reach in _REACHES:
         if not left.size:

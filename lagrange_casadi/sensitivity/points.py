@@ -54,10 +54,14 @@ class PointFunction(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps."""
-        sharp = [k for k, watch in enumerate(sharpness.watches) if watch.kind in _SWITCHES]
-        inner = _at_drives(graph, quantities, sharpness.watched, sharp)
+    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness | None = None) -> PointFunction:
+        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps.
+
+        Without a ``sharpness`` there is nothing of the latter.
+        """
+        watches = () if sharpness is None else sharpness.watches
+        sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
+        inner = _at_drives(graph, quantities, None if sharpness is None else sharpness.watched, sharp)
         given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
         t, p = (given[name] for name in ("t", "p"))
         jerk = graph.laws.jerk()
@@ -75,7 +79,7 @@ class PointFunction(Graphs):
         names = ["t", "drives", "z", "p", "xi", "value", "moving", "chosen"]
         every = [given[name] for name in names]
         made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
-        return cls(tuple(quantities), tuple(sharpness.watches[k] for k in sharp), made, lead, inner)
+        return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, lead, inner)
 
 
 def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
