@@ -29,6 +29,9 @@ from .limits_beside import Flags, Side, between, vanishes
 _SAME, _FAINT = 1e-6, 1e-9
 """What is no jump: of the value or slope there, and of the largest along the path."""
 
+_MOST_PLACES = 0.9
+"""At which share of instants a constraint's terms are no larger than what they are measured by."""
+
 _HALVINGS, _ROUNDS = 64, 8
 """How often a step is halved, and how many places are looked for in one."""
 
@@ -144,9 +147,11 @@ class Smooth:
         with np.errstate(all="ignore"):
             usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
             usual = np.where(np.isfinite(usual), usual, 0.0)
-            # A constraint's value is zero but for rounding: it is as large as what is added up in it.
+            # A constraint's value is zero but for rounding: it is as large as what is added up in it, at
+            # most places. A slope beside a pole says nothing of what is added up elsewhere.
             terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
-            usual = np.array([np.maximum(usual[0], terms), usual[1:].max(axis=0)]).max(axis=2)
+            value = np.maximum(usual[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
+            usual = np.array([value, usual[1:].max(axis=(0, 2))])
             marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
             passed, touched = self._places(_Steps.of(paths, p), marks)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
