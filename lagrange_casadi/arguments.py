@@ -265,9 +265,9 @@ def _kind(hint: Any) -> _Kind | None:
     if isinstance(origin, type) and origin in _SIMPLE:
         return _SIMPLE[origin]
     if origin in (Sequence, Iterable, Collection) or (origin is tuple and of[1:] == (...,)):
-        return _row(of[0])
+        return _row(of[0], named=origin is Collection)
     if origin is np.ndarray:
-        return _Kind("an array of numbers", _array) if of[-1] == np.dtype[np.float64] else None
+        return _ARRAYS.get(of[-1])
     if origin is Mapping or origin is dict:
         by_name = of == (str, float)
         words = "values by name, as {'l': 0.25}" if by_name else "a mapping by name"
@@ -313,8 +313,8 @@ def _ranged(of: type, span: Within) -> _Kind:
     return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
 
 
-def _row(of: Any) -> _Kind | None:
-    """The kind of rows of something: of numbers, of names, of parts."""
+def _row(of: Any, named: bool = False) -> _Kind | None:
+    """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping, where no order is asked for."""
     if of is float:
         return _Kind("a row of numbers", lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE)
     kind = _SIMPLE[str] if of is str else _kind(of)
@@ -322,7 +322,9 @@ def _row(of: Any) -> _Kind | None:
         return None
 
     def read(value: Any) -> Any:
-        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+        if isinstance(value, str | bytes | set | frozenset) or not isinstance(value, Iterable):
+            return _NONE
+        if isinstance(value, Mapping) and not named:
             return _NONE
         with suppress(Exception):  # of a class that is not ours, when it is walked over
             found = [kind.read(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
@@ -341,6 +343,13 @@ def _array(value: Any) -> Any:
         whole = found.dtype.kind in "iuf" or (found.dtype.kind == "O" and all(_double(one) is not None for one in found.flat))
         return found.astype(float) if whole else _NONE
     return _NONE
+
+
+def _wholes(value: Any) -> Any:
+    """A value as an array of whole numbers."""
+    found = _array(value)
+    whole = found is not _NONE and (np.abs(found) < 2.0**53).all() and np.array_equal(found, np.rint(found))
+    return found.astype(np.int64) if whole else _NONE
 
 
 def texts(value: Any) -> list[str] | None:
@@ -409,6 +418,10 @@ _SIMPLE: dict[type, _Kind] = {
     Path: _if("a path", _is_path),
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]
+_ARRAYS = {
+    np.dtype[np.float64]: _Kind("an array of numbers", _array),
+    np.dtype[np.int64]: _Kind("an array of whole numbers", _wholes),
+}
 _NAMED = {
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),

@@ -87,6 +87,7 @@ def test_the_head_is_checked_before_the_numbers(tmp_path):
     with pytest.raises(DeclarationError, match="line 1, column 1: 'design' is a result of a sweep, not a parameter"):
         read_designs(path, ["l", "r"])
     assert read_designs(path, ["l", "design"]).names == ("design", "l")
+    assert read_designs(path, {"l": None, "design": None}).names == ("design", "l")
 
 
 def test_a_sweep_names_the_place_in_the_file(tmp_path):

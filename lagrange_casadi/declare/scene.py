@@ -364,6 +364,7 @@ class Scene(Graphs):
         parts, moved = demands(self.mechanism, precision), [demand for law in self.laws.values() for demand in law.demands]
         return Demands(parts.symbols, (*parts.each, *moved)) if moved else parts
 
+    @public
     def checked(self, values: Mapping[str, float]) -> None:
         """Raise :class:`.ParameterError` for values of all parameters with which a part or a move of the motion cannot be."""
         if any(law.demands for law in self.laws.values()):

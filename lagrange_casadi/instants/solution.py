@@ -230,8 +230,8 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
-        each = instants.tolist() if isinstance(instants, np.ndarray) else []
-        if not (isinstance(instants, slice) or [type(one) for one in each] == [bool] * self.t.size):
+        marked = isinstance(instants, np.ndarray) and instants.dtype == bool and instants.shape == self.t.shape
+        if not (isinstance(instants, slice) or marked):
             raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         left = {name: values[instants] for name, values in self.certificate.items()}

@@ -78,7 +78,7 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     the file cannot be written.
     """
     if "\0" in figures or not figures.isascii():
-        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {shown(figures)}")
+        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}")
     target = Path(path)
     check_target(target)
     _require_room(solution, target)

@@ -337,7 +337,7 @@ def not_parameter(name: str) -> str:
 
 
 def _is_result(name: str) -> bool:
-    return name in RESULTS or ":" in name
+    return isinstance(name, str) and (name in RESULTS or ":" in name)
 
 
 def _length(words: str) -> int:

@@ -143,7 +143,7 @@ class Folder:
     @property
     def begun(self) -> bool:
         """Whether a sweep was begun here."""
-        return (self.path / _PLAN).is_file()
+        return os.path.isfile(self.path / _PLAN)  # of a name that is too long too
 
     @property
     def identity(self) -> Any:
