@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -23,6 +23,7 @@ from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
 from ..errors import DeclarationError
+from .clearance import Clearance
 from .density import Array
 from .limits_beside import Flags, Side, between, vanishes
 
@@ -125,6 +126,11 @@ class Smooth:
             return None
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
         return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
+
+    @cached_property
+    def clearance(self) -> Clearance:
+        """Tells along which paths no mark comes near to where it passes, at a small part of the cost of looking for kinks."""
+        return Clearance(self.marks, self.whole, self.open)
 
     def broken(self, paths: Array, p: Array) -> Flags:
         """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""

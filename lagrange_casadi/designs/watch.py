@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -30,9 +29,14 @@ class Watch:
     def _ends(self) -> Any | None:
         return ends_function(self.scene.laws, self.scene.mechanism.symbols)
 
-    @property
+    @cached_property
     def _corners(self) -> Corners:
         return Corners.of(self.scene)
+
+    @cached_property
+    def _seen(self) -> dict[str, list[int]]:
+        """The columns of what each constraint sees."""
+        return {name: self.graph.seen_columns(name) for name in self._corners.constraints}
 
     def __bool__(self) -> bool:
         """Whether there is anything to watch."""
@@ -43,10 +47,10 @@ class Watch:
         """Whether the columns of every design are needed, for what constraints see."""
         return bool(self._corners.constraints)
 
-    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Callable[[], Array]) -> npt.NDArray[np.int8]:
+    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None) -> npt.NDArray[np.int8]:
         """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1 or n, t).
 
-        ``columns()`` are theirs at these instants, (n, columns, t).
+        ``columns`` (n, columns, t) are theirs at these instants, if :attr:`columns` are needed.
         """
         found: npt.NDArray[np.int8] = status.copy()
         if self._ends is not None:
@@ -57,10 +61,13 @@ class Watch:
         some = np.flatnonzero(found == Status.OK)
         if not some.size:
             return found
-        start, stop = (np.broadcast_to(t[:, k], len(p))[some] for k in (0, -1))
-        broken = self._corners.broken_laws(start, stop, p[some])
+        p = p[some]
+        broken = np.zeros(len(p), bool)
+        if self._corners.laws:
+            start, stop = (np.broadcast_to(t[:, k], len(found))[some] for k in (0, -1))
+            broken |= self._corners.broken_laws(start, stop, p)
         if self.columns:
-            rows = columns()[some]
-            broken |= self._corners.broken_constraints(lambda name: self.graph.seen(name, rows), p[some])
-        found[some[broken]] = Status.CORNER
+            assert columns is not None
+            broken |= self._corners.broken_constraints(lambda name: columns[some][:, self._seen[name]], p)
+        found[some] = np.where(broken, Status.CORNER, Status.OK)
         return found

@@ -1,0 +1,102 @@
+"""Bounds of what a function gives hold for all that is put into it; what is off every kink is not looked at by halving."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from drawn_curves import K, T, drawn
+from test_corners import constraint, disc, motion, slide
+
+from lagrange_casadi import prepare
+from lagrange_casadi.arithmetic.boxes import boxed
+from lagrange_casadi.declare.kinks import Smooth
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+
+def held(seeds):
+    """Draw expressions, spans and parameters; count those of which bounds say something."""
+    told = 0
+    for seed in seeds:
+        r = np.random.default_rng(seed)
+        function = ca.Function("drawn", [T, K], [ca.densify(drawn(r))], {"cse": True})
+        symbols, rows, width = boxed(function)
+        bounds = ca.Function("bounds", symbols, [*rows[0], width])
+        for _ in range(4):
+            low, k = r.uniform(-2, 2), float(r.choice([0.0, 0.3, 1.0, r.normal()]))
+            high = low + 10 ** r.uniform(-6, 0.5)
+            least, most, wide = (float(one) for one in bounds(low, high, k))
+            if not wide < np.inf:
+                continue
+            told += 1
+            values = function(ca.DM([low, high, *r.uniform(low, high, 60)]).T, k).full()
+            assert ((least <= values) & (values <= most)).all(), f"seed {seed}: from {low} to {high} with k = {k}"
+    return told / (4 * len(seeds))
+
+
+def test_bounds_hold():
+    assert held(range(60)) > 0.6
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(4))
+def test_more_bounds_hold(part):
+    assert held(range(1000 + 1000 * part, 2000 + 1000 * part)) > 0.6
+
+
+def clear_is_smooth(seeds):
+    """What is clear has no kink by halving; and count what is."""
+    many = 0
+    for seed in seeds:
+        r = np.random.default_rng(seed)
+        smooth = Smooth.of(drawn(r), T, K)
+        if smooth is None:
+            continue
+        start = r.uniform(-1, 1)
+        paths, p = (
+            np.linspace(start, start + 10 ** r.uniform(-2, 0), 1001)[None, None],
+            np.array([[float(r.choice([0.0, 0.3, 1.0]))]]),
+        )
+        if not smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, lambda _, paths=paths: paths)[0]:
+            many += 1
+            assert not smooth.broken(paths, p)[0], f"seed {seed}"
+    return many / len(seeds)
+
+
+def test_what_is_clear_has_no_kink():
+    assert clear_is_smooth(range(80)) > 0.2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(4))
+def test_more_that_is_clear_has_no_kink(part):
+    assert clear_is_smooth(range(2000 + 500 * part, 2500 + 500 * part)) > 0.2
+
+
+def away(x, k):
+    """Roots, divisors and pieces that it does not come near to while k is small."""
+    return 0.02 * ca.sin(x) * ca.sqrt(2 + ca.sin(x) - k) / (1.5 - k + ca.cos(x)) + ca.if_else(x < 10 - 9.5 * k, 0, 0.01)
+
+
+@pytest.mark.parametrize("scene", [motion, constraint, disc])
+def test_designs_off_every_kink_are_not_looked_at_instant_by_instant(scene, monkeypatch):
+    law = away if scene is not disc else lambda x, k: 0.1 * away(ca.sin(x), k)
+    monkeypatch.setattr("test_corners.bend", law)
+    f = prepare(slide(away) if scene is motion else scene(), wanted=["effort"])
+    seen, look = [], Smooth.broken
+    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    for k in (0.0, 0.1, 0.2):
+        f(k=k)
+        f.peaks(k=k)
+    f.designs([[0.05], [0.15]])
+    assert seen == []
+    if scene is not disc:
+        assert (f.designs([[0.05], [0.99]]).status != 0).tolist() == [False, True]
+        assert seen == [1]
+
+
+def test_series_stay_when_peaks_of_a_watched_constraint_are_asked_for():
+    f = prepare(constraint(), wanted=["effort"])
+    series = next(iter(f(k=0.0).values()))
+    kept = series.copy()
+    f.peaks(k=0.0)
+    np.testing.assert_array_equal(series, kept)
