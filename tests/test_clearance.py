@@ -1,12 +1,10 @@
-"""Bounds of what a function gives hold for all that is put into it; what is off every kink is not looked at by halving."""
+"""Bounds of what a function gives hold for all that is put into it; what they say is off every kink has none."""
 
 import casadi as ca
 import numpy as np
 import pytest
 from drawn_curves import K, T, drawn
-from test_corners import constraint, disc, motion, slide
 
-from lagrange_casadi import prepare
 from lagrange_casadi.arithmetic.boxes import boxed
 from lagrange_casadi.declare.kinks import Smooth
 
@@ -70,33 +68,3 @@ def test_what_is_clear_has_no_kink():
 @pytest.mark.parametrize("part", range(4))
 def test_more_that_is_clear_has_no_kink(part):
     assert clear_is_smooth(range(2000 + 500 * part, 2500 + 500 * part)) > 0.2
-
-
-def away(x, k):
-    """Roots, divisors and pieces that it does not come near to while k is small."""
-    return 0.02 * ca.sin(x) * ca.sqrt(2 + ca.sin(x) - k) / (1.5 - k + ca.cos(x)) + ca.if_else(x < 10 - 9.5 * k, 0, 0.01)
-
-
-@pytest.mark.parametrize("scene", [motion, constraint, disc])
-def test_designs_off_every_kink_are_not_looked_at_instant_by_instant(scene, monkeypatch):
-    law = away if scene is not disc else lambda x, k: 0.1 * away(ca.sin(x), k)
-    monkeypatch.setattr("test_corners.bend", law)
-    f = prepare(slide(away) if scene is motion else scene(), wanted=["effort"])
-    seen, look = [], Smooth.broken
-    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
-    for k in (0.0, 0.1, 0.2):
-        f(k=k)
-        f.peaks(k=k)
-    f.designs([[0.05], [0.15]])
-    assert seen == []
-    if scene is not disc:
-        assert (f.designs([[0.05], [0.99]]).status != 0).tolist() == [False, True]
-        assert seen == [1]
-
-
-def test_series_stay_when_peaks_of_a_watched_constraint_are_asked_for():
-    f = prepare(constraint(), wanted=["effort"])
-    series = next(iter(f(k=0.0).values()))
-    kept = series.copy()
-    f.peaks(k=0.0)
-    np.testing.assert_array_equal(series, kept)

@@ -148,13 +148,15 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
+            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
+            passed, touched = self._places(_Steps.of(paths, p), marks)
+            if not (passed.owner.size or touched.owner.size):
+                return
             usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
             usual = np.where(np.isfinite(usual), usual, 0.0)
             # A constraint's value is zero but for rounding: it is as large as what is added up in it.
             terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
             usual = np.array([np.maximum(usual[0], terms), usual[1:].max(axis=0)]).max(axis=2)
-            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
-            passed, touched = self._places(_Steps.of(paths, p), marks)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
@@ -323,6 +325,9 @@ class _Steps:
         before = state(low)
         for _ in range(_HALVINGS if self.owner.size else 0):
             middle = (low + high) / 2
+            if not ((low < middle) & (middle < high)).any():
+                # No number is between them.
+                break
             same = (state(middle) == before).all(axis=0)
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return self.to(low, high)

@@ -64,8 +64,8 @@ class Watch:
         p = p[some]
         broken = np.zeros(len(p), bool)
         if self._corners.laws:
-            start, stop = (np.broadcast_to(t[:, k], len(found))[some] for k in (0, -1))
-            broken |= self._corners.broken_laws(start, stop, p)
+            of = some if len(t) > 1 else np.zeros_like(some)
+            broken |= self._corners.broken_laws(t[of, 0], t[of, -1], p)
         if self.columns:
             assert columns is not None
             broken |= self._corners.broken_constraints(lambda name: columns[some][:, self._seen[name]], p)
