@@ -77,6 +77,7 @@ class Clearance:
         """Whether any mark comes near within boxes (d, symbols), and how large marks are there (d, marks)."""
         count = len(low)
         if getattr(self._kept, "count", None) != count:
+            # Blocks of designs, and prepared scenes, go on asking for as many.
             self._kept.count, self._kept.call = count, _bound(self._near, count)
         given, found, call, _ = self._kept.call
         for array, values in zip(given, (low, high, p, most), strict=True):

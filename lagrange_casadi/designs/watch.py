@@ -17,6 +17,8 @@ from ..declare.scene import Scene
 from ..equations.scene_graph import SceneGraph
 from ..instants.refusal import Status
 
+_OK = int(Status.OK)
+
 
 @dataclass(frozen=True, eq=False)
 class Watch:
@@ -58,16 +60,18 @@ class Watch:
                 share = float(self._ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
                 if not share <= BEYOND["double"] and np.isfinite(row).all():
                     found[k] = Status.BEYOND_ENDS
-        some = np.flatnonzero(found == Status.OK)
-        if not some.size:
+        ok = found == _OK
+        if not ok.any():
             return found
-        p = p[some]
-        broken = np.zeros(len(p), bool)
+        # All of them, as a rule, which are not copied then.
+        some: Any = slice(None) if ok.all() else ok
+        p, broken = p[some], np.zeros(np.count_nonzero(ok), bool)
         if self._corners.laws:
-            of = some if len(t) > 1 else np.zeros_like(some)
-            broken |= self._corners.broken_laws(t[of, 0], t[of, -1], p)
-        if self.columns:
-            assert columns is not None
-            broken |= self._corners.broken_constraints(lambda name: columns[some][:, self._seen[name]], p)
-        found[some] = np.where(broken, Status.CORNER, Status.OK)
+            start, stop = ((t[some, k] if len(t) > 1 else np.full(broken.size, t[0, k])) for k in (0, -1))
+            broken |= self._corners.broken_laws(start, stop, p)
+        if columns is not None and self.columns:
+            rows = columns[some]
+            broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
+        if broken.any():
+            found[np.flatnonzero(ok)[broken]] = Status.CORNER
         return found
