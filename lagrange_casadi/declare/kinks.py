@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -24,6 +24,7 @@ from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
 from ..errors import DeclarationError
+from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9
@@ -129,6 +130,11 @@ class Smooth:
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
         return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
 
+    @cached_property
+    def clearance(self) -> Clearance:
+        """Tells along which paths no mark comes near to where it passes, at a small part of the cost of looking for kinks."""
+        return Clearance(self.marks, self.whole, self.open)
+
     def broken(self, paths: Array, p: Array) -> Flags:
         """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
         found = np.zeros(len(paths), bool)
@@ -145,6 +151,10 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
+            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
+            passed, touched = self._places(_Steps.of(paths, p), marks)
+            if not (passed.owner.size or touched.owner.size):
+                return
             usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
             usual = np.where(np.isfinite(usual), usual, 0.0)
             # A constraint's value is zero but for rounding: it is as large as what is added up in it, at
@@ -152,8 +162,6 @@ class Smooth:
             terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
             value = np.maximum(usual[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
             usual = np.array([value, usual[1:].max(axis=(0, 2))])
-            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
-            passed, touched = self._places(_Steps.of(paths, p), marks)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
@@ -322,6 +330,9 @@ class _Steps:
         before = state(low)
         for _ in range(_HALVINGS if self.owner.size else 0):
             middle = (low + high) / 2
+            if not ((low < middle) & (middle < high)).any():
+                # No number is between them.
+                break
             same = (state(middle) == before).all(axis=0)
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return self.to(low, high)

@@ -61,8 +61,11 @@ class SceneGraph(Graphs):
 
     def seen(self, constraint: str, out: Array) -> Array:
         """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (..., columns, t)."""
-        rows = [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
-        return np.asarray(out[..., rows, :], float)
+        return np.asarray(out[..., self.seen_columns(constraint), :], float)
+
+    def seen_columns(self, constraint: str) -> list[int]:
+        """The rows of ``out`` that tell it."""
+        return [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
 
     @property
     def laws(self) -> Laws:

@@ -308,7 +308,9 @@ class DesignEngine:
         """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if they are known."""
         if not self.watch:
             return
-        status = self.watch.statuses(p, t, found.status, lambda: self._columns(p, t) if columns is None else columns)
+        if columns is None and self.watch.columns:
+            columns = self._columns(p, t)
+        status = self.watch.statuses(p, t, found.status, columns)
         some = status != found.status
         found.status[some] = status[some]
         for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):

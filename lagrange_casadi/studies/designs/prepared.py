@@ -127,13 +127,15 @@ class _Answers(threading.local):
         self.seen = Peaks(*(places[name][0] for name in kept))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call itself.
-        if engine.library is not None and engine.times.common and not engine.watch.columns:
+        if engine.library is not None and engine.times.common:
             even, asked = self.instants = engine.times.of(self.p)
             bind = partial(engine.library.bound, p=self.p)
             nowhere = np.zeros((1, 0), bool)
+            # What is watched at the instants of peaks; series of the evaluation before stay what they are.
+            self.even = np.empty_like(self.history) if engine.watch.columns else None
             self.fill = (
                 bind(asked, nowhere, results={"status": self.status, **dict.fromkeys(kept), "history": self.history}),
-                bind(even, engine.bent(self.p, even), results={"status": self.status, **places, "history": None}),
+                bind(even, engine.bent(self.p, even), results={"status": self.status, **places, "history": self.even}),
             )
 
 
@@ -201,7 +203,7 @@ class Prepared:
             self._refuse(found.status[0], p)
             return {str(o): row for o, row in engine.told(found.series[0], p[0]).items()}
         fill[0]()
-        self._refuse(self._watched(answers.instants[1]), p)
+        self._refuse(self._watched(answers.instants[1], answers.history), p)
         return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
 
     def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
@@ -250,7 +252,7 @@ class Prepared:
             self._refuse(found.status[0], p)
             return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
         fill[1]()
-        self._refuse(self._watched(answers.instants[0]), p)
+        self._refuse(self._watched(answers.instants[0], answers.even), p)
         return answers.seen
 
     def _kept_peaks(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
@@ -276,12 +278,12 @@ class Prepared:
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
         return p
 
-    def _watched(self, t: Array) -> int:
+    def _watched(self, t: Array, columns: Array | None) -> int:
         """The status of this thread's evaluation at instants (1, t); its motion may have a corner though all have numbers."""
         engine, answers = self._engine, self._answers
         if not engine.watch:
             return int(answers.status[0])
-        return int(engine.watch.statuses(answers.p, t, answers.status, lambda: answers.history)[0])
+        return int(engine.watch.statuses(answers.p, t, answers.status, columns)[0])
 
     def _refuse(self, status: int, p: Array) -> None:
         if status != Status.OK:

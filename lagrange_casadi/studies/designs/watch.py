@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,6 +17,8 @@ from ...declare.scene import Scene
 from ...equations.scene_graph import SceneGraph
 from ...instants.refusal import Status
 
+_OK = int(Status.OK)
+
 
 @dataclass(frozen=True, eq=False)
 class Watch:
@@ -30,9 +31,14 @@ class Watch:
     def _ends(self) -> Any | None:
         return ends_function(self.scene.laws, self.scene.mechanism.symbols)
 
-    @property
+    @cached_property
     def _corners(self) -> Corners:
         return Corners.of(self.scene)
+
+    @cached_property
+    def _seen(self) -> dict[str, list[int]]:
+        """The columns of what each constraint sees."""
+        return {name: self.graph.seen_columns(name) for name in self._corners.constraints}
 
     def __bool__(self) -> bool:
         """Whether there is anything to watch."""
@@ -43,10 +49,10 @@ class Watch:
         """Whether the columns of every design are needed, for what constraints see."""
         return bool(self._corners.constraints)
 
-    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Callable[[], Array]) -> npt.NDArray[np.int8]:
+    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None) -> npt.NDArray[np.int8]:
         """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1 or n, t).
 
-        ``columns()`` are theirs at these instants, (n, columns, t).
+        ``columns`` (n, columns, t) are theirs at these instants, if :attr:`columns` are needed.
         """
         found: npt.NDArray[np.int8] = status.copy()
         if self._ends is not None:
@@ -54,13 +60,18 @@ class Watch:
                 share = float(self._ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
                 if not share <= BEYOND["double"] and np.isfinite(row).all():
                     found[k] = Status.BEYOND_ENDS
-        some = np.flatnonzero(found == Status.OK)
-        if not some.size:
+        ok = found == _OK
+        if not ok.any():
             return found
-        start, stop = (np.broadcast_to(t[:, k], len(p))[some] for k in (0, -1))
-        broken = self._corners.broken_laws(start, stop, p[some])
-        if self.columns:
-            rows = columns()[some]
-            broken |= self._corners.broken_constraints(lambda name: self.graph.seen(name, rows), p[some])
-        found[some[broken]] = Status.CORNER
+        # All of them, as a rule, which are not copied then.
+        some: Any = slice(None) if ok.all() else ok
+        p, broken = p[some], np.zeros(np.count_nonzero(ok), bool)
+        if self._corners.laws:
+            start, stop = ((t[some, k] if len(t) > 1 else np.full(broken.size, t[0, k])) for k in (0, -1))
+            broken |= self._corners.broken_laws(start, stop, p)
+        if columns is not None and self.columns:
+            rows = columns[some]
+            broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
+        if broken.any():
+            found[np.flatnonzero(ok)[broken]] = Status.CORNER
         return found
