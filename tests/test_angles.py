@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mechanisms import four_bar
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.arguments import angle
+from lagrange_casadi.base.units import angle
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial

@@ -85,7 +85,7 @@ def axis(text: str) -> tuple[str, Axis]:
 
 def length(text: str) -> float:
     """A length, which may have a unit, as 5mm."""
-    from ..arguments import number
+    from ..base.units import number
 
     try:
         return number(_value(text), "m", finite=False)
@@ -178,7 +178,7 @@ def ratios(context: click.Context, option: click.Parameter, words: Sequence[str]
 
 def _value(word: str) -> Any:
     """A number, or the text of one with a unit. Raises ``ValueError`` for anything else."""
-    from ..arguments import typed
+    from ..base.units import typed
 
     return word if typed(word)[1] else real(word)
 

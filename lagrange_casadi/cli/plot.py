@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
-from ..arguments import typed
 from ..base.publish import check_writable
+from ..base.units import typed
 from ..errors import NoDesignError
 from ..shapes.index import MANIFEST, NAME, write_index
 from ..shapes.kept import parse_specs

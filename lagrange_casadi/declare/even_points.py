@@ -9,9 +9,9 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import number
 from ..base.arrays import Array
 from ..base.room import require
+from ..base.units import number
 from ..errors import DeclarationError, shown
 
 EvenPoints = tuple[float, float, int]

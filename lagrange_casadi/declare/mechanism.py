@@ -13,9 +13,10 @@ from typing import Any, cast
 
 import casadi as ca
 
-from ..arguments import Number, public
+from ..arguments import public
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
+from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
 from .constraints import constraint, row

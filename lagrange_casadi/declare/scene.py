@@ -10,9 +10,10 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from ..arguments import Outputs, number, public, texts, within
+from ..arguments import Outputs, public, texts
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import ANGLE, LENGTH
+from ..base.units import number, within
 from ..base.vocabulary import Precision
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method

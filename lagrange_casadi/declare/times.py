@@ -15,10 +15,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import number
 from ..base.arrays import Array
 from ..base.brief import Brief
 from ..base.tables import ANGLE, LENGTH
+from ..base.units import number
 from ..errors import DeclarationError, NumberError, UnknownNameError, shown
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar

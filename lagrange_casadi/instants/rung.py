@@ -6,7 +6,7 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
-from ..arguments import Within
+from ..base.units import Within
 from ..base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 

@@ -8,9 +8,10 @@ from typing import Annotated
 
 import numpy as np
 
-from ..arguments import Outputs, Within, public
+from ..arguments import Outputs, public
 from ..base.arrays import Array
 from ..base.numerals import real
+from ..base.units import Within
 from ..base.vocabulary import SAMPLES, Backend
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene

@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, overload
 
-from ...arguments import Within, public
+from ...arguments import public
 from ...base.publish import uninterrupted
+from ...base.units import Within
 from ...base.vocabulary import POINTS, Backend
 from ...case import Case
 from ...declare.scene import Scene

@@ -7,7 +7,7 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
-from ...arguments import Within
+from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
 from ...instants.refusal import Status
 from .finder import Finder

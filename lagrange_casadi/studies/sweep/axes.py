@@ -14,8 +14,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import number, public, typed
+from ...arguments import public
 from ...base.arrays import Array
+from ...base.units import number, typed
 from ...declare.even_points import points
 from ...declare.limits import parameter_faults
 from ...declare.mechanism import Mechanism

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import public, typed
+from ...arguments import public
 from ...base.arrays import Array
 from ...base.numerals import real
+from ...base.units import typed
 from ...errors import DeclarationError, check_kind
 from .columns import STATUS
 from .reading import Sweep, names_in

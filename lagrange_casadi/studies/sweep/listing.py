@@ -9,8 +9,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from ...arguments import public, typed
+from ...arguments import public
 from ...base.csv_rows import Row, read_rows
+from ...base.units import typed
 from ...errors import DeclarationError
 from .axes import Listed, check_known, not_parameter
 

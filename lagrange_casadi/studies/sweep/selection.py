@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import number as read_number
-from ...arguments import typed
 from ...base.arrays import Array
+from ...base.units import number as read_number
+from ...base.units import typed
 from ...errors import DeclarationError, NumberError, shown
 
 _NEAR = 1e-9
