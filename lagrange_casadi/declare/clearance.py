@@ -21,8 +21,18 @@ from .limits_beside import Flags
 _STRETCHES = 64
 """In so many stretches is a path taken whose bounds as a whole do not suffice."""
 
+_KEPT = 4
+"""Of so many numbers of designs are the arrays kept."""
+
 _NEAR = 1e-6
 """Of the largest on the path: what is nearer to zero is looked at."""
+
+
+class _Kept(threading.local):
+    """Of each thread what was bound, by the number of designs."""
+
+    def __init__(self) -> None:
+        self.calls: dict[int, tuple[list[Array], list[Array], Callable[[], None], Any]] = {}
 
 
 class Clearance:
@@ -33,7 +43,7 @@ class Clearance:
 
     def __init__(self, marks: Any, whole: Flags, open_: Flags) -> None:
         self._marks, self._whole, self._open = marks, whole, open_
-        self._kept = threading.local()
+        self._kept = _Kept()
 
     @cached_property
     @symbolic
@@ -76,17 +86,20 @@ class Clearance:
     def _looked(self, low: Array, high: Array, p: Array, most: Any) -> tuple[Flags, Array]:
         """Whether any mark comes near within boxes (d, symbols), and how large marks are there (d, marks)."""
         count = len(low)
-        if getattr(self._kept, "count", None) != count:
-            # Blocks of designs, and prepared scenes, go on asking for as many.
-            self._kept.count, self._kept.call = count, _bound(self._near, count)
-        given, found, call, _ = self._kept.call
+        calls = self._kept.calls
+        if count not in calls:
+            # Blocks of designs, and prepared scenes, go on asking for as many, and as many stretches of a few.
+            if len(calls) >= _KEPT:
+                calls.clear()
+            calls[count] = bound(self._near, count)
+        given, found, call, _ = calls[count]
         for array, values in zip(given, (low, high, p, most), strict=True):
             array[...] = values
         call()
         return found[0][:, 0] != 0.0, found[1]
 
 
-def _bound(function: Any, count: int) -> tuple[list[Array], list[Array], Callable[[], None], Any]:
+def bound(function: Any, count: int) -> tuple[list[Array], list[Array], Callable[[], None], Any]:
     """Arrays (count, rows) of the arguments and results of a function, what fills these by those, and what must live for it."""
     given = [np.empty((count, function.size1_in(k))) for k in range(function.n_in())]
     found = [np.empty((count, function.size1_out(k))) for k in range(function.n_out())]

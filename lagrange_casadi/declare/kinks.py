@@ -24,7 +24,7 @@ from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
 from ..errors import DeclarationError
-from .clearance import Clearance
+from .clearance import Clearance, bound
 from .limits_beside import Flags, Side, between, vanishes
 
 _SAME, _FAINT = 1e-6, 1e-9
@@ -345,7 +345,11 @@ def _called(function: Any, *columns: Array) -> Array:
     """The rows (rows, m) of a function of columns."""
     if not columns[0].shape[1]:
         return np.zeros((function.size1_out(0), 0))
-    return np.asarray(function(*(ca.DM(array) for array in columns)).full())
+    given, found, call, _ = bound(function, columns[0].shape[1])
+    for array, values in zip(given, columns, strict=True):
+        array[...] = values.T
+    call()
+    return np.ascontiguousarray(found[0].T)
 
 
 def _both(rows: Array) -> Array:
