@@ -37,10 +37,10 @@ DOORS = (
             "elements",
             "figures",
             "motion",
-            "optimise",
+            "studies.optimise",
             "peaks",
             "strength",
-            "sweep",
+            "studies.sweep",
         )
     ),
 )

@@ -105,7 +105,7 @@ def test_a_curve_of_numbers_is_numbers():
         ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": -1.0}, "smoothing must be a finite number that is not negative, got -1.0"),
         ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves but a straight line"),
         ([0, 1, 2, 3], [0, 1, 2, 0], {"smoothing": 5.0, "periodic": True}, "leaves but a constant"),
-        ("abcd", [0, 1, 2, 3], {}, "expected two rows of finite numbers"),
+        ("abcd", [0, 1, 2, 3], {}, "curve: x: expected a row of numbers, got 'abcd'"),
     ],
 )
 def test_what_is_no_curve(x, y, options, message):
@@ -329,7 +329,7 @@ def test_a_density_along_a_curve():
         np.testing.assert_allclose(a, b, rtol=0, atol=1e-13 * np.abs(b).max())
     with pytest.raises(DeclarationError, match="the curve must reach from 0 to 1"):
         density.along(curve([0, 1, 2, 3], [1, 1, 1, 1]))
-    with pytest.raises(DeclarationError, match=r"expected a curve of lagrange_casadi\.curve"):
+    with pytest.raises(DeclarationError, match="along: curve: expected a Curve"):
         density.along([1, 2, 3])
 
 

@@ -148,7 +148,7 @@ def test_in_space_too(name):
     values = scene.mechanism.values()
     p = np.array(list(values.values()))
     rows = list(graph.outputs)
-    kinds = [f"{row.group} {row.unit(scene.mechanism)}" for row in rows]
+    kinds = [f"{row.group} {row.unit(scene.mechanism.kinds)}" for row in rows]
     instants = np.linspace(start, t, 40)
     found = at_instants(graph, rows, instants, p, list(range(p.size)), Rung("vm"))[-1]
     sizes: dict[str, float] = {}

@@ -56,7 +56,7 @@ def gap(graph, t, rung, truth=None):
 
 def unit_in(mechanism):
     """In space whole motions and moments are nil, and not by structure: what has the same unit is measured by one peak."""
-    return lambda name: name if name.startswith("_") else Output.of(name).unit(mechanism).replace("rad", "1")
+    return lambda name: name if name.startswith("_") else Output.of(name).unit(mechanism.kinds).replace("rad", "1")
 
 
 def values(graph):

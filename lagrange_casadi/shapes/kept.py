@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from ..errors import StoreError, one_line
+from ..errors import DeclarationError, StoreError, one_line
 from ..store.untrusted import parsed
 from .specs import KINDS, Spec
 
@@ -21,7 +21,7 @@ def parse_specs(text: str) -> tuple[Spec, ...]:
     """Specs from a file's text; none from an empty one. Raises :class:`StoreError` for what are none."""
     try:
         return tuple(_parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures"))
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
+    except (ValueError, TypeError, KeyError, RecursionError, DeclarationError) as error:
         raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
 
 

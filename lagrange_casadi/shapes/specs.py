@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 class _Drawn:
     """A spec, which can be drawn."""
 
+    @public
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure; axes have the units that people read, or with ``si`` those of SI, without prefixes."""
         found: Figure = method("Spec.draw")(self, solution, si)

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -43,8 +43,8 @@ class Range:
     Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
     """
 
-    start: float
-    stop: float
+    start: Annotated[float, "may be a text"]
+    stop: Annotated[float, "may be a text"]
     count: int
     log: bool = False
     unit: str = field(default="", init=False, compare=False)
@@ -100,7 +100,7 @@ class Values:
     Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
     """
 
-    values: tuple[float, ...]
+    values: Annotated[tuple[float, ...], "may be texts"]
     unit: str = field(default="", init=False, compare=False)
 
     def __post_init__(self) -> None:

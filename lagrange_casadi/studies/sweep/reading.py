@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import Count, Index, public
+from ...arguments import Count, Index, Outputs, public
 from ...base.arrays import Array
 from ...base.seal import Seen, kind_of, verify
 from ...base.tables import ANGLE, LENGTH
@@ -165,7 +165,7 @@ class Sweep:
             raise UnknownNameError("axis of designs", axis, self.dimensions)
         return self.chosen.get(axis, np.arange(self.dimensions[axis]))
 
-    def axes_of(self, names: Sequence[str]) -> tuple[str, ...]:
+    def axes_of(self, names: Outputs) -> tuple[str, ...]:
         """The axes beyond those of the designs that columns share; those without any go with all, and so do axes by name.
 
         Raises :class:`UnknownNameError` for names that are none, :class:`DeclarationError` where two columns have different axes.
