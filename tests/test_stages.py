@@ -18,6 +18,7 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
+from lagrange_casadi.declare.kinds import kinds_of
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.backends import run
@@ -56,7 +57,7 @@ def gap(graph, t, rung, truth=None):
 
 def unit_in(mechanism):
     """In space whole motions and moments are nil, and not by structure: what has the same unit is measured by one peak."""
-    return lambda name: name if name.startswith("_") else Output.of(name).unit(mechanism.kinds).replace("rad", "1")
+    return lambda name: name if name.startswith("_") else Output.of(name).unit(kinds_of(mechanism)).replace("rad", "1")
 
 
 def values(graph):

@@ -216,7 +216,7 @@ class Smooth:
     def _state(self, steps: _Steps, x: Any) -> Array:
         return self._states(self._marks(steps, x))
 
-    def marks_of(self, steps: _Steps, x: Any) -> Array:
+    def _marks(self, steps: _Steps, x: Any) -> Array:
         return _called(self.marks, steps.at(x), steps.p)
 
     def _states(self, marks: Array) -> Array:

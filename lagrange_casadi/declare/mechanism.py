@@ -14,7 +14,6 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import public
-from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.units import Number
 from ..beams.beam import Beam
@@ -113,13 +112,6 @@ class Mechanism(Graphs):
     def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
         """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a joint has several."""
         return {axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes}
-
-    @property
-    def kinds(self) -> Kinds:
-        """What the units of its outputs depend on."""
-        coordinates = {name: axis.kind for name, (_, axis) in self.coordinates.items()}
-        frictions = {name: load.axis.kind for name, load in self.loads.items() if isinstance(load, Friction)}
-        return Kinds(coordinates, frictions, {name: own.unit for name, own in self.outputs.items()})
 
     @property
     def space(self) -> bool:

@@ -16,6 +16,7 @@ from ..base.symbolic import Graphs, symbolic
 from ..beams.material import Material
 from ..declare.density import Density
 from ..declare.description import Description, Template
+from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
@@ -65,7 +66,7 @@ class ModelData(Graphs):
             space=mechanism.space,
             rounding=_rounding(scene),
             parameters=known,
-            kinds=scene.guided.kinds,
+            kinds=kinds_of(scene.guided),
             closings=_closings(mechanism),
             laws=Laws.of({name: scene.laws[name] for name in driven}, symbols),
             span=scene.span,

@@ -13,6 +13,7 @@ import casadi as ca
 from ...arguments import public
 from ...base.numerals import real
 from ...base.quantities import AVERAGED, Output
+from ...declare.kinds import kinds_of
 from ...declare.masses import mass_of
 from ...declare.mechanism import Mechanism
 from ...errors import DeclarationError
@@ -92,7 +93,7 @@ class Term:
             return "kg"
         if tired_link(self.output):
             return "1"
-        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(mechanism.kinds)
+        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(kinds_of(mechanism))
 
     def __str__(self) -> str:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"

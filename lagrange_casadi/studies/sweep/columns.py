@@ -18,6 +18,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output, quotient
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
+from ...declare.kinds import kinds_of
 from ...declare.mechanism import Mechanism
 from ...declare.wanted_slopes import SENSITIVITY
 from ...errors import DeclarationError, UnknownNameError
@@ -94,7 +95,7 @@ class Harvest:
             found += self._peak(name)
         for name in engine.efforts:
             output = Output.of(name)
-            unit, words = output.unit(self.mechanism.kinds), output.meant(self._table).attributes
+            unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
@@ -110,7 +111,7 @@ class Harvest:
         for name in self._series:
             output = Output.of(name)
             words = output.meant(self._table).attributes | self._open(name)
-            found.append(Column(f"history:{name}", output.unit(self.mechanism.kinds), words, over, (self.axis.values.size,)))
+            found.append(Column(f"history:{name}", output.unit(kinds_of(self.mechanism)), words, over, (self.axis.values.size,)))
         if self._own_times:
             found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
         if self.keep == "histories" and self.xi.size:
@@ -239,7 +240,7 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         output, open_ = Output.of(name), self._open(name)
-        unit, words = output.unit(self.mechanism.kinds), output.meant(self._table).attributes
+        unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
         what = words["long_name"]
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
@@ -255,7 +256,7 @@ class Harvest:
     def _slope(self, parameter: str, kind: str, name: str) -> Column:
         """The column of the derivative of a peak, or of a mean."""
         output = Output.of(name)
-        unit = quotient(output.unit(self.mechanism.kinds), self.mechanism.parameters[parameter].unit)
+        unit = quotient(output.unit(kinds_of(self.mechanism)), self.mechanism.parameters[parameter].unit)
         what = f"derivative by {parameter} of the {SLOPES_OF[kind]}: {output.meant(self._table).long_name}"
         return Column(f"{SENSITIVITY}:{parameter}:{kind}:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
 
