@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from lagrange_casadi import Scene, SpatialMechanism, derive
+from lagrange_casadi.base.tables import SPACE
+from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.ordering import in_order
-from lagrange_casadi.instants.rung import Backend
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
-from lagrange_casadi.tables import SPACE
 
 from .engine import columns_of
 from .peers.arm_data import AXES, FIRST, LENGTHS, MASSES, RATE, TURN

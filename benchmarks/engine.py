@@ -8,16 +8,17 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
+from lagrange_casadi.base.quantities import FORCES
+from lagrange_casadi.base.room import cores
+from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.backends import rows, run
 from lagrange_casadi.instants.ordering import in_order
-from lagrange_casadi.instants.rung import Backend, Rung
+from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
-from lagrange_casadi.quantities import FORCES
-from lagrange_casadi.system.room import cores
 
 from .peers.paper_case import Array, SliderCrank, Work
 

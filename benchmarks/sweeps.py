@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from lagrange_casadi import load_case, sweep
-from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.system.room import cores
+from lagrange_casadi.base.room import cores
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 WANTED = ("effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide", "section:crank", "section:rod")
 _BLOCK = 8192

@@ -1,76 +1,20 @@
 """Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
 
-from .system import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
+from .base import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
 
 # isort: split
-from . import beams, bearings, density, figures, motion, strength
-from .case import Case, load_case
-from .declare.curves import Curve, curve, table
-from .declare.mechanism import Mechanism
-from .declare.scene import Scene
-from .declare.shaking import shaking
-from .declare.spatial import SpatialMechanism
-from .designs.prepared import Prepared, prepare
-from .elastic.vibration import vibration
-from .equations.derive import derive
-from .equations.lagrange import LagrangeSystem
-from .errors import LagrangeCasadiError
-from .evaluate import evaluate
-from .export import export
-from .instants.holding import holding
-from .instants.solution import Peak, Solution
-from .optimise import Front, Optimum, optimise
-from .store.runs import check, load, save
-from .study.peaks import refine
-from .study.sensitivities import Sensitivities, sensitivities
-from .study.tolerances import tolerances
-from .study.tool import tool_deflection
-from .sweep import Sweep, best, read_designs, sweep
-from .system.symbolic import symbolic
-from .version import __version__
+from typing import Any
 
-__all__ = [
-    "Case",
-    "Curve",
-    "Front",
-    "LagrangeCasadiError",
-    "LagrangeSystem",
-    "Mechanism",
-    "Optimum",
-    "Peak",
-    "Prepared",
-    "Scene",
-    "Sensitivities",
-    "Solution",
-    "SpatialMechanism",
-    "Sweep",
-    "__version__",
-    "beams",
-    "bearings",
-    "best",
-    "check",
-    "curve",
-    "density",
-    "derive",
-    "evaluate",
-    "export",
-    "figures",
-    "holding",
-    "load",
-    "load_case",
-    "motion",
-    "optimise",
-    "prepare",
-    "read_designs",
-    "refine",
-    "save",
-    "sensitivities",
-    "shaking",
-    "strength",
-    "sweep",
-    "symbolic",
-    "table",
-    "tolerances",
-    "tool_deflection",
-    "vibration",
-]
+import lazy_loader
+
+from .methods import missing
+
+_named, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported when it is first asked for: ``__init__.pyi`` lists them, and where each is defined."""
+    try:
+        return _named(name)
+    except ModuleNotFoundError as error:
+        raise missing(error, f"lagrange_casadi.{name}") from None

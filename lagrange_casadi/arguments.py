@@ -4,62 +4,24 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 import os
-import re
 import sys
 import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
-from decimal import Decimal, DecimalException
-from numbers import Integral
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeAlias, TypeVar
 
 import casadi as ca
 import numpy as np
 
-from .errors import DeclarationError, NumberError, shown
-from .system.numerals import real
-from .system.room import MOST_THREADS
-
-UNITS: dict[str, dict[str, float]] = {
-    "rad": {"rad": 1.0, "deg": math.radians(1.0), "turn": math.tau},
-    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
-    "kg": {"kg": 1.0, "g": 1e-3},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
-}
-"""Of each unit the words that a text may tell a number in, and how many of the unit each is."""
-
-_EXAMPLES = {"rad": "'350 deg' or '1.2 rad'", "m": "'100 mm'", "kg": "'500 g'", "s": "'20 ms'"}
-_WRITTEN = re.compile(r"\s*(\S*[\d.])\s*([A-Za-z]+)(/\S+)?\s*")
-_BASE = {word: unit for unit, words in UNITS.items() for word in words}
+from .base.room import MOST_THREADS
+from .base.units import Within, double, is_small, is_whole, typed
+from .errors import DeclarationError, shown
 
 _OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
 """Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
-
-Number: TypeAlias = float | str
-"""A number, or a text of one with its unit."""
-
-
-class Within(NamedTuple):
-    """What an annotation says of a number beside its type: that it is finite, and from ``low`` to ``high``, or ``above`` low."""
-
-    low: float = -math.inf
-    high: float = math.inf
-    above: bool = False
-
-    def admits(self, value: float) -> bool:
-        """Whether a number is in this range."""
-        return -math.inf < value < math.inf and (self.low < value if self.above else self.low <= value) and value <= self.high
-
-    @property
-    def words(self) -> str:
-        """The range, to be said after what is in it."""
-        if self.high < math.inf:
-            return f" from {self.low:.17g} to {self.high:.17g}"
-        return f" above {self.low:g}" if self.above and self.low else f" of at least {self.low:g}" if self.low > -math.inf else ""
 
 
 Finite: TypeAlias = Annotated[float, Within()]
@@ -86,65 +48,6 @@ Graph: TypeAlias = Annotated[Any, "graph"]
 """A ``casadi.SX`` expression."""
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
-
-
-def typed(value: object) -> tuple[Any, str]:
-    """A text with a unit as a number, and the unit that it is then in, as rad, m or m/s; anything else as it is, and no unit."""
-    if not isinstance(value, str) or not (found := _WRITTEN.fullmatch(value)) or found[2] not in _BASE:
-        return value, ""
-    digits, word, per = found[1], found[2], found[3] or ""
-    with suppress(ValueError, OverflowError, DecimalException):
-        number = real(digits)
-        if word == "deg":  # whole and half turns are the same doubles as multiples of math.pi
-            number = number / 180.0 * math.pi
-        elif word == "turn":
-            number *= math.tau
-        elif word != _BASE[word]:  # as its decimals say, rounded once
-            number = float(Decimal(digits) * Decimal(repr(UNITS[_BASE[word]][word])))
-        if math.isfinite(number):
-            return number, _BASE[word] + per
-    return value, ""
-
-
-def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
-    """A number in a unit: a number is one, a text is one that tells a unit, as ``"350 deg"``, ``"100 mm"`` or ``"500 g"``.
-
-    Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite`` for what is not.
-    """
-    read, told = typed(value)
-    found = _double(read) if told in ("", unit) else None
-    if found is None or not (math.isfinite(found) or not finite):
-        raise NumberError(f"expected {'a finite ' if finite else 'a '}{in_words(unit)}, got {shown(value)}")
-    return found
-
-
-def angle(value: object) -> float:
-    """An angle in rad; see :func:`number`."""
-    return number(value, "rad")
-
-
-def in_words(unit: str) -> str:
-    """How a number in a unit is told: that it may be a text, where it may."""
-    base, per, rest = unit.partition("/")
-    example = _EXAMPLES.get(base, "")
-    if per and example:
-        example = f"'{example.split(chr(39))[1]}/{rest}'"
-    return f"number{'' if unit == '1' else f' [{unit}]'}{f', or a text such as {example}' if example else ''}"
-
-
-def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
-    """A whole number in a range. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
-    if not _is_whole(value) or not least <= value <= most:  # type: ignore[operator]
-        raise DeclarationError(f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}")
-    return int(value)  # type: ignore[call-overload, no-any-return]
-
-
-def within(what: str, value: object, low: float, high: float) -> float:
-    """A number from ``low`` to ``high``. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
-    found = _double(value)
-    if found is None or not low <= found <= high:
-        raise DeclarationError(f"{what}: expected a number from {low:g} to {high:g}, got {shown(value)}")
-    return found
 
 
 def public(thing: Thing) -> Thing:
@@ -175,15 +78,15 @@ _NONE: Any = object()
 
 def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
     """A function that looks at its arguments before it runs."""
-    signature = inspect.signature(function)
-    known: dict[str, _Kind] = {}
-    looked: list[bool] = []
+
+    @functools.cache
+    def asked() -> tuple[inspect.Signature, dict[str, _Kind]]:  # a module's names are not all there when it is read
+        signature = inspect.signature(function)
+        return signature, _kinds(function, signature)
 
     @functools.wraps(function)
     def called(*given: Any, **named: Any) -> Any:
-        if not looked:  # a module's names are not all there when it is read
-            known.update(_kinds(function, signature))
-            looked.append(True)
+        signature, known = asked()
         try:
             bound = signature.bind(*given, **named)
         except TypeError as wrong:
@@ -265,9 +168,9 @@ def _kind(hint: Any) -> _Kind | None:
     if isinstance(origin, type) and origin in _SIMPLE:
         return _SIMPLE[origin]
     if origin in (Sequence, Iterable, Collection) or (origin is tuple and of[1:] == (...,)):
-        return _row(of[0])
+        return _row(of[0], named=origin is Collection)
     if origin is np.ndarray:
-        return _Kind("an array of numbers", _array) if of[-1] == np.dtype[np.float64] else None
+        return _ARRAYS.get(of[-1])
     if origin is Mapping or origin is dict:
         by_name = of == (str, float)
         words = "values by name, as {'l': 0.25}" if by_name else "a mapping by name"
@@ -313,8 +216,8 @@ def _ranged(of: type, span: Within) -> _Kind:
     return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
 
 
-def _row(of: Any) -> _Kind | None:
-    """The kind of rows of something: of numbers, of names, of parts."""
+def _row(of: Any, named: bool = False) -> _Kind | None:
+    """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping, where no order is asked for."""
     if of is float:
         return _Kind("a row of numbers", lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE)
     kind = _SIMPLE[str] if of is str else _kind(of)
@@ -322,7 +225,9 @@ def _row(of: Any) -> _Kind | None:
         return None
 
     def read(value: Any) -> Any:
-        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+        if isinstance(value, str | bytes | set | frozenset) or not isinstance(value, Iterable):
+            return _NONE
+        if isinstance(value, Mapping) and not named:
             return _NONE
         with suppress(Exception):  # of a class that is not ours, when it is walked over
             found = [kind.read(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
@@ -338,9 +243,16 @@ def _array(value: Any) -> Any:
         return _NONE
     with suppress(TypeError, ValueError, OverflowError, RuntimeError, NotImplementedError):
         found = np.asarray(value)
-        whole = found.dtype.kind in "iuf" or (found.dtype.kind == "O" and all(_double(one) is not None for one in found.flat))
+        whole = found.dtype.kind in "iuf" or (found.dtype.kind == "O" and all(double(one) is not None for one in found.flat))
         return found.astype(float) if whole else _NONE
     return _NONE
+
+
+def _wholes(value: Any) -> Any:
+    """A value as an array of whole numbers."""
+    found = _array(value)
+    whole = found is not _NONE and (np.abs(found) < 2.0**53).all() and np.array_equal(found, np.rint(found))
+    return found.astype(np.int64) if whole else _NONE
 
 
 def texts(value: Any) -> list[str] | None:
@@ -355,7 +267,7 @@ def texts(value: Any) -> list[str] | None:
 def _graph(value: Any) -> Any:
     if isinstance(value, ca.SX | ca.DM):
         return ca.SX(value)
-    return _NONE if (found := _double(value)) is None else ca.SX(found)
+    return _NONE if (found := double(value)) is None else ca.SX(found)
 
 
 def _symbolic(value: Any) -> Any:
@@ -364,7 +276,7 @@ def _symbolic(value: Any) -> Any:
         return value if value.is_scalar() else _NONE
     if isinstance(value, str):
         return value if typed(value)[1] else _NONE
-    found = _double(value)
+    found = double(value)
     return _NONE if found is None else value if isinstance(value, int | float) else found
 
 
@@ -380,30 +292,18 @@ def _is_path(value: Any) -> bool:
     return False
 
 
-def _is_whole(value: object) -> bool:
-    return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
-
-
-def _double(value: Any) -> float | None:
-    """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and symbols."""
-    if isinstance(value, ca.SX | ca.DM):
-        return float(value) if value.is_scalar() and value.is_constant() else None
-    value = value.item() if isinstance(value, np.ndarray) and not value.shape else value
-    strange = isinstance(value, bool | complex | np.ndarray) or not hasattr(type(value), "__float__")
-    if not strange and not (isinstance(value, np.generic) and value.dtype.kind not in "iuf"):
-        with suppress(TypeError, ValueError, OverflowError, NotImplementedError, RuntimeError):
-            return float(value)
-    return None
-
-
 _SIMPLE: dict[type, _Kind] = {
     str: _if("a text", lambda value: isinstance(value, str)),
     bool: _Kind("True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE),
-    int: _Kind("a whole number", lambda value: int(value) if _is_whole(value) else _NONE),
-    float: _Kind("a number", lambda value: _NONE if (found := _double(value)) is None else found),
+    int: _Kind("a whole number", lambda value: int(value) if is_whole(value) else _NONE),
+    float: _Kind("a number", lambda value: _NONE if (found := double(value)) is None else value if is_small(value) else found),
     Path: _if("a path", _is_path),
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]
+_ARRAYS = {
+    np.dtype[np.float64]: _Kind("an array of numbers", _array),
+    np.dtype[np.int64]: _Kind("an array of whole numbers", _wholes),
+}
 _NAMED = {
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),

@@ -20,9 +20,9 @@ from . import case_modules
 from .arguments import public
 from .declare.expressions import told
 from .declare.scene import Scene
-from .draw.figures import Spec
-from .draw.kept import dump_specs
 from .errors import CaseError, LagrangeCasadiError, shown
+from .shapes.kept import dump_specs
+from .shapes.specs import Spec
 from .shipped_cases import shipped_cases
 
 

@@ -208,6 +208,12 @@ class ClusterError(LagrangeCasadiError):
     exit_status = 1
 
 
+class MissingPackageError(LagrangeCasadiError, ImportError):
+    """A package of this installation is not there, and what was asked for needs it."""
+
+    exit_status = 1
+
+
 class CertificateError(LagrangeCasadiError):
     """What was computed fails the independent checks that come with it."""
 

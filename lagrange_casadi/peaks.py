@@ -1,6 +1,6 @@
-"""Peaks between instants: the public part of :mod:`.study.peaks` and :mod:`.study.strength_peaks`."""
+"""Peaks between instants: the public part of :mod:`.studies.peaks` and :mod:`.studies.strength_peaks`."""
 
-from .study.peaks import forces, refine, shortfall
-from .study.strength_peaks import refine_safety, refine_stress
+from .studies.peaks import forces, refine, shortfall
+from .studies.strength_peaks import refine_safety, refine_stress
 
 __all__ = ["forces", "refine", "refine_safety", "refine_stress", "shortfall"]

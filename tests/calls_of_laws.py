@@ -20,8 +20,8 @@ from lagrange_casadi import (
     motion,
     strength,
 )
-from lagrange_casadi.optimise import Term
-from lagrange_casadi.sweep import Condition, Grid, Listed, Range, Values
+from lagrange_casadi.studies.optimise import Term
+from lagrange_casadi.studies.sweep import Condition, Grid, Listed, Range, Values
 
 
 def laws() -> Iterator[tuple[str, Call]]:
@@ -136,4 +136,4 @@ def laws() -> Iterator[tuple[str, Call]]:
 
 def optimise_constraint() -> Any:
     """The class of limits."""
-    return importlib.import_module("lagrange_casadi.optimise").Constraint
+    return importlib.import_module("lagrange_casadi.studies.optimise").Constraint

@@ -21,8 +21,8 @@ from precise import precise
 
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
 from lagrange_casadi.arithmetic.interpret import interpret
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.judge.reference import arithmetic
-from lagrange_casadi.quantities import FORCES
 
 DIGITS = 50
 LEAST = 1e-30

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import density, derive, evaluate
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.peaks import refine
 
 
 def around(scene, count, spread=0.03, seed=0):

@@ -103,16 +103,16 @@ def spinner():
 
 
 @functools.cache
-def slider_crank(law=None):
+def slider_crank(law=None, pin=Mechanism.revolute):
     m, number, motion = _declared("slider_crank")
     crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
     rod = m.link("rod", length=number("l", 0.2), mass=number("m2", 0.1, "kg"))
     slider = m.point_mass("slider", number("m3", 0.1, "kg"))
     m.revolute("O", m.ground.at(number("x", 0.0), number("y", 0.0)), crank)
     m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pin(m, "B", rod.tip, slider)
     m.prismatic("guide", m.ground.at(number("gx", 0.0), number("gy", 0.0)), slider, axis=(1, 0))
-    return Scene(m, {"O": law or motion}, posture={"rod": 0.0})
+    return Scene(m, {"O": law or motion}, posture={"rod": 0.0, "guide": 0.3})
 
 
 @functools.cache
@@ -121,7 +121,7 @@ def swung():
 
 
 @functools.cache
-def four_bar():
+def four_bar(pin=Mechanism.revolute):
     m, number, motion = _declared("four_bar")
     a, b, c = (
         m.link(name, length=number(f"l{name}", length), mass=number(f"m{name}", mass, "kg"))
@@ -129,9 +129,9 @@ def four_bar():
     )
     m.revolute("O", m.ground.at(number("x", 0.0), number("y", 0.0)), a)
     m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
+    pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(number("cx", 0.3), number("cy", 0.05)), c)
-    return Scene(m, {"O": motion}, posture={"c": 1.5})
+    return Scene(m, {"O": motion}, posture={"b": 0.9, "c": 1.5})
 
 
 @functools.cache

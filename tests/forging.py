@@ -6,7 +6,7 @@ import contextlib
 
 import h5py
 
-from lagrange_casadi.system import seal
+from lagrange_casadi.base import seal
 
 
 def unseal(path):

@@ -14,14 +14,16 @@ MOTION = polynomial(0.2, 3.0, 4.0)
 
 INSTANT = 0.3
 
+PIN = Mechanism.revolute
+
 
 def slider_crank(wanted=("all",), mechanism=None, **keywords):
     """The paper's mechanism, with parameters; or another one with its motion."""
     keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
-    return Scene(mechanism or _slider_crank(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
+    return Scene(mechanism or crank_slider(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
 
 
-def _slider_crank():
+def crank_slider(pin=PIN):
     m = Mechanism("slider_crank")
     r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
     crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
@@ -29,12 +31,14 @@ def _slider_crank():
     slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
+    pin(m, "B", rod.tip, slider)
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     return m
 
 
-def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), **keywords):
+def four_bar(
+    lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), pin=PIN, **keywords
+):
     """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
     m = Mechanism("four_bar")
     a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", lengths, masses, strict=True))
@@ -49,7 +53,7 @@ def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05
         m.revolute("C", c.tip, ground)
         m.revolute("B", c.base, far)
     else:
-        m.revolute("B", far, c.tip)
+        pin(m, "B", far, c.tip)
         m.revolute("C", ground, c)
     return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
 
@@ -277,19 +281,21 @@ def coil(m, joint):
     m.torsion_spring(f"coil_{joint}", m.joints[joint], stiffness=STIFFNESS, angle=FREE, damping=DAMPING)
 
 
-def sprung(joints, lengths=(0.1, 0.35, 0.25), frame=(0.3, 0.05), rocker=1.5, law=None, span=2.0, count=101, parametric=False):
+def sprung(
+    joints, lengths=(0.1, 0.35, 0.25), frame=(0.3, 0.05), rocker=1.5, law=None, span=2.0, count=101, parametric=False, pin=PIN
+):
     """A four-bar with springs on some of its undriven joints."""
     m = Mechanism("sprung")
     sides = [m.parameter(n, l, "m") for n, l in zip("pqr", lengths, strict=True)] if parametric else lengths
     a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True))
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
+    pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(*frame), c)
     for joint in joints:
         coil(m, joint)
     law = law or polynomial(0.2, 2 * math.pi)
-    return Scene(m, {"O": law}, posture={"c": rocker}, t=(0.0, span, count))
+    return Scene(m, {"O": law}, posture={"b": 0.9, "c": rocker}, t=(0.0, span, count))
 
 
 MASS, LENGTH, G = 1.2, 0.5, 9.81
@@ -367,17 +373,17 @@ PATTERNS = {
 }
 
 
-def press(law=polynomial, wanted=("all",), **keywords):
+def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):
     """A press whose speed is a parameter: ``law(0, w)`` gives the crank's motion, ``t`` and ``over`` may be functions of it."""
     m = Mechanism("press")
     rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
     crank, rod, ram = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=length, mass=2.0), m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     asked = {name: keywords.pop(name)(rpm) for name in ("t", "over") if callable(keywords.get(name))}
-    return Scene(m, {"O": law(0, rpm * math.tau / 60)}, wanted, posture={"rod": 1.5}, **asked, **keywords)
+    return Scene(m, {"O": law(0, rpm * math.tau / 60)}, wanted, posture={"rod": 1.5, "guide": 0.6}, **asked, **keywords)
 
 
 def uneven(_, w):

@@ -6,7 +6,7 @@ import numpy as np
 import sweeps
 from forging import forging
 
-from lagrange_casadi.sweep import Listed, Sweep, sweep
+from lagrange_casadi.studies.sweep import Listed, Sweep, sweep
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 

@@ -37,10 +37,10 @@ DOORS = (
             "elements",
             "figures",
             "motion",
-            "optimise",
+            "studies.optimise",
             "peaks",
             "strength",
-            "sweep",
+            "studies.sweep",
         )
     ),
 )
@@ -104,7 +104,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "shortfall": {"scene": scene, "counts": [5, 9], "names": ["effort:O"]},
     }.items():
         yield f"peaks.{name}", (getattr(peaks, name), given)
-    size = importlib.import_module("lagrange_casadi.study.sizing").size
+    size = importlib.import_module("lagrange_casadi.studies.sizing").size
     yield "size", (size, {"scene": sized(), "profiles": [beams.Profile("p", {"height": 0.03, "width": 0.01})]})
     for name, given in {
         "animate": {"path": "cycle.svg"},
@@ -183,7 +183,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "values": {"number": 0, "names": [peak]},
     }.items():
         yield f"Sweep.{name}", (getattr(swept, name), given)
-    swept_room = importlib.import_module("lagrange_casadi.sweep")
+    swept_room = importlib.import_module("lagrange_casadi.studies.sweep")
     yield "chosen", (swept_room.chosen, {"sweep": swept, "names": ["l"]})
     yield "is_sweep", (swept_room.is_sweep, {"path": "swept.h5"})
     held = {"solution": solution, "joint": "O"}

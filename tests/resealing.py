@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import json
 import os
 import random
@@ -22,12 +23,12 @@ import h5py
 from damaging import damaged
 
 import lagrange_casadi.cli  # noqa: F401
+from lagrange_casadi.base import seal
 from lagrange_casadi.errors import LagrangeCasadiError
-from lagrange_casadi.optimise.journal import kept
-from lagrange_casadi.system import seal
+from lagrange_casadi.studies.optimise.journal import kept
 
 SECONDS = 10.0
-answer = sys.modules["lagrange_casadi.cli.check"].answer
+answer = importlib.import_module("lagrange_casadi.cli.check").answer
 
 
 def contents(path: Path) -> str:

@@ -9,7 +9,7 @@ import casadi as ca
 from casadi import casadi as wrapped
 
 import lagrange_casadi
-from lagrange_casadi.system import symbolic
+from lagrange_casadi.base import symbolic
 
 MAKES = re.compile(
     r"new_(SX|Function)|SX_(unary|binary|set|eye|ones)|Function_(call|deserialize|expand|map)|jacobian|gradient|hessian|jtimes"

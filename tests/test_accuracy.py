@@ -1,9 +1,9 @@
 """Estimates of errors against the errors themselves, which fifty digits tell."""
 
 import functools
+import importlib
 import itertools
 import math
-import sys
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -12,18 +12,22 @@ import kinds
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
-from estimates import COUNT, FACTOR, RUNGS, assert_near, exactly, ratios
+from estimates import COUNT, FACTOR, RUNGS, assert_near, exactly, ratios, rungs
 from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
+from stepped import iterated, pinned
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.judge.accuracy import explained
 from lagrange_casadi.judge.certificate import LOOSE, TOLERANCE, certify, tolerance
-from lagrange_casadi.quantities import Output
+
+ITERATED = ("beam_pump", "rrr3")
+"""Of the planar cases."""
 
 
 @functools.cache
@@ -35,26 +39,27 @@ def case(name):
 
 
 @pytest.mark.sampled(97)
-@pytest.mark.parametrize("rung", RUNGS)
-@pytest.mark.parametrize("name", PLANAR)
+@pytest.mark.parametrize(
+    ("name", "rung"), [(name, rung) for name in PLANAR for rung in RUNGS if name in ITERATED or "newton" not in rung]
+)
 def test_cases(name, rung):
     scene, exact = case(name)
     assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
 
 
-def four_bar():
+def four_bar(pin=Mechanism.revolute):
     """A four-bar whose numbers are parameters."""
     m = Mechanism("random_four_bar")
     numbers = zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
     a, b, c = (m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w)) for n, l, w in numbers)
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
+    pin(m, "B", b.tip, c.tip)
     m.revolute("C", m.ground.at(m.parameter("x", 0.3), m.parameter("y", 0.05)), c)
-    return m, {"c": 1.5}
+    return m, {"b": 0.9, "c": 1.5}
 
 
-def offset_crank():
+def offset_crank(pin=Mechanism.revolute):
     """An offset slider-crank whose numbers are parameters."""
     m = Mechanism("random_crank")
     numbers = zip("ab", (0.1, 0.35), (0.3, 0.5), strict=True)
@@ -62,17 +67,17 @@ def offset_crank():
     s = m.point_mass("s", m.parameter("ms", 0.6))
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
+    pin(m, "B", b.tip, s)
     m.prismatic("P", m.ground.at(0, m.parameter("y", 0.02)), s, axis=(1, 0))
-    return m, {"b": 0.0}
+    return m, {"b": 0.0, "P": 0.4}
 
 
 LAWS = (polynomial(0.4, 9.0, -1.5), harmonic(0.5, 1.7, 1.3))
 
 
 @functools.cache
-def declared(build, law):
-    m, posture = build()
+def declared(build, law, pin):
+    m, posture = build(pin)
     return Scene(m, {"O": LAWS[law]}, posture=posture, t=(0.0, 1.3, COUNT))
 
 
@@ -88,16 +93,19 @@ def drawn(build, rng):
     return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
 
 
+@pytest.mark.filterwarnings("ignore:the certificate fails")  # of a loop that few Newton steps leave open: how far is told
 @pytest.mark.sampled(13)
 @pytest.mark.parametrize("law", range(len(LAWS)))
-@pytest.mark.parametrize("build", [four_bar, offset_crank])
+@pytest.mark.parametrize(
+    ("build", "pin"), [(four_bar, Mechanism.revolute), (offset_crank, Mechanism.revolute), (offset_crank, pinned)]
+)
 @pytest.mark.parametrize("seed", range(2))
-def test_random_loops(build, law, seed):
+def test_random_loops(build, law, seed, pin):
     """On every rung, as far as it goes: steps that are too few are refused where they are no solution at all."""
-    scene, rng = declared(build, law), np.random.default_rng([seed, law])
+    scene, rng = declared(build, law, pin), np.random.default_rng([seed, law])
     parameters = drawn(build, rng)
     exact = exactly(scene, parameters)
-    for rung, words in RUNGS.items():
+    for rung, words in rungs(scene).items():
         try:
             solution = evaluate(scene, parameters=parameters, **words)
         except AssemblyError:
@@ -166,7 +174,7 @@ def test_random_mechanisms(kind):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kind", kinds.LINKAGES, ids=[kind.__name__ for kind in kinds.LINKAGES])
+@pytest.mark.parametrize("kind", [kinds.stephenson_two, kinds.stephenson_driven_last, kinds.platform])
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""
     looked = dict.fromkeys((1, 2, 3), 0)
@@ -230,7 +238,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "derive", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "derive", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4
@@ -248,7 +256,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         table.out[arguments[0].names.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.instants.from_table"], "run", spoilt)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.instants.from_table"), "run", spoilt)
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))
     assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)
@@ -310,9 +318,7 @@ def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
 def test_one_step_an_instant_begins_with_a_closed_loop(backend):
     """Whatever the parameters: the guess of the graph is that of their defaults."""
     parameters = {"r": 0.07, "l": 0.35}
-    one, closed = (
-        evaluate(slider_crank(), backend=backend, newton=n, parameters=parameters, t=(0.013, 0.08, 401)) for n in (1, None)
-    )
+    one, closed = (evaluate(iterated(), backend=backend, newton=n, parameters=parameters, t=(0.013, 0.08, 401)) for n in (1, None))
     for name in ("motion:guide", "effort:O"):
         gap = np.abs(one.series[name] - closed.series[name])
         assert gap[0] < 1e-9 * np.max(np.abs(closed.series[name]))
@@ -330,7 +336,7 @@ def test_what_residuals_are_held_to():
     scene = slider_crank()
     assert tolerance(evaluate(scene)) == TOLERANCE
     assert tolerance(evaluate(scene, precision="single")) == LOOSE
-    assert tolerance(evaluate(scene, newton=1)) == LOOSE
+    assert tolerance(evaluate(iterated(), newton=1)) == LOOSE
     far = evaluate(scene, t=(1e6, 1e6 + 0.08, 11))
     reported = np.max(certify(far)["balance"])
     assert np.max(far.certificate["balance"]) < TOLERANCE < reported < tolerance(far) < 1e4 * reported

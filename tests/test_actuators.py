@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.actuators import Motor, duty_of, plot_duty, read_motors, select
+from lagrange_casadi.actuators import Motor, duty_of, judge, plot_duty, read_motors, select
 from lagrange_casadi.elements import cylinder
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
 from lagrange_casadi.motion import harmonic, move, moves, polynomial, trapezoid
@@ -88,6 +88,16 @@ def test_the_smallest_motor_that_serves_is_named(here):
     assert choice.refused[0].startswith("small: ")
     plot_duty(choice.duty, here / "duty.png", choice.motor)
     assert (here / "duty.png").stat().st_size > 5000
+
+
+def test_a_rotor_may_be_without_inertia(here):
+    """As that of a catalogue that does not tell it: it counts as none, and there is no ratio of inertias."""
+    (motor,) = catalogue(here, ["light,1,0.5,3000,2,4000,0"])
+    assert motor.inertia == 0.0
+    duty = duty_of(turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia)
+    with pytest.raises(DeclarationError, match="expected what the drive feels"):
+        assert duty.inertia_ratio
+    assert judge(motor, duty).heat > 0.0
 
 
 def test_where_no_motor_serves_the_nearest_is_named(here):

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from mechanisms import four_bar
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.arguments import angle
+from lagrange_casadi.base.units import angle
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.sweep import Range, Sweep, Values, best, chosen, sweep
+from lagrange_casadi.studies.sweep import Range, Sweep, Values, best, chosen, sweep
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

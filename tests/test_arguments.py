@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, optimise, prepare, save
-from lagrange_casadi.arguments import number, public, typed
+from lagrange_casadi.arguments import public
+from lagrange_casadi.base.units import number, typed
 from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, warn
 from lagrange_casadi.motion import harmonic, polynomial, samples
 

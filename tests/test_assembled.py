@@ -9,7 +9,7 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.peaks import refine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -36,7 +36,7 @@ def assert_same(one, other):
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("rocker", [1.5, -1.5])
-@pytest.mark.parametrize("options", [{}, {"newton": 3}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str)
+@pytest.mark.parametrize("options", [{}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str)
 def test_what_can_be_assembled_is_evaluated(options, rocker):
     """To the last bit what it is where these values are the defaults, in the branch that the posture tells."""
     found = evaluate(four_bar(SHORT, rocker), parameters=VALUES, **options)

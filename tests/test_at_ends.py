@@ -5,10 +5,10 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine, sweep
-from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.quantities import FORCES
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

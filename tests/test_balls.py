@@ -12,8 +12,8 @@ from spatial_bridge import coordinate, declared, plain, postures
 from spatial_oracle import REACTION, SECTION
 
 from lagrange_casadi import evaluate
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.equations.balls import axes_of, quaternion_of
-from lagrange_casadi.quantities import Output
 
 LOCK = 0.2
 MADE = {

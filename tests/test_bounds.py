@@ -1,28 +1,29 @@
 """Numbers without bound: said before anything starts, and refused where they cannot be meant."""
 
+import importlib
 import re
 import resource
-import sys
 from pathlib import Path
 
 import psutil
 import pytest
 import sweeps
 from mechanisms import slider_crank
+from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
+from lagrange_casadi.base import room
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.sweep import plan, workers
-from lagrange_casadi.system import room
+from lagrange_casadi.studies.sweep import plan, workers
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
-HUGE = "99999999999999999999999"
+HUGE = "999999999999999999"
 COUNT = r"t: COUNT must be a whole number from 1 to 2\^63 - 1, got "
-STEPS = r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
+STEPS = "newton: expected a whole number from 1 to 1000, got "
 THREADS = "is not in the range 1<=x<=1024"
 GRID = ["--grid", "l=0.2:0.3:3"]
 FREE = r"GB, and this machine has \S+ GB free"
@@ -115,12 +116,12 @@ def test_points_are_refused_before_they_are_made(monkeypatch):
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
-    module = sys.modules["lagrange_casadi.evaluate"]
+    module = importlib.import_module("lagrange_casadi.studies.solving")
     monkeypatch.setattr(module, "_LONG", 1e-9)
     with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
-        evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+        evaluate(iterated(), t=(0, 1, 1001), newton=5)
     monkeypatch.setattr(module, "_LONG", 60.0)
-    evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+    evaluate(iterated(), t=(0, 1, 1001), newton=5)
 
 
 def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):

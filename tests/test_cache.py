@@ -11,10 +11,10 @@ import pytest
 import sweeps
 
 from lagrange_casadi import evaluate
+from lagrange_casadi.base import cache
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.instants import backends
-from lagrange_casadi.system import cache
 
 NAMES = [f"{k:032x}" for k in range(12)]
 

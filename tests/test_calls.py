@@ -11,10 +11,10 @@ from lagrange_casadi import codegen, derive
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.designs import CALL as DESIGNS
 from lagrange_casadi.codegen.emit import INSTANTS
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.cycle_table import INTERPOLATE
 from lagrange_casadi.instants.grids import GRID, LARGEST
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 CALLS = (INSTANTS, DESIGNS, GRID, LARGEST, INTERPOLATE)
 UNEVEN = Call("uneven", {"a": "int", "b": "const real*", "c": "int", "d": "int", "e": "long long", "f": "int"})

@@ -11,7 +11,7 @@ from beside import of_case
 from conftest import CASES, NAMES, PLANAR
 
 from lagrange_casadi import LagrangeSystem, evaluate, load_case
-from lagrange_casadi.draw import figures
+from lagrange_casadi.figures import figures
 
 pytestmark = pytest.mark.usefixtures("released")
 

@@ -2,8 +2,8 @@
 
 import errno
 import filecmp
+import importlib
 import os
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -67,7 +67,7 @@ def test_what_begins_a_case_can_be_pasted(here, capfd):
 
 def test_without_them_it_says_so(monkeypatch, tmp_path, capfd):
     monkeypatch.setattr("importlib.metadata.files", lambda name: None)
-    monkeypatch.setattr(sys.modules["lagrange_casadi.shipped_cases"], "_IN_A_CLONE", tmp_path)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", tmp_path)
     assert main(["cases"]) == 2
     assert capfd.readouterr().err == "error: the cases were not installed with the package: they are in its repository\n"
     with pytest.raises(LagrangeCasadiError, match=r"no such file; expected a folder with a case\.py, or a Python file$"):
@@ -79,7 +79,7 @@ def test_a_clone_has_its_own_cases_not_those_of_its_installation(monkeypatch, tm
     clone = tmp_path / "clone"
     (clone / "cases" / "four_bar").mkdir(parents=True)
     (clone / "cases" / "four_bar" / "case.py").write_text("")
-    monkeypatch.setattr(sys.modules["lagrange_casadi.shipped_cases"], "_IN_A_CLONE", clone / "cases")
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", clone / "cases")
     installed = tmp_path / "share" / "cases" / "arm" / "case.py"
     installed.parent.mkdir(parents=True)
     installed.write_text("")

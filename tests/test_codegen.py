@@ -14,7 +14,7 @@ from compiled import PEDANTIC, SCENES, columns, fake_compiler
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
-from lagrange_casadi.arithmetic.compensated import PRECISIONS
+from lagrange_casadi.base.vocabulary import PRECISIONS
 from lagrange_casadi.codegen import compiler
 from lagrange_casadi.errors import CompilerError
 from lagrange_casadi.instants.backends import run

@@ -11,8 +11,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from lagrange_casadi.arithmetic.compensated import DTYPES, PRECISIONS, ROUNDING, Pair, Pairs, closed
+from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING, Pair, Pairs, closed
 from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
+from lagrange_casadi.base.vocabulary import PRECISIONS
 
 MP = mpmath.MPContext()
 MP.dps = 60

@@ -11,8 +11,8 @@ from mechanisms import INSTANT, MOTION
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import expression, polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

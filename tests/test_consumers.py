@@ -8,6 +8,7 @@ import pytest
 from conftest import CASES, PLANAR, SPATIAL
 from exported import CONSUMERS, FEW, RATIOS, by_c99, compare, expected, exported, instants, run, solve, values
 from mechanisms import DRAG_LINK, bracket, sampled_cam, slider_crank, spline_arm, sprung, truss_platform
+from stepped import iterated
 
 from lagrange_casadi import export, load_case
 
@@ -18,6 +19,7 @@ def cases(names):
 
 SCENES = cases(PLANAR) | {
     "truss_platform": truss_platform,
+    "iterated": iterated,
     "spline_arm": spline_arm,
     "sprung": lambda: sprung("AC", **DRAG_LINK),
     "bracket": bracket,
@@ -43,7 +45,7 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("name", "rung"),
-    [("four_bar", {"newton": 2}), ("rrr3", {"newton": 3}), ("slider_crank", {"table": 64}), ("six_bar", {"newton": 2})],
+    [("iterated", {"newton": 2}), ("rrr3", {"newton": 3}), ("slider_crank", {"table": 64}), ("beam_pump", {"newton": 2})],
 )
 def test_on_other_rungs_too(name, rung, precision, tmp_path):
     scene = SCENES[name]()

@@ -7,13 +7,13 @@ import pytest
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.report.contents import contents
 from lagrange_casadi.report.live import Live
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -179,3 +179,32 @@ def test_kinks_of_a_motion_are_looked_for_once_for_what_designs_share(monkeypatc
     found = f.designs([[mass, k] for mass in (1.0, 2.0, 3.0) for k in (0.0, 1.0)])
     assert found.status.tolist() == [Status.OK, Status.CORNER] * 3
     assert seen == [1, 2]
+
+
+def away(x, k):
+    """Roots, divisors and pieces that it does not come near to while k is small."""
+    return 0.02 * ca.sin(x) * ca.sqrt(2 + ca.sin(x) - k) / (1.5 - k + ca.cos(x)) + ca.if_else(x < 10 - 9.5 * k, 0, 0.01)
+
+
+@pytest.mark.parametrize("scene", [motion, constraint, disc])
+def test_designs_off_every_kink_are_not_looked_at_instant_by_instant(scene, monkeypatch):
+    monkeypatch.setitem(globals(), "bend", away if scene is not disc else lambda x, k: 0.1 * away(ca.sin(x), k))
+    f = prepare(scene(), wanted=["effort"])
+    seen, look = [], Smooth.broken
+    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    for k in (0.0, 0.1, 0.2):
+        f(k=k)
+        f.peaks(k=k)
+    f.designs([[0.05], [0.15]])
+    assert seen == []
+    if scene is not disc:
+        assert (f.designs([[0.05], [0.99]]).status != 0).tolist() == [False, True]
+        assert seen == [1]
+
+
+def test_series_stay_when_peaks_of_a_watched_constraint_are_asked_for():
+    f = prepare(constraint(), wanted=["effort"])
+    series = next(iter(f(k=0.0).values()))
+    kept = series.copy()
+    f.peaks(k=0.0)
+    np.testing.assert_array_equal(series, kept)

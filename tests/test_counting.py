@@ -8,7 +8,7 @@ import pytest
 from strong import STEEL, slider
 
 from lagrange_casadi import codegen, export
-from lagrange_casadi.export.fatigue import counter
+from lagrange_casadi.exports.fatigue import counter
 from lagrange_casadi.strength import cycles, rainflow, reversed_amplitude
 
 MATERIALS = {"lasting": STEEL.but(endurance=200e6), "worn": STEEL.but(endurance=150e6, endless=False)}

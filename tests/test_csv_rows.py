@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lagrange_casadi.base.csv_rows import Row, read_rows
 from lagrange_casadi.errors import DeclarationError, PathError
-from lagrange_casadi.system.csv_rows import Row, read_rows
 
 pytestmark = pytest.mark.quick
 

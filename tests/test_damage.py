@@ -9,7 +9,7 @@ import pytest
 import sweeps
 
 from lagrange_casadi import evaluate, save
-from lagrange_casadi.sweep import sweep
+from lagrange_casadi.studies.sweep import sweep
 
 FEW, MANY, AT_ONCE = 120, 10_000, 1000
 _SECONDS = 20.0

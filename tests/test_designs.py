@@ -13,12 +13,12 @@ from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.codegen import library
-from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.designs.reduction import KeptOutputs, stages_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
+from lagrange_casadi.studies.peaks import refine
 
 INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
@@ -54,7 +54,8 @@ def test_all_rungs_agree(name):
     p[1, 0] = math.nan
     exact = DesignEngine.of(scene, t=grid, rung=Rung("c"))
     expected = exact.evaluate(p)
-    rungs = [(Rung("lanes"), 1e-12), (Rung("vm"), 1e-12), (Rung("lanes", newton=4), 1e-12)]
+    rungs = [(Rung("lanes"), 1e-12), (Rung("vm"), 1e-12)]
+    rungs += [(Rung("lanes", newton=4), 1e-12)] if exact.graph.newton is not None else []
     rungs += [(Rung(backend, "single"), 2e-5) for backend in ("lanes", "c")]
     for rung, tolerance in rungs:
         some = 2 if rung.backend == "vm" else 9
@@ -181,8 +182,8 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     }
     scene = {**SCENES, **made}[name]()
     compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
-    for rung in (Rung(), Rung(newton=2), Rung(precision="single")):
-        graph = derive(scene, iterate=rung.newton is not None)
+    graph = derive(scene)
+    for rung in (Rung(), Rung(precision="single"), *([Rung(newton=2)] if graph.newton is not None else [])):
         stages, kept = stages_of(graph, rung, np.linspace(*scene.span, scene.t[2])), KeptOutputs.of(graph, rung)
         source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]

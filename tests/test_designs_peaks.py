@@ -11,10 +11,10 @@ from mechanisms import crank_and_rod, lobes, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case, motion
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.peaks import forces, refine
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.peaks import forces, refine
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 

@@ -11,11 +11,11 @@ from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, load_case
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.refusal import Status, refusal
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
 def statuses(scene, p, rung, instants=None):

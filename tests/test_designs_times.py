@@ -6,11 +6,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from mechanisms import press, slider_crank, uneven
+from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 TURN = math.tau
 ASKED = {
@@ -73,7 +74,7 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
     p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
     designs = DesignEngine.of(scene, rung=rung)
     whole = designs.evaluate(p, threads=1, histories=True)
-    monkeypatch.setattr("lagrange_casadi.designs.engine._PIECE", 5 * 41)
+    monkeypatch.setattr("lagrange_casadi.studies.designs.engine._PIECE", 5 * 41)
     for threads in (1, 3):
         other = designs.evaluate(p, threads=threads, histories=True)
         for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):
@@ -106,14 +107,14 @@ def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
 
 def test_loops_that_are_iterated_begin_where_the_drive_starts():
     """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
-    scene = press(wanted=["effort", "motion"])
+    scene, closed = (press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute))
     rung = Rung("c", newton=6)
     timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
     designs = DesignEngine.of(scene, rung=rung, timing=timing)
     outcome = designs.evaluate(np.array([[600.0, 0.5], [60.0, 0.3]]), histories=True)
     assert outcome.status.tolist() == [0, 0]
     for row, values in enumerate(({"rpm": 600.0, "l": 0.5}, {"rpm": 60.0, "l": 0.3})):
-        solution = evaluate(scene, parameters=values, over=("O", math.pi, 3 * math.pi, 61))
+        solution = evaluate(closed, parameters=values, over=("O", math.pi, 3 * math.pi, 61))
         k = designs.columns.index("pose:ram:y")
         np.testing.assert_allclose(outcome.series[row, k], solution.pose("ram").y, rtol=1e-9)
 

@@ -8,10 +8,10 @@ import pytest
 
 import lagrange_casadi
 from lagrange_casadi import export, load_case
+from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.store.runs import SCHEMA_VERSION
-from lagrange_casadi.tables import QUANTITIES, SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 

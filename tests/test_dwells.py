@@ -10,9 +10,9 @@ from lagrange_casadi.animation import Film
 from lagrange_casadi.cli import program
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import check, load
-from lagrange_casadi.study.trade import trade
-from lagrange_casadi.sweep.checking import check_sweep
-from lagrange_casadi.sweep.resting import resting_note
+from lagrange_casadi.studies.sweep.checking import check_sweep
+from lagrange_casadi.studies.sweep.resting import resting_note
+from lagrange_casadi.studies.trade import trade
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -14,8 +14,8 @@ from lagrange_casadi.declare.recordings import _read
 from lagrange_casadi.elements.profile_lift import read_profile
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import read_samples
-from lagrange_casadi.sweep import read_designs
-from lagrange_casadi.sweep.listing import Listed
+from lagrange_casadi.studies.sweep import read_designs
+from lagrange_casadi.studies.sweep.listing import Listed
 
 pytestmark = pytest.mark.quick
 

@@ -10,6 +10,7 @@ import pytest
 from compiled import EVALUATED, HARNESS, cc, compilers, present, told
 from conftest import SPATIAL
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
+from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion
 
@@ -20,7 +21,9 @@ ARITHMETIC = [
     {"table": 64},
     {"table": 64, "precision": "single"},
 ]
-SCENES = {"cam": sampled_cam, "slider_crank": slider_crank, "spline_arm": spline_arm, "truss_platform": truss_platform}
+ITERATED = {"iterated": iterated, "truss_platform": truss_platform}
+SCENES = {"cam": sampled_cam, "slider_crank": slider_crank, "spline_arm": spline_arm} | ITERATED
+ON = [(name, options) for name in SCENES for options in ARITHMETIC if name in ITERATED or "newton" not in options]
 CASES = sorted(path.parent for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 
 
@@ -35,9 +38,7 @@ def keywords():
 
 # Only one drive that turns has a cycle to be read from a table.
 @pytest.mark.sampled(19)
-@pytest.mark.parametrize(
-    ("name", "options"), [(n, o) for n in SCENES for o in ARITHMETIC if n == "slider_crank" or "table" not in o], ids=str
-)
+@pytest.mark.parametrize(("name", "options"), [(n, o) for n, o in ON if n == "slider_crank" or "table" not in o], ids=str)
 def test_the_source_is_clean(name, options, tmp_path):
     clean(SCENES[name](), tmp_path, options, compilers())
 
@@ -61,8 +62,7 @@ def clean(scene, folder, options, commands):
 
 
 @pytest.mark.sampled(13)
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("options", ARITHMETIC[:3], ids=str)
+@pytest.mark.parametrize(("name", "options"), [(n, o) for n, o in ON if "table" not in o], ids=str)
 def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
     made = export(SCENES[name](), tmp_path, **options)
     sanitized = ["cc", "-std=c99", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
@@ -128,7 +128,7 @@ def symbols(folder, prefix):
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("options", ARITHMETIC, ids=str)
 def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_path):
-    made = export(slider_crank(), tmp_path, **options)
+    made = export(truss_platform() if "newton" in options else slider_crank(), tmp_path, **options)
     found = symbols(tmp_path, made.prefix)
     assert all(name.startswith(f"{made.prefix}_") for kind, name in found if kind in "TDRBC")
     assert not [name for kind, name in found if kind in "DdBbC"], "no state"
@@ -209,7 +209,7 @@ def test_times_outside_the_samples(tmp_path):
 
 
 def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
-    made = export(slider_crank(), tmp_path, newton=2)
+    made = export(iterated(), tmp_path, newton=2)
     far = "inputs.O += 2.5; " + EVALUATED
     back = "inputs.O -= 2.5; " + EVALUATED
     for statements, lost in ((PREPARED + EVALUATED + far, True), (PREPARED + EVALUATED + far + back, False)):

@@ -13,12 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.cbook import is_math_text
 from mechanisms import slider_crank
+from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.export import naming, text
-from lagrange_casadi.sweep.sheet import label
+from lagrange_casadi.portable import naming, text
+from lagrange_casadi.studies.sweep.sheet import label
 
 WICKED = [
     'x"),fopen("PWNED","w"),printf("',
@@ -202,7 +203,7 @@ def test_parameters_and_joints_may_be_called_as_macros_are(tmp_path):
 
 
 def test_what_an_export_defines_is_no_members_name(tmp_path):
-    made = export(slider_crank(), tmp_path, precision="single", newton=2)
+    made = export(iterated(), tmp_path, precision="single", newton=2)
     texts = [path.read_text() for path in tmp_path.glob("*.[ch]")]
     defined = {word for text in texts for word in re.findall(r"^ *#\s*define (\w+)(?!\()\b", text, re.MULTILINE)}
     own = {word for word in defined if not word.startswith((made.prefix.upper(), "CASADI", "casadi"))}

@@ -6,8 +6,8 @@ import json
 import pytest
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.index import MANIFEST
 from lagrange_casadi.errors import PathError
+from lagrange_casadi.shapes.index import MANIFEST
 
 pytestmark = pytest.mark.quick
 

@@ -12,8 +12,8 @@ from mechanisms import slider_crank as free
 
 from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.export import export
-from lagrange_casadi.export.golden import ALLOWED
+from lagrange_casadi.exports import export
+from lagrange_casadi.portable.golden import ALLOWED
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")

@@ -19,7 +19,7 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import CompilerError, LagrangeCasadiError, PathError, StoreError
-from lagrange_casadi.export import export, fmu
+from lagrange_casadi.exports import export, fmu
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")

@@ -19,12 +19,12 @@ from truth import matter_of, section
 
 from lagrange_casadi import Mechanism, Scene, derive, load_case
 from lagrange_casadi.arithmetic.interpret import interpret
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.reference import arithmetic, reference
-from lagrange_casadi.quantities import FORCES
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))

@@ -12,10 +12,10 @@ from lagrange_casadi import save
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.animation.solids import ball, block, cone, cylinder, prism
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.places import placed
-from lagrange_casadi.draw.shapes import Spot, joint_shapes, load_shapes, shapes
-from lagrange_casadi.draw.views import upright
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.shapes.places import placed
+from lagrange_casadi.shapes.shapes import Spot, joint_shapes, load_shapes, shapes
+from lagrange_casadi.shapes.views import upright
 
 WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 

@@ -7,11 +7,11 @@ import pytest
 from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load, save
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.instants import grids
 from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
-from lagrange_casadi.quantities import FORCES
 
 pytestmark = pytest.mark.quick
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 import sweeps
 
+from lagrange_casadi.base.interrupts import interrupts
 from lagrange_casadi.cli import progress
-from lagrange_casadi.system.interrupts import interrupts
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 LINE = "error: interrupted; nothing was left half-written\n"
@@ -163,12 +163,12 @@ def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
     assert not list(here.glob("x.h5.parts/joined.h5"))
 
 
-NEWTON = ["--newton", "1000", "--no-figures"]
+ITERATED, NEWTON = str(CASE.parent / "beam_pump"), ["--newton", "1000", "--no-figures"]
 STEPPING = {
-    "compiled": ["run", str(CASE), *NEWTON, "--t", "0:0.08:10000001"],
-    "interpreted": ["run", str(CASE), *NEWTON, "--t", "0:0.08:1000001", "--backend", "vm"],
-    "swept": [*SWEEP[:2], "--newton", "1000", "--want", "effort", "--t", "0:0.08:2000001", "--grid", "l=0.2:0.3:50"],
-    "swept-interpreted": [*SWEEP[:2], "--newton", "1000", "--t", "0:0.08:20001", "--grid", "l=0.2:0.3:50", "--backend", "vm"],
+    "compiled": ["run", ITERATED, *NEWTON, "--t", "0:6:10000001"],
+    "interpreted": ["run", ITERATED, *NEWTON, "--t", "0:6:1000001", "--backend", "vm"],
+    "swept": ["sweep", ITERATED, "--newton", "1000", "--want", "effort", "--t", "0:6:2000001", "--grid", "r=0.9:1:50"],
+    "swept-interpreted": ["sweep", ITERATED, "--newton", "1000", "--t", "0:6:20001", "--grid", "r=0.9:1:50", "--backend", "vm"],
 }
 
 

@@ -6,9 +6,9 @@ import random
 import pytest
 from kills import full, killed, meet
 
-from lagrange_casadi.draw.index import MANIFEST as FIGURES
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.export.folder import MANIFEST as EXPORT
+from lagrange_casadi.exports.folder import MANIFEST as EXPORT
+from lagrange_casadi.shapes.index import MANIFEST as FIGURES
 
 pytestmark = [
     pytest.mark.usefixtures("interpreted"),

@@ -17,6 +17,7 @@ from mechanisms import (
     slider_crank,
     truss_platform,
 )
+from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
@@ -107,7 +108,7 @@ def test_a_dead_centre_is_named():
         evaluate(scene)
 
 
-@pytest.mark.parametrize(("precision", "steps"), [("double", 26), ("single", 12)])
+@pytest.mark.parametrize(("precision", "steps"), [("double", 24), ("single", 12)])
 def test_a_dead_centre_that_is_iterated_is_named(precision, steps):
     """A ram draws a crank and its rod straight: Newton's method comes as near as rounding lets it, in either precision."""
     m = Mechanism("straightened")
@@ -115,10 +116,10 @@ def test_a_dead_centre_that_is_iterated_is_named(precision, steps):
     ram = m.point_mass("ram", 0.6)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pinned(m, "B", rod.tip, ram)
     m.prismatic("P", m.ground, ram, axis=(1, 0))
-    scene = Scene(m, {"P": polynomial(0.4, 0.05)}, posture={"crank": 1.0}, t=(0, 1, 41))
-    with pytest.raises(AssemblyError, match=r"joint 'B' is at a dead centre at t = 1 s, where P = 0\.45 m, within"):
+    scene = Scene(m, {"P": polynomial(0.4, 0.05)}, posture={"crank": 1.0, "rod": -0.3}, t=(0, 1, 41))
+    with pytest.raises(AssemblyError, match=r"constraint 'B_y' is at a dead centre at t = 1 s, where P = 0\.45 m, within"):
         evaluate(scene, precision=precision, newton=steps)
 
 

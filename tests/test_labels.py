@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.draw.labels import apart, placed
+from lagrange_casadi.figures.labels import apart, placed
 
 pytestmark = pytest.mark.quick
 

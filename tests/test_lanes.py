@@ -9,7 +9,8 @@ from compiled import HEADER, SCENES, built, columns, filled
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive, evaluate
-from lagrange_casadi.arithmetic.compensated import PRECISIONS, ROUNDING
+from lagrange_casadi.arithmetic.compensated import ROUNDING
+from lagrange_casadi.base.vocabulary import PRECISIONS
 from lagrange_casadi.codegen import library
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung

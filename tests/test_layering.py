@@ -1,24 +1,28 @@
-"""Imports run one way: no room imports one that stands above it, and no module stands in a circle."""
+"""Imports run one way: no room imports one that stands above it, no module stands in a circle, and each leaf can be taken away."""
 
 import ast
+import json
 import re
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 import lagrange_casadi
-
-pytestmark = pytest.mark.quick
+from lagrange_casadi.methods import METHODS
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
+CASE = PACKAGE.parent / "cases" / "four_bar"
 ORDER = (
     "version",
     "errors",
-    "tables",
-    "quantities",
-    "system",
+    "methods",
+    "base",
     "arguments",
     "arithmetic",
     "geometry",
@@ -33,80 +37,211 @@ ORDER = (
     "strength",
     "elastic",
     "sensitivity",
-    "evaluate",
-    "designs",
-    "study",
-    "export",
     "store",
-    "draw",
-    "report",
-    "animation",
-    "actuators",
     "bearings",
     "density",
     "motion",
-    "figures",
-    "peaks",
+    "shapes",
     "shipped_cases",
     "case_modules",
     "case",
-    "sweep",
-    "optimise",
+    "studies",
+    "peaks",
+    "portable",
+    "exports",
+    "figures",
+    "report",
+    "animation",
+    "actuators",
+    "cluster",
     "cli",
 )
+"""A room imports only those before it, late imports too."""
 
-LATE = {("scene.py", "report"), *(("solution.py", room) for room in ("animation", "elastic", "report", "strength"))}
-"""What a user asks of a thing by a method, and what that looks for only when it is called."""
-
-
-def modules():
-    for path in sorted(PACKAGE.rglob("*.py")):
-        parts = path.relative_to(PACKAGE).parts
-        if parts[0] not in ("__init__.py", "__main__.py"):
-            yield parts[0].removesuffix(".py"), path
+LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "cli")
+"""What nothing but the command line imports."""
 
 
-def imported(path):
-    """The package's own modules that a file imports, wherever in the file."""
-    depth = len(path.relative_to(PACKAGE).parts)
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.level == depth:
-            names = [node.module] if node.module else [alias.name for alias in node.names]
-            yield from (name.split(".")[0] for name in names)
+@cache
+def modules() -> dict[str, Path]:
+    """The modules by their names within the package: all but the façade, which leads to every room."""
+    named = {".".join(path.relative_to(PACKAGE).with_suffix("").parts): path for path in sorted(PACKAGE.rglob("*.py"))}
+    return {name.removesuffix(".__init__"): path for name, path in named.items() if name not in ("__init__", "__main__")}
 
 
+def room(module: str) -> str:
+    return module.partition(".")[0]
+
+
+def imported(name: str) -> Iterator[tuple[str, int]]:
+    """The package's own modules that a module imports, wherever in the file, or names in a text, but for what types alone need."""
+    path, known = modules()[name], modules()
+    tree = ast.parse(path.read_text())
+    package = ["lagrange_casadi", *(name.split(".") if path.name == "__init__.py" else name.split(".")[:-1])]
+    checked = [node for node in ast.walk(tree) if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)]
+    typed = {inner for node in checked for inner in ast.walk(node)}
+    for node in ast.walk(tree):
+        found: list[str] = []
+        if isinstance(node, ast.ImportFrom) and node not in typed:
+            above = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
+            base = ".".join(filter(None, (above, node.module)))
+            found = [
+                one if one.removeprefix("lagrange_casadi.") in known else base for one in (f"{base}.{a.name}" for a in node.names)
+            ]
+        elif isinstance(node, ast.Import):
+            found = [alias.name for alias in node.names]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            found = [node.value]
+        for one in found:
+            if (own := one.removeprefix("lagrange_casadi.")) != one and own in known and own != name:
+                yield own, node.lineno
+
+
+@pytest.mark.quick
 def test_every_module_has_its_place():
-    assert {name for name, _ in modules()} == set(ORDER)
+    assert {room(name) for name in modules()} == set(ORDER)
 
 
+@pytest.mark.quick
 def test_imports_run_downward_only():
-    for name, path in modules():
-        for other in imported(path):
-            assert ORDER.index(other) < ORDER.index(name) or (path.name, other) in LATE, f"{path.name} imports {other}"
+    for name in modules():
+        for other, line in imported(name):
+            assert ORDER.index(room(other)) <= ORDER.index(room(name)), f"{name}:{line} imports {other}"
 
 
+@pytest.mark.quick
+def test_nothing_but_the_command_line_imports_a_leaf():
+    for name in modules():
+        for other, line in imported(name):
+            if room(other) in LEAVES and room(name) != room(other):
+                assert room(name) == "cli", f"{name}:{line} imports {other}"
+
+
+@pytest.mark.quick
+def test_no_module_stands_in_a_circle():
+    try:
+        list(TopologicalSorter({name: {other for other, _ in imported(name)} for name in modules()}).static_order())
+    except CycleError as error:
+        pytest.fail(f"a circle: {' -> '.join(error.args[1])}")
+
+
+@pytest.mark.quick
+def test_only_the_table_of_methods_names_what_is_above():
+    """A method of the table answers from a module that is there, and each is asked for by the module that has it."""
+    asked: dict[str, str] = {}
+    for name, path in modules().items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            called = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
+            if called == "method":
+                (word,) = (argument.value for argument in node.args)
+                asked[word] = name
+            if called.endswith(("import_module", "__import__")) and name != "methods":
+                assert ast.unparse(node.args[0]).startswith("'distributed"), f"{name}:{node.lineno}"
+    assert asked.keys() == METHODS.keys()
+    for word, answer in METHODS.items():
+        module, _, function = answer.partition(":")
+        tree = ast.parse(modules()[module].read_text())
+        defined = {node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+        brought = {alias.asname or alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+        assert function in defined | brought, answer
+        assert ORDER.index(room(module)) > ORDER.index(room(asked[word])) or room(asked[word]) == "cli", word
+
+
+WITHOUT = """
+import importlib, json, pkgutil, sys
+import lagrange_casadi
+from lagrange_casadi.errors import MissingPackageError
+from lagrange_casadi.methods import METHODS, method
+leaf, case, out, *commands = sys.argv[1:]
+lost, refused = [], []
+for found in pkgutil.walk_packages(lagrange_casadi.__path__, "lagrange_casadi."):
+    if not found.name.endswith("__main__"):
+        try:
+            importlib.import_module(found.name)
+        except ModuleNotFoundError as error:
+            assert error.name.startswith(f"lagrange_casadi.{leaf}"), error
+            lost.append(found.name)
+for name, answer in METHODS.items():
+    try:
+        method(name)
+    except MissingPackageError as error:
+        assert f"lagrange_casadi.{leaf}" in str(error), error
+        refused.append(name)
+for name in dir(lagrange_casadi):
+    try:
+        getattr(lagrange_casadi, name)
+    except MissingPackageError as error:
+        assert f"lagrange_casadi.{leaf}" in str(error), error
+        refused.append(name)
+if leaf == "cli":
+    solution = lagrange_casadi.evaluate(lagrange_casadi.load_case(case).scene, t=(0, 0.1, 5), backend="vm")
+    lagrange_casadi.save(solution, out)
+else:
+    from lagrange_casadi.cli import main
+    assert main(["run", case, "--no-figures", "--backend", "vm", "--t", "0:0.1:5", "--out", out]) == 0
+    asked = {"animate": [out], "drive": [case], "export": [case, "--out", out + "_c"], "plot": [out, "--out", out + "_p"]}
+    asked["report"] = [out]
+    for word in commands:
+        assert main([word, *asked[word]]) == 1
+print(json.dumps([lost, refused]))
+"""
+
+GOES = {
+    "exports": (["cli.export"], ["export"], ["export"]),
+    "figures": (
+        ["cli.optimise", "cli.trade"],
+        ["PostureError.drawn", "Spec.draw", "figures", "figures.default_figures", "figures.draw"],
+        ["plot"],
+    ),
+    "report": (
+        ["cli.report_page"],
+        [name for name, answer in METHODS.items() if re.match("report[.:]", answer)],
+        ["report"],
+    ),
+    "animation": (["cli.animate"], ["Solution.animate", "animation"], ["animate"]),
+    "actuators": (["cli.drive"], ["actuators"], ["drive"]),
+    "cluster": ([], ["optimise.dask", "sweep.dask"], []),
+    "cli": ([], [], []),
+}
+"""What goes with each leaf: commands' modules, methods and public names, and commands that then say what they need."""
+
+
+@pytest.mark.parametrize("leaf", LEAVES)
+def test_a_leaf_can_be_taken_away(leaf, tmp_path):
+    """All else imports and a case runs; what the leaf did is refused by an error of ours."""
+    shutil.copytree(PACKAGE, tmp_path / "lagrange_casadi", ignore=lambda folder, names: {leaf} if Path(folder) == PACKAGE else ())
+    program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{WITHOUT}"
+    modules_lost, refusing, commands = GOES[leaf]
+    command = [sys.executable, "-c", program, leaf, str(CASE), str(tmp_path / "x.h5"), *commands]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr
+    lost, refused = json.loads(done.stdout.splitlines()[-1])
+    assert lost == [f"lagrange_casadi.{name}" for name in modules_lost]
+    assert sorted(refused) == sorted(refusing)
+    assert done.stderr.count(f"needs lagrange_casadi.{leaf}, which this installation lacks") == len(commands)
+
+
+@pytest.mark.quick
 def test_the_engine_knows_no_mechanism():
     """Nothing under the cases may know the words of one."""
     words = re.compile(r"\b(crank|rod|slider|rocker|coupler)\b", re.IGNORECASE)
-    for name, path in modules():
-        if name in ("geometry", "equations", "summits", "codegen", "instants", "judge", "evaluate"):
+    for name, path in modules().items():
+        engine = room(name) in ("geometry", "equations", "summits", "codegen", "instants", "judge")
+        if engine or name in ("studies.evaluate", "studies.solving"):
             for number, line in enumerate(path.read_text().splitlines(), 1):
                 assert not words.search(line), f"{path.name}:{number}: {line}"
 
 
+@pytest.mark.quick
 def test_only_the_command_line_speaks_of_its_options():
     """Words that are an option and nothing else are no message: a rung's, a compiler's."""
-    for name, path in modules():
-        for node in ast.walk(ast.parse(path.read_text())) if name != "cli" else ():
+    for name, path in modules().items():
+        for node in ast.walk(ast.parse(path.read_text())) if room(name) != "cli" else ():
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and not re.fullmatch(r"--\w+", node.value):
                 assert not re.search(r"(^|[\s'(])--[a-z]", node.value), f"{path.name}:{node.lineno}: {node.value}"
 
 
-def test_matplotlib_waits_until_a_figure_is_drawn():
-    program = "import sys, lagrange_casadi, lagrange_casadi.cli; assert 'matplotlib' not in sys.modules"
-    subprocess.run([sys.executable, "-c", program], check=True)
-
-
+@pytest.mark.quick
 def test_tests_take_nothing_from_other_tests():
     """What several need has a place of its own, as mechanisms have."""
     for path in sorted(Path(__file__).parent.glob("*.py")):
@@ -116,6 +251,7 @@ def test_tests_take_nothing_from_other_tests():
             assert not [name for name in taken if name.startswith("test_")], f"{path.name}:{node.lineno}"
 
 
+@pytest.mark.quick
 def test_no_file_is_two_things():
-    for path in (*(path for _, path in modules()), *PACKAGE.rglob("*.js"), *Path(__file__).parent.glob("*.py")):
+    for path in (*modules().values(), *PACKAGE.rglob("*.js"), *Path(__file__).parent.glob("*.py")):
         assert len(path.read_text().splitlines()) <= 400, path

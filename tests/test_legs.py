@@ -1,8 +1,7 @@
-"""Legs in space that reach a point: in closed form where the pattern is there, iterated elsewhere, and the same."""
+"""Legs in space that reach a point: in closed form where the pattern is there, iterated elsewhere."""
 
 import math
 
-import numpy as np
 import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate
@@ -101,15 +100,12 @@ LEGS = {
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("carried", [False, True], ids=["from the ground", "from a base that moves"])
 @pytest.mark.parametrize("leg", LEGS)
-def test_a_leg_is_solved_without_iteration_and_as_iteration_does(leg, carried):
+def test_a_leg_is_solved_without_iteration(leg, carried):
     scene = reaching(*LEGS[leg], carried=carried)
     assert derive(scene).newton is None
-    solved, iterated = evaluate(scene), evaluate(scene, newton=20)
+    solved = evaluate(scene)
     assert solved.certified
-    for joint in ("pose:turn_1", "pose:slide_1"):
-        np.testing.assert_allclose(
-            solved.effort(joint), iterated.effort(joint), rtol=0, atol=1e-11 * np.abs(solved.effort(joint)).max()
-        )
+    assert max(solved.certificate[name].max() for name in ("closure", "balance", "power")) < 1e-12
 
 
 def test_axes_that_do_not_meet_are_left_to_iteration():

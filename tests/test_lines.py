@@ -1,4 +1,4 @@
-"""Loops in space closed along lines, and by rods that lie askew to an axis: without iteration, and as iteration does."""
+"""Loops in space closed along lines, and by rods that lie askew to an axis: without iteration."""
 
 import math
 
@@ -84,11 +84,9 @@ SCENES = {
 def test_no_iteration_is_needed(name):
     scene = SCENES[name]()
     assert derive(scene).newton is None
-    solved, iterated = evaluate(scene), evaluate(scene, newton=20)
+    solved = evaluate(scene)
     assert solved.certified
-    for series in ("effort:O", *(f"pose:{link}:{x}" for link in scene.mechanism.links for x in "xyz")):
-        told, found = iterated.array(series), solved.array(series)
-        np.testing.assert_allclose(found, told, rtol=0, atol=1e-11 * max(1.0, np.abs(told).max()), err_msg=series)
+    assert max(solved.certificate[name].max() for name in ("closure", "balance", "power")) < 1e-12
 
 
 def test_all_ways_of_a_rod_that_lies_askew():

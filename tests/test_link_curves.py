@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from compiled import cc
 
+from lagrange_casadi.base.tables import PLANE, SPACE
 from lagrange_casadi.codegen.link_curves import Along, along, matter_of, turning
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.spread_loads import SpreadLoad
 from lagrange_casadi.instants.station_loads import SpatialStationLoad, StationLoad
-from lagrange_casadi.tables import PLANE, SPACE
 
 HEAD = """#include <math.h>
 #include <stdio.h>

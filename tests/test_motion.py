@@ -1,6 +1,7 @@
 """Motion laws: values and rates, and what is refused."""
 
 import math
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.declare import motion
+from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick
@@ -58,14 +60,14 @@ def test_third_derivatives():
     p, times = ca.SX.sym("c"), np.array([0.0, 0.3, 0.5, 1.1, 1.4, 2.0])
     spline = motion.samples(times, np.sin(3 * times))
     laws = {"P": motion.polynomial(1, 2, 3, p), "E": motion.expression(lambda t: ca.sin(2 * t)), "S": spline}
-    jerk = motion.jerk_function(laws, p)
+    jerk = Laws.of(laws, p).jerk()
     for t in (0.1, 0.3, 0.7, 1.1, 1.9):
         nodes = times[np.searchsorted(times, t, side="right") - 1 :][:2]
         bends = [at(spline, node)[2] for node in nodes]
         expected = [6 * 0.4, -8 * math.cos(2 * t), (bends[1] - bends[0]) / (nodes[1] - nodes[0])]
         assert jerk(t, 0.4).full().ravel() == pytest.approx(expected, rel=1e-12)
     with pytest.raises(DeclarationError, match="the motion of joint 'J' does not tell its knots"):
-        motion.jerk_function({"J": motion.Motion(lambda t: ca.sin(t), spline=True)}, ca.SX(0, 1))
+        Laws.of({"J": replace(spline, knots=())}, ca.SX(0, 1)).jerk()
 
 
 def test_laws_of_both_kinds_run_together():

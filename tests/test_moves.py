@@ -9,10 +9,10 @@ from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
 from lagrange_casadi.cli import main
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.motion import Motion, dwell, move, moves, polynomial, s_curve, samples, trapezoid
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -258,7 +258,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         (lambda: moves([move(1.0, time=0.0)]), "move 1 of the moves: its time must be positive, got 0 s"),
         (lambda: moves([move(1.0, time=1.0), dwell(-1.0, name="wait")]), "dwell 'wait': its time must be positive, got -1 s"),
         (lambda: moves([move(1.0, time=math.inf)]), "move 1 of the moves: time must be finite"),
-        (lambda: moves([move("1 lap", time=1.0)]), "move 1 of the moves: to: "),
+        (lambda: moves([move("1 lap", time=1.0)]), "move: to: expected a number"),
         (lambda: moves([move(1.0, time=1.0), dwell()]), "dwell 2 of the moves: expected a time, or a period of the moves"),
         (lambda: moves([move(1.0, time=1.0), dwell(), dwell()], period=3.0), "2 dwells have no time; at most one"),
         (lambda: moves([move(1.0, time=1.0)], period=3.0), "the times add up to 1 s, but the period is 3 s"),
@@ -323,3 +323,18 @@ def test_info_tells_moves_and_jumps(here, capsys):
         "    the acceleration jumps at 0 s where 'out' begins, 0.0833333 s within 'out', 0.166667 s within 'out'",
     ):
         assert any(found.replace("from 0 rad (0 deg) to 0 rad (0 deg), ", "").startswith(line) for found in lines), line
+
+
+@pytest.mark.parametrize("options", [{}, {"backend": "vm"}, {"backend": "c"}, {"precision": "single"}])
+def test_at_the_seam_the_next_cycle_begins(options):
+    """An acceleration jumps there: each seam shows what the first one does, by every way of evaluation."""
+    m = Mechanism("indexed")
+    takt = m.parameter("takt", 1.475, "s")
+    m.revolute("J", m.ground, m.link("arm", length=0.4, mass=3.0))
+    parts = [move("60 deg", time=0.4, law="simple_harmonic"), dwell(0.1), move(0, time=0.5), dwell()]
+    law = moves(parts, cyclic=True, period=takt)
+    scene = Scene(m, {"J": law}, wanted=["motion"], t=(0, 3 * takt, 61))
+    solution, seams = evaluate(scene, **options), [0, 20, 40, 60]
+    size = math.pi / 3 / 2 * (math.pi / 0.4) ** 2
+    assert solution.motion("J").acceleration[seams] == pytest.approx(size, rel=1e-6)
+    assert prepare(scene, **options)()["motion:J_acceleration"][seams] == pytest.approx(size, rel=1e-6)

@@ -9,8 +9,8 @@ from mechanisms import bracket
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

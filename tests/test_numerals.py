@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi.system.numerals import readable, real, whole
+from lagrange_casadi.base.numerals import readable, real, whole
 
 pytestmark = pytest.mark.quick
 

@@ -8,7 +8,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, optimise, shaking
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.optimise.conditions import conditions
+from lagrange_casadi.studies.optimise.conditions import conditions
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

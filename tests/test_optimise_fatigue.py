@@ -8,8 +8,8 @@ from strong import STEEL, press, robot, slider
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, optimise, sweep
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.optimise.finder import Finder
-from lagrange_casadi.optimise.problem import Question
+from lagrange_casadi.studies.optimise.finder import Finder
+from lagrange_casadi.studies.optimise.problem import Question
 
 
 def used(scene, link, values):

@@ -11,11 +11,11 @@ import pytest
 import sweeps
 
 from lagrange_casadi import load_case, optimise
+from lagrange_casadi.base.seal import verify
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import BusyError, PathError, StoreError
-from lagrange_casadi.optimise.journal import journal_of, kept
-from lagrange_casadi.optimise.searching import Search
-from lagrange_casadi.system.seal import verify
+from lagrange_casadi.studies.optimise.journal import journal_of, kept
+from lagrange_casadi.studies.optimise.searching import Search
 
 commands = importlib.import_module("lagrange_casadi.cli.optimise")
 

@@ -186,3 +186,33 @@ def test_means_go_with_instants_that_move(asked):
     assert gradient.rms["effort:O"]["size"] == pytest.approx(peaks.rms[0] / 7.0, rel=1e-12)
     assert gradient.rms["effort:O"]["speed"] == pytest.approx(-peaks.rms[0] / 20, rel=1e-12)
     assert abs(gradient.mean["effort:O"]["l"]) <= 1e-14
+
+
+def shaper():
+    """A ram that cuts on its way back: the force sets in where its speed passes zero, which rounding places on either side."""
+    m = Mechanism("shaper")
+    rpm, cut = m.parameter("rpm", 22.03, "1/min"), m.parameter("cut", 111.9, "N")
+    crank, rocker = m.link("crank", length=0.1191, mass=2.0), m.link("rocker", length=0.6, mass=5.0)
+    block, ram = m.point_mass("block", 0.4882), m.point_mass("ram", 8.0)
+    m.revolute("main", m.ground.at(0, 0.25), crank)
+    m.revolute("foot", m.ground, rocker)
+    m.revolute("pin", crank.tip, block)
+    m.slot("slide", rocker, block, axis=(1, 0))
+    way = m.prismatic("way", m.ground.at(0.0, 0.5), ram, axis=(1, 0))
+    m.slot("head", rocker, ram, axis=(1, 0))
+    m.force("tool", ram, x=-cut * (m.rate(way) < 0))
+    law = polynomial(0.8174, rpm * 2 * math.pi / 60)
+    return Scene(m, {"main": law}, over=("main", 1.0, "400 deg", 37), posture={"rocker": 1.5})
+
+
+@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
+def test_a_peak_at_a_jump_has_the_slopes_of_its_own_side(backend):
+    """Where the speed passes zero the tool is there or not, by rounding; the peak is of the side on which it is."""
+    f = prepare(shaper(), wanted=["reaction:foot", "effort"], backend=backend)
+    for rpm in (22.03, 24.0, 26.5, 31.0):
+        gradient = f.gradient(rpm=rpm)
+        jumps = np.flatnonzero(gradient.kinds == PeakKind.SWITCH)
+        assert "reaction:foot:fx" in [f.quantities[k] for k in jumps]
+        # Forces are linear in the cut, a resultant nearly so, and the time of the jump stands still.
+        above, below = (f.peaks(rpm=rpm, cut=cut).value.copy() for cut in (112.9, 110.9))
+        np.testing.assert_allclose(gradient.slopes[jumps, 1], (above - below)[jumps] / 2, rtol=1e-5)

@@ -11,7 +11,7 @@ from mechanisms import LENGTH, MASS, G, four_bar, lobes, parallelogram, pendulum
 
 from lagrange_casadi import Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.study.peaks import forces, rates, refine, shortfall
+from lagrange_casadi.studies.peaks import forces, rates, refine, shortfall
 
 
 def vm(scene, **keywords):

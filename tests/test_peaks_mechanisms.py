@@ -7,10 +7,10 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.peaks import forces
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.peaks import forces
 
 
 def crank_rocker(lengths, ground, start, count):

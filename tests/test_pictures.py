@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import lagrange_casadi
-from lagrange_casadi.draw.pictures import PICTURES, save
+from lagrange_casadi.shapes.pictures import PICTURES, save
 
 pytestmark = pytest.mark.quick
 
@@ -35,4 +35,4 @@ def test_neither_clocks_nor_programs_nor_chance(ending):
 def test_every_picture_is_saved_there():
     package = Path(lagrange_casadi.__file__).parent
     found = [path.relative_to(package).as_posix() for path in package.rglob("*.py") if ".savefig(" in path.read_text()]
-    assert found == ["draw/pictures.py"]
+    assert found == ["shapes/pictures.py"]

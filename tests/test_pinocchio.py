@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion
-from lagrange_casadi.tables import SPACE
+from lagrange_casadi.base.tables import SPACE
 
 RATIOS = (0.2, 0.5, 0.85)
 

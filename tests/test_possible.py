@@ -6,10 +6,10 @@ from prepared import prepared
 
 from lagrange_casadi import Mechanism, Scene, density, evaluate
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
 def arm(build, names, default=0.0):

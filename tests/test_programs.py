@@ -16,10 +16,10 @@ from compiled import fake_compiler
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, evaluate
+from lagrange_casadi.base import cache
 from lagrange_casadi.cli import main
 from lagrange_casadi.codegen import compiler, programs
 from lagrange_casadi.errors import CompilerError
-from lagrange_casadi.system import cache
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 TELLS = 'test "$1" = --version && exit 0;'

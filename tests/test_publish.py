@@ -9,8 +9,8 @@ import h5py
 import pytest
 import sweeps
 
+from lagrange_casadi.base.publish import check_writable, filling, replacing, uninterrupted
 from lagrange_casadi.errors import PathError
-from lagrange_casadi.system.publish import check_writable, filling, replacing, uninterrupted
 
 pytestmark = pytest.mark.quick
 
@@ -90,7 +90,7 @@ def test_an_interrupt_waits_until_it_is_let_through():
 HELD = """
 import sys, time
 from pathlib import Path
-from lagrange_casadi.system.publish import filling, replacing
+from lagrange_casadi.base.publish import filling, replacing
 with {"file": replacing, "folder": filling}[sys.argv[1]](Path("x.out")) as draft:
     (draft / "a" if draft.is_dir() else draft).write_text("half")
     print("ready", flush=True)

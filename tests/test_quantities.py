@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi.quantities import Output
-from lagrange_casadi.tables import PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
+from lagrange_casadi.base.quantities import Output
+from lagrange_casadi.base.tables import PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 

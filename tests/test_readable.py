@@ -5,7 +5,7 @@ from importlib import resources
 
 import pytest
 
-from lagrange_casadi.draw.readable import PREFIXED, STEPS, Scale, scale_for
+from lagrange_casadi.shapes.readable import PREFIXED, STEPS, Scale, scale_for
 
 pytestmark = pytest.mark.quick
 

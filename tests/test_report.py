@@ -15,10 +15,10 @@ from reports import HOSTILE, held, hostile, press, snowed, solved, wound
 from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.shapes import joint_shapes, shapes
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.report import instants, page, write_report
 from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
+from lagrange_casadi.shapes.shapes import joint_shapes, shapes
 
 ASSETS = {path.name: path.read_text() for path in resources.files("lagrange_casadi.report").joinpath("assets").iterdir()}
 

@@ -14,7 +14,7 @@ from drawn_scenes import every_kind
 from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.quantities import Output
+from lagrange_casadi.base.quantities import Output
 
 pytestmark = alive.NEEDS_BROWSER
 

@@ -10,12 +10,12 @@ from reports import CASES, HOSTILE, hostile, press, solved
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.case import load_case
-from lagrange_casadi.draw.solid import place_of
-from lagrange_casadi.draw.views import upright, view
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.report import page
 from lagrange_casadi.report.still import still
+from lagrange_casadi.shapes.solid import place_of
+from lagrange_casadi.shapes.views import upright, view
 
 
 def circles(text):

@@ -1,7 +1,7 @@
 """What a page tells of strength: how far every part is used, and the series that were wanted."""
 
+import importlib
 import math
-import sys
 
 import pytest
 from mechanisms import slider_crank
@@ -115,7 +115,7 @@ def test_what_is_open_is_told_by_its_name(scene):
 def undrawn(monkeypatch):
     """Figures take long to draw, and none is looked at."""
     for command in ("plot", "run"):
-        monkeypatch.setattr(sys.modules[f"lagrange_casadi.cli.{command}"], "draw_with_progress", lambda *_: None)
+        monkeypatch.setattr(importlib.import_module(f"lagrange_casadi.cli.{command}"), "draw_with_progress", lambda *_: None)
 
 
 @pytest.mark.usefixtures("undrawn")

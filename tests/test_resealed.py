@@ -14,7 +14,7 @@ from forging import edit
 from lagrange_casadi import Mechanism, Scene, evaluate, optimise, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.sweep import sweep
+from lagrange_casadi.studies.sweep import sweep
 
 FEW, MANY = 12, 800
 ENDINGS = {"refused", "found", "accepted", "accepted unchanged"}

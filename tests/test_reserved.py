@@ -5,8 +5,8 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, Sweep, evaluate, refine, sweep
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check, load, save
 
 PLAIN = {"law": "hinge", "O_rate": "knee", "pull_2": "push", "law_rate": "size", "rod_acceleration": "bob"}

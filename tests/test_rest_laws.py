@@ -154,7 +154,7 @@ def test_trapezoids_within_limits(way, time):
         (lambda: trapezoid(0.6), r"trapezoid: share must be above 0 and at most 0\.5, got 0\.6"),
         (lambda: trapezoid(0.0), "trapezoid: share must be above 0"),
         (lambda: s_curve(0.3, 1.5), "s_curve: rounding must be above 0 and at most 1, got 1.5"),
-        (lambda: s_curve("a"), "s_curve: share must be above 0 and at most 0.5, got 'a'"),
+        (lambda: s_curve("a"), "s_curve: share: expected a number, or an expression in parameters, got 'a'"),
         (lambda: rest_law("move 'up'", 3), "move 'up': law: expected a name, trapezoid"),
     ],
 )

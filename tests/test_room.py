@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from lagrange_casadi.base import room
 from lagrange_casadi.errors import SizeError
-from lagrange_casadi.system import room
 
 pytestmark = pytest.mark.quick
 

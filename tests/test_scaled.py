@@ -6,11 +6,11 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.declare.motion import jerk_function
+from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.scaled import Scaled
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -81,8 +81,8 @@ def test_a_cycle_that_ends_before_the_scene_is_refused():
 def test_the_third_derivative_is_that_of_the_pieces():
     scene = geared(LAWS["vector"])
     p = scene.mechanism.symbols
-    jerk = jerk_function(scene.motion, p)
-    plain = jerk_function({"J": motion.samples(TIMES, 2.0 * ANGLES)}, ca.SX(0, 1))
+    jerk = Laws.of(scene.motion, p).jerk()
+    plain = Laws.of({"J": motion.samples(TIMES, 2.0 * ANGLES)}, ca.SX(0, 1)).jerk()
     for t in (0.05, 0.33, 0.5, 0.99):
         assert float(jerk(t, [2.0, 0.0, 1.0])) == pytest.approx(float(plain(t, [])), rel=1e-9)
 

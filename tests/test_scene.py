@@ -196,9 +196,9 @@ def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, s
     [
         ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
         ({"backend": None}, "evaluate: backend: expected a text, got None"),
-        ({"threads": True}, "threads: expected a whole number, got True"),
+        ({"threads": True}, "threads: expected a whole number from 1 to 1024, got True"),
         ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got 0"),
-        ({"threads": 1.5}, "threads: expected a whole number, got 1.5"),
+        ({"threads": 1.5}, "threads: expected a whole number from 1 to 1024, got 1.5"),
     ],
 )
 def test_a_way_to_run_that_there_is_not_is_named(keywords, says):

@@ -16,13 +16,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi import Sweep, check, load, save, sweep
+from lagrange_casadi.base import seal
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
-from lagrange_casadi.optimise import file as optimum
 from lagrange_casadi.store import runs as store
-from lagrange_casadi.sweep import is_sweep
-from lagrange_casadi.sweep.checking import check_sweep
-from lagrange_casadi.system import seal
+from lagrange_casadi.studies.optimise import file as optimum
+from lagrange_casadi.studies.sweep import is_sweep
+from lagrange_casadi.studies.sweep.checking import check_sweep
 
 MIB = 1 << 20
 

@@ -69,7 +69,7 @@ def numbers(values):
 def program(links):
     """C that prints the forces of each link at each ratio twice, by sweeps' functions and by exported ones."""
     sweeps = resources.files("lagrange_casadi.codegen").joinpath("sections.c").read_text()
-    templates = resources.files("lagrange_casadi.export").joinpath("templates")
+    templates = resources.files("lagrange_casadi.portable").joinpath("templates")
     exported = Template("\n".join(templates.joinpath(name).read_text() for name in ("tails.c", "sections.c", "many_sections.c")))
     body, cases, shapes, matter, outputs, breaks, sizes = "", "", [], [], [], [], []
     for k, (length, edges, cells, law, loads) in enumerate(links):

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
-from lagrange_casadi.quantities import FORCES
 
 pytestmark = pytest.mark.quick
 

@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lagrange_casadi.base.quantities import Output
+from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants import grids
@@ -12,8 +14,6 @@ from lagrange_casadi.instants.laws import made_of
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.station_loads import SpatialStationLoad
 from lagrange_casadi.instants.views import Section
-from lagrange_casadi.quantities import Output
-from lagrange_casadi.tables import SPACE
 
 X = np.array([1.0, 0.0, 0.0])
 LENGTH = 0.7

@@ -8,11 +8,11 @@ from conftest import CASES
 from reports import wound
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
+from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves
 from lagrange_casadi.sensitivity.peaks import PeakKind
-from lagrange_casadi.tables import SPACE
 
 pytestmark = pytest.mark.quick
 

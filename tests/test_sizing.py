@@ -10,7 +10,7 @@ from lagrange_casadi import evaluate
 from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
-from lagrange_casadi.study.sizing import size
+from lagrange_casadi.studies.sizing import size
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

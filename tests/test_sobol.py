@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.optimise.sobol import MOST_DIMENSIONS, sobol
+from lagrange_casadi.studies.optimise.sobol import MOST_DIMENSIONS, sobol
 
 pytestmark = pytest.mark.quick
 

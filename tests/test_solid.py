@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drawn_scenes import CASES, every_kind, moved
 
-from lagrange_casadi.draw.solid import BLOCK, MARKS, axes_of, cloud_of, direction_of, grounds_of, lines_of, marks_of, place_of
+from lagrange_casadi.shapes.solid import BLOCK, MARKS, axes_of, cloud_of, direction_of, grounds_of, lines_of, marks_of, place_of
 
 
 @pytest.mark.sampled(7)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, evaluate
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.quantities import Output
 
 pytestmark = pytest.mark.quick
 

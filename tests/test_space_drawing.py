@@ -12,11 +12,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.figures import MechanismDrawing, default_figures, draw
-from lagrange_casadi.draw.kept import dump_specs, parse_specs
-from lagrange_casadi.draw.postures import draw_postures
-from lagrange_casadi.draw.solid import place_of
-from lagrange_casadi.draw.views import views
+from lagrange_casadi.figures.figures import MechanismDrawing, default_figures, draw
+from lagrange_casadi.figures.postures import draw_postures
+from lagrange_casadi.shapes.kept import dump_specs, parse_specs
+from lagrange_casadi.shapes.solid import place_of
+from lagrange_casadi.shapes.views import views
 
 
 def drawn(solution, **asked):

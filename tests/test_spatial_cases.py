@@ -11,10 +11,10 @@ from estimates import assert_near, exactly, ratios
 from spatial_reference import Entry
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.draw import figures
+from lagrange_casadi.figures import figures
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 G = 9.81
 UP = np.array([0.0, 0.0, 1.0])

@@ -7,10 +7,10 @@ import pytest
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.spatial_placing import cross
 from lagrange_casadi.judge.written import written
-from lagrange_casadi.quantities import Output
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

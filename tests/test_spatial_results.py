@@ -1,8 +1,8 @@
 """What follows from the section laws of a spatial scene: its solution and file, peaks between instants, sweeps, figures, C."""
 
+import importlib
 import itertools
 import subprocess
-import sys
 
 import h5py
 import numpy as np
@@ -11,16 +11,16 @@ from compiled import cc
 from spatial_scenes import beams
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, motion, refine, save
-from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, default_figures
-from lagrange_casadi.export import export
+from lagrange_casadi.base.seal import seal
+from lagrange_casadi.base.tables import SPACE
+from lagrange_casadi.exports import export
+from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, default_figures
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import SCHEMA, check
-from lagrange_casadi.sweep.columns import Harvest
-from lagrange_casadi.sweep.instant_axis import InstantAxis
-from lagrange_casadi.system.seal import seal
-from lagrange_casadi.tables import SPACE
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.sweep.columns import Harvest
+from lagrange_casadi.studies.sweep.instant_axis import InstantAxis
 
 LINKS = ("beam", "taper", "bead")
 
@@ -60,7 +60,7 @@ def no_certificate(monkeypatch):
     def residuals(solution, *_):
         return {name: np.zeros(solution.t.size) for name in ("balance", "power", "closure", "ends")}
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "residuals_of", residuals)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "residuals_of", residuals)
 
 
 def test_a_solution_names_its_quantities(solution):

@@ -7,7 +7,7 @@ from spatial_draft import orientation
 from spatial_twin import planar, twin
 
 from lagrange_casadi import derive, evaluate, load_case
-from lagrange_casadi.quantities import Output
+from lagrange_casadi.base.quantities import Output
 
 DYADS = ("slider_crank", "engine", "four_bar", "quick_return", "six_bar", "andrews_squeezer", "jansen_leg")
 """Those that are made of dyads alone."""

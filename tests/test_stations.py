@@ -10,11 +10,11 @@ from balance import columns_at, oracle_of, postures
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, refine
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.quantities import FORCES
 from lagrange_casadi.store.runs import load, save
+from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -16,7 +16,7 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants.statistics import Statistics
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.study.peaks import resultants
+from lagrange_casadi.studies.peaks import resultants
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -2,8 +2,8 @@
 
 import itertools
 
-from lagrange_casadi.export.statuses import SHARED, STATUSES
 from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.portable.statuses import SHARED, STATUSES
 
 PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}
 OF_DESIGNS = {Status.PASSES_DEAD_CENTRE, Status.UNCERTIFIED, Status.PEAK_NOT_TOLD, Status.NO_INSTANTS, Status.CORNER}

@@ -5,7 +5,7 @@ import pytest
 from reports import solved
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.draw.stills import stills
+from lagrange_casadi.figures.stills import stills
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.quick

@@ -12,14 +12,14 @@ import pytest
 import sweeps
 
 from lagrange_casadi import save
+from lagrange_casadi.base.publish import check_writable, filling, replacing, writing
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.trade_plot import draw_trade
 from lagrange_casadi.errors import PathError, StoreError
+from lagrange_casadi.figures.trade_plot import draw_trade
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.trade import Measurement, Trade
-from lagrange_casadi.sweep import sweep
-from lagrange_casadi.sweep.parts import Folder
-from lagrange_casadi.system.publish import check_writable, filling, replacing, writing
+from lagrange_casadi.studies.sweep import sweep
+from lagrange_casadi.studies.sweep.parts import Folder
+from lagrange_casadi.studies.trade import Measurement, Trade
 
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 COLUMN = "peak:effort:O"
@@ -91,7 +91,7 @@ def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
 
 @pytest.mark.parametrize("command", TABLES)
 def test_a_pipe_that_nobody_reads_is_one_line(file, pipe, monkeypatch, capfd, command):
-    monkeypatch.setattr("lagrange_casadi.system.streams._PATIENCE", 0.2)
+    monkeypatch.setattr("lagrange_casadi.base.streams._PATIENCE", 0.2)
     assert main([*command, "--csv", "pipe"]) == 1
     assert capfd.readouterr().err == "error: cannot write pipe: nothing reads from it\n"
     assert stat.S_ISFIFO(os.stat(pipe).st_mode)

@@ -5,7 +5,7 @@ import pytest
 import strong
 
 from lagrange_casadi import beams, evaluate, figures
-from lagrange_casadi.draw.strength_plot import draw_strength, draw_utilisation
+from lagrange_casadi.figures.strength_plot import draw_strength, draw_utilisation
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -22,7 +22,7 @@ def test_links_with_a_beam_have_pictures(pressed, tmp_path):
     specs = [figures.StrengthPlot("strength_rod", "rod"), figures.UtilisationPlot("utilisation", ("rod",))]
     drawn = list(figures.draw(pressed, specs, tmp_path))
     assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
-    from lagrange_casadi.draw.kept import dump_specs, parse_specs
+    from lagrange_casadi.shapes.kept import dump_specs, parse_specs
 
     assert list(parse_specs(dump_specs(specs))) == specs
 

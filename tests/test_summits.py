@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from mechanisms import pendulum
 
 from lagrange_casadi import evaluate, motion
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.peaks import refine
 from lagrange_casadi.summits.panels import Samples
 from lagrange_casadi.summits.search import Curves, peaks
 from lagrange_casadi.summits.sharpness import Kind, Watch

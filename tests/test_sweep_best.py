@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.sweep import Condition, best, chosen, reading, sweep
-from lagrange_casadi.sweep.best import _front, missed, tally
+from lagrange_casadi.studies.sweep import Condition, best, chosen, reading, sweep
+from lagrange_casadi.studies.sweep.best import _front, missed, tally
 
 pytestmark = pytest.mark.quick
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.sweep.blocks import Queue, chunk_of, slabs
+from lagrange_casadi.studies.sweep.blocks import Queue, chunk_of, slabs
 
 pytestmark = pytest.mark.quick
 

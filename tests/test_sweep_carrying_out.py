@@ -13,10 +13,10 @@ import pytest
 import sweeps
 from sweeps import GRID, SIZE, StopError, run, stop_after
 
+from lagrange_casadi.base.room import cores
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
-from lagrange_casadi.sweep import sweep
-from lagrange_casadi.sweep.parts import Folder
-from lagrange_casadi.system.room import cores
+from lagrange_casadi.studies.sweep import sweep
+from lagrange_casadi.studies.sweep.parts import Folder
 
 
 @pytest.mark.sampled(5)
@@ -45,7 +45,7 @@ def test_the_same_bytes_whatever_the_stops(whole, tmp_path):
 
 def test_the_order_of_blocks_does_not_matter(whole, tmp_path, monkeypatch):
     """Workers that give their blocks backwards."""
-    from lagrange_casadi.sweep import sweeping
+    from lagrange_casadi.studies.sweep import sweeping
 
     class Backwards:
         def results(self, plan, queue):

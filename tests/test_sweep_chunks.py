@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.sweep.chunks import FILTERS, deflated, encoded, fletcher32
+from lagrange_casadi.studies.sweep.chunks import FILTERS, deflated, encoded, fletcher32
 
 pytestmark = pytest.mark.quick
 

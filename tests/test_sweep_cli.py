@@ -12,10 +12,11 @@ import sweeps
 from sweeps import ASKED, CASE
 
 from lagrange_casadi.cli import main, progress
+from lagrange_casadi.cluster import sweeps as cluster
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.sweep import Sweep, cluster
-from lagrange_casadi.sweep import columns as kept
-from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.studies.sweep import Sweep
+from lagrange_casadi.studies.sweep import columns as kept
+from lagrange_casadi.studies.sweep.parts import Folder
 
 
 @pytest.mark.quick

@@ -16,12 +16,13 @@ import pytest
 import sweeps
 
 from lagrange_casadi import Case, load_case, optimise
+from lagrange_casadi.cluster import sweeps as cluster
+from lagrange_casadi.cluster.sweeps import Cluster, SentCase
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.sweep import cluster, columns, sweep
-from lagrange_casadi.sweep.cluster import Cluster, SentCase
-from lagrange_casadi.sweep.plan import Task, signature
+from lagrange_casadi.studies.sweep import columns, sweep
+from lagrange_casadi.studies.sweep.plan import Task, signature
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
 

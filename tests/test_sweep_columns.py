@@ -5,13 +5,13 @@ import pytest
 import sweeps
 
 from lagrange_casadi import evaluate
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.quantities import FORCES
-from lagrange_casadi.study.peaks import forces, refine
-from lagrange_casadi.sweep import columns, sweep
-from lagrange_casadi.sweep.plan import Task
+from lagrange_casadi.studies.peaks import forces, refine
+from lagrange_casadi.studies.sweep import columns, sweep
+from lagrange_casadi.studies.sweep.plan import Task
 
 pytestmark = pytest.mark.quick
 
@@ -164,7 +164,7 @@ def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
 
 
 def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.system.room.memory", lambda: 2.05e7)
+    monkeypatch.setattr("lagrange_casadi.base.room.memory", lambda: 2.05e7)
     with pytest.raises(
         SizeError, match=r"no room for a design and what it is made from: 4 x .* GB, and this machine has 0\.0205 GB"
     ):

@@ -14,7 +14,7 @@ import sweeps
 from sweeps import GRID, StopError, run, stop_after
 
 from lagrange_casadi.errors import DeclarationError, SizeError, StoreError
-from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.studies.sweep.parts import Folder
 
 
 def test_after_a_failure_nothing_more_is_begun(engine, tmp_path, monkeypatch):
@@ -96,7 +96,7 @@ PROGRAM = """
     sys.path.insert(0, {tests!r})
     import sweeps
     from lagrange_casadi.errors import LagrangeCasadiError
-    from lagrange_casadi.sweep import plan, sweep
+    from lagrange_casadi.studies.sweep import plan, sweep
     plan.compiled = lambda *_: sweeps.Formula(pause={pause})
     # Python would leave bytecode cut off for others.
     sys.dont_write_bytecode = True

@@ -8,9 +8,9 @@ from plotted import BENDING, CLOSED, EFFORT, lines, plain, rewritten
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
-from lagrange_casadi.sweep import Listed, sweep
-from lagrange_casadi.sweep.default_figures import default_plots
-from lagrange_casadi.sweep.plots import Along, Front, Peaks, Scatter, draw_sweep
+from lagrange_casadi.studies.sweep import Listed, sweep
+from lagrange_casadi.studies.sweep.default_figures import default_plots
+from lagrange_casadi.studies.sweep.plots import Along, Front, Peaks, Scatter, draw_sweep
 
 
 @pytest.fixture

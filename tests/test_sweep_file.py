@@ -8,9 +8,9 @@ import pytest
 import sweeps
 import xarray
 
+from lagrange_casadi.base.tables import CONVENTIONS
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.sweep import Listed, sweep
-from lagrange_casadi.tables import CONVENTIONS
+from lagrange_casadi.studies.sweep import Listed, sweep
 
 pytestmark = pytest.mark.quick
 

@@ -14,9 +14,9 @@ from lagrange_casadi import Sweep, evaluate, sweep
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
 from lagrange_casadi.instants.refusal import Status
-from lagrange_casadi.sweep.axes import designs_of
-from lagrange_casadi.sweep.checking import check_sweep
-from lagrange_casadi.sweep.plan import Plan, signature
+from lagrange_casadi.studies.sweep.axes import designs_of
+from lagrange_casadi.studies.sweep.checking import check_sweep
+from lagrange_casadi.studies.sweep.plan import Plan, signature
 
 GRID = {"rpm": [60.0, 600.0], "l": (0.3, 0.5, 3)}
 TURN = math.tau

@@ -9,8 +9,8 @@ import sweeps
 
 from lagrange_casadi import Mechanism
 from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, UnknownNameError
-from lagrange_casadi.sweep import read_designs
-from lagrange_casadi.sweep.axes import check_designs
+from lagrange_casadi.studies.sweep import read_designs
+from lagrange_casadi.studies.sweep.axes import check_designs
 
 pytestmark = pytest.mark.quick
 
@@ -87,6 +87,7 @@ def test_the_head_is_checked_before_the_numbers(tmp_path):
     with pytest.raises(DeclarationError, match="line 1, column 1: 'design' is a result of a sweep, not a parameter"):
         read_designs(path, ["l", "r"])
     assert read_designs(path, ["l", "design"]).names == ("design", "l")
+    assert read_designs(path, {"l": None, "design": None}).names == ("design", "l")
 
 
 def test_a_sweep_names_the_place_in_the_file(tmp_path):

@@ -12,7 +12,7 @@ import pytest
 from reports import CASES, held
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.sweep import Sweep, best, chosen
+from lagrange_casadi.studies.sweep import Sweep, best, chosen
 
 pytestmark = alive.NEEDS_BROWSER
 

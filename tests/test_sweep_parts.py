@@ -9,8 +9,8 @@ import pytest
 import sweeps
 
 from lagrange_casadi.errors import BusyError, StoreError
-from lagrange_casadi.sweep.columns import Column
-from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.studies.sweep.columns import Column
+from lagrange_casadi.studies.sweep.parts import Folder
 
 pytestmark = pytest.mark.quick
 
@@ -112,7 +112,7 @@ def test_a_lock_dies_with_its_process(tmp_path):
     program = f"""
         import time
         from pathlib import Path
-        from lagrange_casadi.sweep.parts import Folder
+        from lagrange_casadi.studies.sweep.parts import Folder
         folder = Folder(Path({str(target)!r}))
         with folder.locked():
             folder.begin({{}})

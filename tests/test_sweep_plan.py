@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 import sweeps
 
-from lagrange_casadi.sweep import Grid
-from lagrange_casadi.sweep.plan import Plan, difference
+from lagrange_casadi.studies.sweep import Grid
+from lagrange_casadi.studies.sweep.plan import Plan, difference
 
 pytestmark = pytest.mark.quick
 

@@ -5,9 +5,9 @@ import plotted
 import pytest
 from plotted import BENDING, CLOSED, EFFORT, REACH, legend, lines, plain, rewritten
 
-from lagrange_casadi.sweep import best, cut, plots
-from lagrange_casadi.sweep.plots import Along, Front, Peaks, Scatter
-from lagrange_casadi.sweep.scale import number
+from lagrange_casadi.studies.sweep import best, cut, plots
+from lagrange_casadi.studies.sweep.plots import Along, Front, Peaks, Scatter
+from lagrange_casadi.studies.sweep.scale import number
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import pytest
 from matplotlib import colors
 from matplotlib.figure import Figure
 
-from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number, tick
-from lagrange_casadi.sweep.sheet import fitted
+from lagrange_casadi.studies.sweep.scale import Scale, edges, logarithmic, number, tick
+from lagrange_casadi.studies.sweep.sheet import fitted
 
 pytestmark = pytest.mark.quick
 

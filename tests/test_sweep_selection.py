@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.sweep.selection import absent, matches, near
+from lagrange_casadi.studies.sweep.selection import absent, matches, near
 
 pytestmark = pytest.mark.quick
 

@@ -6,9 +6,9 @@ import pytest
 
 from lagrange_casadi import Sweep, best, prepare, sweep
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.sweep.checking import check_sweep
-from lagrange_casadi.sweep.page import is_of
-from lagrange_casadi.sweep.sheet import label
+from lagrange_casadi.report.of_sweep import is_of
+from lagrange_casadi.studies.sweep.checking import check_sweep
+from lagrange_casadi.studies.sweep.sheet import label
 
 pytestmark = pytest.mark.quick
 

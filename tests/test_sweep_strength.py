@@ -9,15 +9,15 @@ from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, best, evaluate, optimise, sweep
 from lagrange_casadi.cli import program
-from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError, NoDesignError
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
-from lagrange_casadi.sweep import strength
-from lagrange_casadi.sweep.axes import designs_of
-from lagrange_casadi.sweep.checking import check_sweep
-from lagrange_casadi.sweep.plan import Plan
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.sweep import strength
+from lagrange_casadi.studies.sweep.axes import designs_of
+from lagrange_casadi.studies.sweep.checking import check_sweep
+from lagrange_casadi.studies.sweep.plan import Plan
 
 
 @pytest.fixture(scope="module")

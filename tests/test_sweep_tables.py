@@ -11,7 +11,7 @@ from forging import flip
 from sweeps import ASKED, BENDING, CASE
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.sweep import Sweep
+from lagrange_casadi.studies.sweep import Sweep
 
 pytestmark = pytest.mark.quick
 

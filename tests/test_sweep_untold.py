@@ -6,7 +6,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, motion, sweep
 from lagrange_casadi.instants.refusal import Status
-from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.studies.sweep.checking import check_sweep
 
 pytestmark = pytest.mark.quick
 

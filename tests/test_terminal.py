@@ -15,7 +15,7 @@ import lagrange_casadi.cli
 from lagrange_casadi import evaluate, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import LagrangeCasadiError, escaped, one_line
-from lagrange_casadi.sweep import sweep
+from lagrange_casadi.studies.sweep import sweep
 
 CLI = Path(lagrange_casadi.cli.__file__).parent
 WRITERS = {"click.echo", "click.secho", "click.echo_via_pager", "print", "sys.stdout.write", "sys.stderr.write"}

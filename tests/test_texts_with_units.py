@@ -11,7 +11,7 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.declare.description import describe
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial
-from lagrange_casadi.sweep import Values, read_designs, sweep
+from lagrange_casadi.studies.sweep import Values, read_designs, sweep
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

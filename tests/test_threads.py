@@ -19,8 +19,10 @@ import pytest
 import spying
 import threaded
 from matplotlib import rcParams
+from stepped import pinned
 
 from lagrange_casadi import (
+    Mechanism,
     Scene,
     evaluate,
     export,
@@ -35,9 +37,9 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.declare.motion import samples
-from lagrange_casadi.draw import pictures
 from lagrange_casadi.figures import TimePlot
-from lagrange_casadi.sweep.plots import Peaks, draw_sweep
+from lagrange_casadi.shapes import pictures
+from lagrange_casadi.studies.sweep.plots import Peaks, draw_sweep
 
 
 def jobs(threads, folder, cache):
@@ -105,9 +107,10 @@ WAYS = {
 def test_expressions_are_made_by_one_thread_at_a_time(way, fresh_cache, monkeypatch, tmp_path):
     unlocked = spying.spied(monkeypatch)
     with symbolic:
-        scene = threaded.press(1 + len(way) / 32)  # as no other test has it
+        pin = pinned if way == "newton" else Mechanism.revolute
+        scene = threaded.press(1 + len(way) / 32, pin)  # as no other test has it
     assert not unlocked
-    WAYS[way](Scene(scene.mechanism, {"O": scene.laws["O"]}, t=(0.0, 1.0, 9), posture={"rod": 1.5}), tmp_path)
+    WAYS[way](Scene(scene.mechanism, {"O": scene.laws["O"]}, t=(0.0, 1.0, 9), posture=scene.posture), tmp_path)
     assert not unlocked
 
 
@@ -161,7 +164,7 @@ def hammered(asked, values, times=4):
 @pytest.mark.parametrize("asked", [{}, {"newton": 3}, {"backend": "vm"}, {"waved": True}], ids=str)
 def test_a_prepared_scene_answers_each_thread(asked, way):
     """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants of each design's own."""
-    scene, slow = threaded.press(0), "backend" in asked
+    scene, slow = threaded.press(0, pinned if "newton" in asked else Mechanism.revolute), "backend" in asked
     if "waved" in asked:
         law = samples(TIMES, 0.3 + np.sin(2.0 * TIMES))
         scene = Scene(scene.mechanism, {"O": law}, t=(0.0, 1.0, 9), posture={"rod": 1.5})
@@ -183,7 +186,8 @@ def test_a_thread_finds_its_own_answer_again():
 @pytest.mark.parametrize("rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str)
 def test_one_scene_is_evaluated_by_many_threads(rung):
     def asked(l):
-        found = evaluate(threaded.SHARED, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
+        scene = threaded.ITERATED if "newton" in rung else threaded.SHARED
+        found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
         laws = {f"bending:{name}": found.section(name).bending for name in found.links_with_sections}
         return told({**found.series, **laws, "errors": found.errors, "certificate": found.certificate})
 

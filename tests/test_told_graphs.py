@@ -8,6 +8,7 @@ import pytest
 from elastic_mechanisms import four_bar, made, three_cranks
 
 from lagrange_casadi import Mechanism, Scene, beams, derive, evaluate, export, prepare, sweep
+from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.equations import least_work
 from lagrange_casadi.equations.checks import Check
 from lagrange_casadi.errors import DeclarationError
@@ -15,7 +16,6 @@ from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.determinacy import determinate, undetermined
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.quantities import Output
 
 ROUND, BAR = beams.round_bar(0.01), beams.rectangle(0.02, 0.01)
 

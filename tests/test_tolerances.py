@@ -11,7 +11,7 @@ from lagrange_casadi import Mechanism, Scene, load_case, prepare, tolerances
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.study.tolerances import read_tolerance
+from lagrange_casadi.studies.tolerances import read_tolerance
 
 
 def rotor():

@@ -9,7 +9,7 @@ from mechanisms import press, uneven
 
 from lagrange_casadi import Mechanism, Scene, motion
 from lagrange_casadi.declare.turned import note
-from lagrange_casadi.sweep.turning import turning_note
+from lagrange_casadi.studies.sweep.turning import turning_note
 
 pytestmark = pytest.mark.quick
 

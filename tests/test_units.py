@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from lagrange_casadi.export.units import BASE, base_unit
-from lagrange_casadi.tables import QUANTITIES
+from lagrange_casadi.base.tables import QUANTITIES
+from lagrange_casadi.exports.units import BASE, base_unit
 
 pytestmark = pytest.mark.quick
 

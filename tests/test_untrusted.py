@@ -15,14 +15,14 @@ from forging import forging
 
 from lagrange_casadi import Sweep, best, check, evaluate, load, save
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.figures import TimePlot
-from lagrange_casadi.draw.kept import dump_specs, parse_specs
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, StoreError
+from lagrange_casadi.figures.figures import TimePlot
+from lagrange_casadi.shapes.kept import dump_specs, parse_specs
 from lagrange_casadi.store import runs as store
 from lagrange_casadi.store.untrusted import check_shape, parsed, told_as
-from lagrange_casadi.sweep import Listed, sweep
-from lagrange_casadi.sweep.checking import check_sweep, progress
-from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.studies.sweep import Listed, sweep
+from lagrange_casadi.studies.sweep.checking import check_sweep, progress
+from lagrange_casadi.studies.sweep.parts import Folder
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numbers beyond numbers
 

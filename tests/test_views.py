@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.draw.views import page, upright, view, views
+from lagrange_casadi.shapes.views import page, upright, view, views
 
 pytestmark = pytest.mark.quick
 

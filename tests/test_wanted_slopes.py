@@ -10,15 +10,16 @@ import pytest
 from forging import edit
 from mechanisms import slider_crank
 from reports import wound
+from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, save, sensitivities
+from lagrange_casadi.base.quantities import quotient
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.wanted_slopes import by_parameters, others
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.instants.derivatives import derivatives
 from lagrange_casadi.motion import harmonic, samples
-from lagrange_casadi.quantities import quotient
 from lagrange_casadi.sensitivity.total import total
 
 pytestmark = pytest.mark.quick
@@ -47,7 +48,7 @@ def two_drives():
     ("make", "asked"),
     [
         (slider_crank, {"t": SHORT, "xi": (0, 1, 4)}),
-        (slider_crank, {"t": SHORT, "xi": (0, 1, 4), "newton": 3, "backend": "vm"}),
+        (iterated, {"t": SHORT, "xi": (0, 1, 4), "newton": 3, "backend": "vm"}),
         (two_drives, {}),
         (two_drives, {"backend": "vm"}),
         (wound, {"backend": "c"}),

@@ -11,6 +11,7 @@ from pathlib import Path
 from threading import Barrier
 
 import numpy as np
+from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep, symbolic
 from lagrange_casadi.declare.motion import polynomial
@@ -19,24 +20,24 @@ JOBS = 10
 QUICK = "-O0"  # to compile
 
 
-def press(own):
+def press(own, pin=Mechanism.revolute):
     """A press whose crank turns a hundred times; with ``own`` one that no other job has."""
     with symbolic:
-        return _press(Mechanism("press"), own)
+        return _press(Mechanism("press"), own, pin)
 
 
-def _press(m, own):
+def _press(m, own, pin):
     l, r = m.parameter("l", 0.5, "m", low=0.0), m.parameter("r", 0.1, "m", low=0.0)
     crank, rod = m.link("crank", length=r, mass=1.2 + own / 8), m.link("rod", length=2 * l - l, mass=l * 4)
     ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, ram)
+    pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
-    return Scene(m, {"O": polynomial(0.3, 10)}, t=(0, 62.8, 301), xi=(0, 1, 3), posture={"rod": 1.5})
+    return Scene(m, {"O": polynomial(0.3, 10)}, t=(0, 62.8, 301), xi=(0, 1, 3), posture={"rod": 1.5, "guide": 0.6})
 
 
-SHARED = press(0)
+SHARED, ITERATED = press(0), press(0, pinned)
 
 
 def numbers(solution):
@@ -67,7 +68,7 @@ KINDS = (
     lambda own, folder: numbers(evaluate(SHARED, backend="c", flags=QUICK)),
     lambda own, folder: numbers(evaluate(SHARED, backend="c", precision="single", flags=QUICK)),
     lambda own, folder: numbers(evaluate(press(own), backend="c", precision="single", flags=QUICK)),
-    lambda own, folder: numbers(evaluate(press(own), backend="c", newton=3, flags=QUICK)),
+    lambda own, folder: numbers(evaluate(press(own, pinned), backend="c", newton=3, flags=QUICK)),
     lambda own, folder: numbers(evaluate(press(own), backend="vm")),
     swept,
     exported,

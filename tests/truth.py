@@ -11,10 +11,10 @@ import mpmath
 import numpy as np
 
 from lagrange_casadi import derive
+from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.reference import DIGITS, reference
-from lagrange_casadi.quantities import FORCES
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import NotNegative, Numeric, Positive, public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.csv_rows import Row, read_rows
 from ..errors import DeclarationError
-from ..system.csv_rows import Row, read_rows
 
 _RPM = math.tau / 60.0
 _ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
@@ -51,7 +51,7 @@ class Motor:
     rated_speed: Positive
     peak_torque: NotNegative
     max_speed: Positive
-    inertia: Positive
+    inertia: NotNegative
     knee_speed: NotNegative | None = None
     end_torque: NotNegative | None = None
     time_constant: float = math.inf

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import Finite, public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.held import Holding
 from ..instants.solution import Solution

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..equations.derive import assembled

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments import public
-from ..draw.pictures import PICTURES, one_at_a_time, save
+from ..base.publish import check_writable, writing
 from ..errors import DeclarationError
-from ..system.publish import check_writable, writing
+from ..shapes.pictures import PICTURES, one_at_a_time, save
 from .catalogue import Motor
 from .duty import Duty
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .duty import mean_of
 
 

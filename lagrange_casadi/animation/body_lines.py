@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import in_space
-from ..draw.places import placed
-from ..draw.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
-from ..draw.solid import COLOURS, PATH
+from ..shapes.places import placed
+from ..shapes.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.solid import COLOURS, PATH
 from .drawn import INK, Dot, Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage

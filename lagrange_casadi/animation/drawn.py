@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 INK = "#222222"
 

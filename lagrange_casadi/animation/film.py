@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments import public
-from ..draw.places import drawn_spots
-from ..draw.shapes import shapes
+from ..base.publish import replacing, writing
+from ..base.vocabulary import RATE, SECONDS, WIDTH
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..report.contents import require_poses
-from ..system.publish import replacing, writing
+from ..shapes.places import drawn_spots, require_poses
+from ..shapes.shapes import shapes
 from .body_lines import mechanism, rim
 from .drawn import Picture
 from .forces import Forces, arrow_things, forces_of, ribbon_things
@@ -45,9 +45,9 @@ class Film:
     links. ``names`` writes the joints' names beside them. Raises :class:`.DeclarationError` for what is out of range.
     """
 
-    width: int = 640
-    rate: float = 25.0
-    seconds: float = 4.0
+    width: int = WIDTH
+    rate: float = RATE
+    seconds: float = SECONDS
     forces: bool = False
     section: str = ""
     names: bool = True

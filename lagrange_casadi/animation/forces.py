@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import in_space
-from ..draw.shapes import Spot, joint_shapes, load_shapes
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
-from ..quantities import Output
+from ..shapes.shapes import Spot, joint_shapes, load_shapes
 from .drawn import Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage

@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import in_space
-from ..draw.places import drawn_spots, placed
-from ..draw.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
-from ..draw.solid import COLOURS, PATH
-from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.solution import Solution
+from ..shapes.places import drawn_spots, placed
+from ..shapes.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.solid import COLOURS, PATH
+from ..shapes.views import upright
 from ..version import __version__
 from .forces import LONGEST, actions_of, largest_of
 from .motion import Motion

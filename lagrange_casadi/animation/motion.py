@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
-from ..draw.places import drawn_spots, placed
-from ..draw.shapes import Place, Spot
+from ..base.arrays import Array
 from ..errors import DeclarationError
 from ..instants.solution import Solution
+from ..shapes.places import drawn_spots, placed
+from ..shapes.shapes import Place, Spot
 
 _SAME = 1e-3
 """Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last instant is the first again."""

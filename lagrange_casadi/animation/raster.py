@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..draw.pictures import one_at_a_time
+from ..base.room import require
 from ..errors import LagrangeCasadiError, StoreError, one_line
-from ..system.room import require
+from ..shapes.pictures import one_at_a_time
 from .drawn import INK, Dot, Picture, Thing, Words
 
 _DOTS = 100.0

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import Description, in_space
-from ..draw.views import AZIMUTH, ELEVATION, upright, view
+from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
 _MARGIN, _FOOT = 40.0, 30.0
 """Around everything, and below for words [points]."""

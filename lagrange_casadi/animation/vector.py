@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from html import escape
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .drawn import INK, Dot, Line, Picture, Thing, Words
 
 _UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

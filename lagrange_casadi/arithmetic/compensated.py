@@ -12,16 +12,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ..base.vocabulary import Precision
 from .interpret import Arithmetic
 from .scalars import added, as_expression, less, product
 
-Precision = Literal["double", "single"]
-PRECISIONS: tuple[Precision, ...] = ("double", "single")
 DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
 ROUNDING: dict[Precision, float] = {name: float(np.finfo(dtype).eps) / 2 for name, dtype in DTYPES.items()}
 """The largest relative error of one rounding."""

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, TypeAlias
 
-from ..arguments import Share, Within, public
+from ..arguments import Share, public
+from ..base.units import Within
 from ..errors import DeclarationError, check_kind
 from .material import Material
 from .shape import Course, Shape, course_of

@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..arguments import number, public
+from ..arguments import public
+from ..base.units import number
 from ..errors import DeclarationError, NumberError
 from .beam import Notch
 

@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 
 from ..arguments import public
+from ..base.csv_rows import Row, read_rows
 from ..errors import DeclarationError
-from ..system.csv_rows import Row, read_rows
 from .shape import Shape, dimensions_of
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:\[\s*(\w+)\s*\])?\s*")

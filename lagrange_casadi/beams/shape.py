@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..arguments import Symbolic, number, public
+from ..arguments import Symbolic, public
+from ..base.units import number
 from ..errors import DeclarationError, NumberError, check_kind
 from . import solid, walls
 from .properties import Fibre, Properties

@@ -15,30 +15,13 @@ from typing import Any
 
 import click
 
+from ..base.interrupts import SENTENCE, STATUS, interrupts
+from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
-from ..system.interrupts import SENTENCE, STATUS, interrupts
-from ..system.standard_streams import lead_nowhere
+from ..methods import missing
 from ..version import __version__
-from .animate import animate
-from .best import best
-from .cache import cache
-from .cases import cases
-from .check import check
-from .drawing import drawn_ways
-from .drive import drive_command as drive
+from .commands import COMMANDS
 from .echo import echo
-from .export import export
-from .info import info
-from .new import new
-from .optimise import optimise
-from .plot import plot
-from .report_page import report
-from .run import run
-from .size import size_command as size
-from .sweep import sweep
-from .table import table
-from .tolerances import tolerances
-from .trade import trade
 
 _OPTIONS = {
     "resume=True": "--resume",
@@ -80,12 +63,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (
-    run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, size, drive, cases, new, cache
-)  # fmt: skip
-
-
-@click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=_Commands, commands=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="lagrange-casadi")
 def program() -> None:
     """Efforts, reactions and section forces of a mechanism that must make a given motion."""
@@ -102,6 +80,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
         except PostureError as error:
+            from .drawing import drawn_ways
+
             return _fail(f"{error}{drawn_ways(error)}", error.exit_status)
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
@@ -116,6 +96,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except _Unread:
             lead_nowhere()
             return 1
+        except ModuleNotFoundError as error:
+            lacking = missing(error, "this")
+            if lacking is error:
+                raise
+            return _fail(str(lacking), 1)
         except MemoryError as error:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours

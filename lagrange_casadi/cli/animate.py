@@ -8,41 +8,22 @@ from pathlib import Path
 import click
 
 from ..animation import Film, check_ending, write_animation
+from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..evaluate import evaluate
 from ..judge.certificate import failure
 from ..store.runs import load
 from ..store.untrusted import told_as
-from ..system.publish import check_writable
+from ..studies.evaluate import evaluate
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by
-from .options import over as by_drive
+from .options import parameters
 
 _FILES = (".h5", ".hdf5")
-_PLAIN = Film()
 
 
-@click.command()
-@click.argument("target", metavar="FILE.h5|CASE", type=PATH)
-@click.option(
-    "--out",
-    type=PATH,
-    metavar="FILE.gif|FILE.mp4|FILE.svg|FILE.glb",
-    help="The animation; default: <name>.gif here.",
-)
-@click.option("--forces", is_flag=True, help="Show reactions, efforts and loads as arrows.")
-@click.option("--section", default="", metavar="FORCE", help="Show a section force, as bending, as ribbons along links.")
-@click.option("--no-names", is_flag=True, help="Leave out the joints' names.")
-@click.option("--width", type=int, default=_PLAIN.width, show_default=True, metavar="PIXELS", help="Width of the picture.")
-@click.option("--rate", type=float, default=_PLAIN.rate, show_default=True, metavar="NUMBER", help="Frames a second.")
-@click.option("--seconds", type=float, default=_PLAIN.seconds, show_default=True, metavar="NUMBER", help="What a cycle takes.")
-@settings_by("Of a case: give a parameter another value.")
-@instants("Of a case: instants [s]; default: its own.")
-@by_drive
 def animate(
     target: Path,
     out: Path | None,
@@ -56,11 +37,7 @@ def animate(
     t: EvenPoints | None,
     over: Over | None,
 ) -> None:
-    """Show FILE.h5, or CASE evaluated, in motion: one cycle, which repeats, from one file that needs nothing else.
-
-    A GIF goes everywhere, an SVG is sharp at every size, an MP4 is small and needs ffmpeg. A GLB (glTF) has the solid bodies, for
-    presentations and Blender.
-    """
+    """See :func:`.commands.animate`."""
     file = target.suffix in _FILES
     if file and (settings or t or over):
         raise click.UsageError("--set, --t and --over go with a case, not with a file")

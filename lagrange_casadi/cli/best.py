@@ -5,28 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
+from ..base.publish import check_writable
+from ..base.streams import is_standard_output
 from ..errors import NoDesignError
-from ..sweep import Sweep
-from ..sweep import best as find
-from ..sweep.axes import DESIGN, counted, grouped
-from ..sweep.best import missed, tally
-from ..system.publish import check_writable
-from ..system.streams import is_standard_output
+from ..studies.sweep import Sweep
+from ..studies.sweep import best as find
+from ..studies.sweep.axes import DESIGN, counted, grouped
+from ..studies.sweep.best import missed, tally
 from .echo import echo
-from .options import PATH
 from .rows import show, write_csv
 
 
-@click.command()
-@click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option("--minimise", multiple=True, metavar="COLUMN", help="The column to be least; with two objectives, their front.")
-@click.option("--maximise", multiple=True, metavar="COLUMN", help="The column to be largest.")
-@click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only designs like this: <, <=, >, >=, == or !=; repeatable.")
-@click.option("--count", type=click.IntRange(1), metavar="N", help="How many; default: the best one, or the whole front.")
-@click.option("--column", "columns", multiple=True, metavar="COLUMN", help="Show this column too; repeatable.")
-@click.option("--csv", type=PATH, metavar="OUT.csv", help="Write them as CSV too.")
 def best(
     file: Path,
     minimise: Sequence[str],
@@ -36,7 +25,7 @@ def best(
     columns: Sequence[str],
     csv: Path | None,
 ) -> None:
-    """Name the best designs of the sweep FILE.h5; peaks count by their size, whatever their sign."""
+    """See :func:`.commands.best`."""
     if csv:
         check_writable(csv)
     sweep = Sweep.open(file)

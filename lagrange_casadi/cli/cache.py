@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import click
-
+from ..base import cache as kept
 from ..errors import StoreError
-from ..sweep.axes import counted
-from ..system import cache as kept
+from ..studies.sweep.axes import counted
 from .echo import echo
 
 
-@click.command()
-@click.option("--clear", is_flag=True, help="Remove all of it.")
 def cache(clear: bool) -> None:
-    """Show where the cache of graphs and libraries is, how much it holds and may hold; or empty it."""
+    """See :func:`.commands.cache`."""
     place, most = kept.place(), kept.limit()
     try:
         entries = list(kept.entries(place).values()) if place.exists() else []

@@ -7,19 +7,14 @@ import shlex
 import shutil
 from pathlib import Path
 
-import click
-
+from ..base.publish import filling
 from ..errors import PathError
 from ..shipped_cases import shipped_cases
-from ..system.publish import filling
 from .echo import echo
-from .options import PATH
 
 
-@click.command()
-@click.option("--copy", type=PATH, metavar="FOLDER", help="Copy all of them into a new folder.")
 def cases(copy: Path | None) -> None:
-    """List the cases that come with the package, or copy them. Each is run by its name, as in run four_bar."""
+    """See :func:`.commands.cases`."""
     found = shipped_cases()
     if not found:
         raise PathError("the cases were not installed with the package: they are in its repository")

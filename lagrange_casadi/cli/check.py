@@ -12,16 +12,16 @@ from pathlib import Path
 
 import click
 
+from ..base.room import memory
+from ..base.vocabulary import TIME_LIMIT
 from ..codegen import programs
 from ..errors import LagrangeCasadiError, PathError, StoreError, one_line
-from ..optimise.file import check_optimum, is_optimum
 from ..store import runs as store
 from ..store.untrusted import parsed
-from ..sweep import is_sweep
-from ..sweep.checking import check_sweep, progress, unfinished
-from ..system.room import memory
+from ..studies.optimise.file import check_optimum, is_optimum
+from ..studies.sweep import is_sweep
+from ..studies.sweep.checking import check_sweep, progress, unfinished
 from .echo import echo
-from .options import PATH
 
 _PLACE = Path(__file__).parents[2]
 _PROGRAM = f"""
@@ -36,20 +36,16 @@ _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
 """How HDF5 is told to load no filters from outside."""
 
 _ANSWER = {"findings": [str], "refused": str, "status": int}
-_SECONDS, _LONGEST = 60.0, 1e6
+_LONGEST = 1e6
 _LINES, _LENGTH = 100, 1000
 """Findings that are told at most, and characters of each."""
 
 
-@click.command()
-@click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=PATH)
-@click.option("--untrusted", is_flag=True, help="Read it in a process of its own: forged files may crash or stall HDF5.")
-@click.option("--time-limit", type=float, metavar="SECONDS", help=f"What --untrusted may take; default: {_SECONDS:g}.")
 def check(file: Path, untrusted: bool, time_limit: float | None) -> int:
-    """Read all of FILE.h5 and verify it: exit status 0 if nothing is wrong with it, else 1."""
+    """See :func:`.commands.check`."""
     if time_limit is not None and not untrusted:
         raise click.UsageError("--time-limit goes with --untrusted")
-    seconds = _SECONDS if time_limit is None else time_limit
+    seconds = TIME_LIMIT if time_limit is None else time_limit
     if not 0.0 < seconds <= _LONGEST:
         raise click.UsageError(f"--time-limit: expected seconds above 0, up to {_LONGEST:g}, got {seconds:g}")
     findings = _findings_apart(file, seconds) if untrusted else _findings(file)

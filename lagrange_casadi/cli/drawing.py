@@ -9,18 +9,19 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from ..base.publish import writing
 from ..declare.scene import Scene
-from ..draw.figures import Spec, default_figures, draw
-from ..draw.index import write_index
-from ..draw.postures import draw_postures
 from ..errors import LagrangeCasadiError, PostureError
 from ..instants.solution import Solution
-from ..system.publish import writing
+from ..methods import method
+from ..shapes.index import write_index
+from ..shapes.specs import Spec
 from .echo import echo
 
 
 def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> None:
     """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar shows on a terminal only."""
+    default_figures, draw = method("figures.default_figures"), method("figures.draw")
     chosen = specs or default_figures(solution)
     skipped: list[str] = []
     drawn: list[str] = []
@@ -39,7 +40,7 @@ def drawn_ways(error: PostureError) -> str:
     picture = io.BytesIO()
     path = Path(f"{scene.mechanism.name}_postures.png")
     with suppress(LagrangeCasadiError):
-        if many := draw_postures(scene, picture):
+        if many := method("PostureError.drawn")(scene, picture):
             with writing(path) as (file,):
                 file.write(picture.getvalue())
             return f"; {path} draws {many} that close{'' if many > 1 else 's'}, each with its posture"

@@ -12,57 +12,23 @@ import click
 from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, read_motors, select
 from ..actuators.duty import slides
 from ..actuators.plot import check_picture
+from ..base.arrays import Array
 from ..case import load_case
-from ..declare.density import Array
 from ..declare.even_points import EvenPoints
 from ..declare.scene import kinds
 from ..declare.times import Over
 from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
-from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
-from ..system.numerals import real
+from ..studies.evaluate import evaluate
 from .echo import echo
-from .options import PATH, instants, length, parameters, separated, settings_by
-from .options import over as by_drive
+from .options import parameters
 
 _BAR = 40
 _FORCES = ("reaction", "multiplier", "load", "friction")
 """Beside efforts and motion what a certificate needs."""
 
 
-def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str]) -> tuple[float, ...]:
-    """Numbers other than 0, of an option that is repeatable, with commas between several."""
-    found = []
-    for word in separated(context, option, words):
-        try:
-            found.append(real(word))
-        except ValueError:
-            found.append(math.nan)
-        if not math.isfinite(found[-1]) or found[-1] == 0.0:
-            raise click.BadParameter(f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'")
-    return tuple(found)
-
-
-@click.command(name="drive")
-@click.argument("case", type=PATH)
-@click.option("--motors", type=PATH, metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
-@click.option("--drive", "drives", multiple=True, metavar="JOINT", help="This drive; repeatable. Default: all.")
-@click.option(
-    "--ratio",
-    "ratios",
-    multiple=True,
-    callback=_ratios,
-    metavar="NUMBER,...",
-    help="Turns of the motor for one of the drive; of several the best is taken. Default: 1.",
-)
-@click.option("--lead", type=length, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
-@click.option("--efficiency", type=float, default=1.0, show_default=True, metavar="SHARE", help="That of the gearbox.")
-@click.option("--inertia", type=float, default=0.0, metavar="NUMBER", help="What turns with the motor's shaft [kg m^2].")
-@settings_by()
-@instants("Instants [s], over a whole cycle; default: the case's.")
-@by_drive
-@click.option("--plot", type=PATH, metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
 def drive_command(
     case: Path,
     motors: Path | None,
@@ -76,7 +42,7 @@ def drive_command(
     over: Over | None,
     plot: Path | None,
 ) -> None:
-    """Tell what a cycle of CASE asks of the motors of its drives, and which of a catalogue is the smallest that serves."""
+    """See :func:`.commands.drive`."""
     if lead is not None and not 0.0 < lead < math.inf:
         raise click.UsageError(f"--lead: expected a positive length [m], got {lead:g}")
     if not 0.0 <= inertia < math.inf:

@@ -6,30 +6,13 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Precision
 from ..case import load_case
-from ..export import export as write
+from ..exports import export as write
 from .echo import echo
-from .options import PATH, arithmetic, parameters, settings_by, wanted
+from .options import parameters
 
 
-@click.command()
-@click.argument("case", type=PATH)
-@click.option("--out", type=PATH, required=True, metavar="DIR", help="The folder to write.")
-@click.option("--name", metavar="NAME", help="What it is called in C; default: the case's name.")
-@settings_by("Give a parameter another default; repeatable.")
-@wanted()
-@arithmetic
-@click.option(
-    "--largest", type=click.IntRange(0), metavar="BYTES", help="Most bytes of a table; default: 16 MB, in single precision 64 kB."
-)
-@click.option(
-    "--fmu", is_flag=True, help="Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler."
-)
-@click.option("--wasm", is_flag=True, help="Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang.")
-@click.option("--force", is_flag=True, help="Write into a folder that holds other files too; these are not touched.")
 def export(
     case: Path,
     out: Path,
@@ -44,7 +27,7 @@ def export(
     wasm: bool,
     force: bool,
 ) -> None:
-    """Write CASE as C for other programs: a library, a self-test and an example, in a folder that stands alone."""
+    """See :func:`.commands.export`."""
     loaded = load_case(case)
     made = write(
         loaded.scene,

@@ -16,23 +16,18 @@ from ..equations.derive import derive
 from ..equations.described import described
 from ..instants.solution import Solution
 from ..store import runs as store
-from ..sweep import Sweep, is_sweep
-from ..sweep.axes import counted
-from ..sweep.checking import progress, unfinished
-from ..sweep.instant_axis import in_words
+from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.axes import counted
+from ..studies.sweep.checking import progress, unfinished
+from ..studies.sweep.instant_axis import in_words
 from .echo import echo
-from .options import PATH, wanted
 from .report import asked_line, peak_line
 from .scene_lines import scene_lines
 from .strength_lines import untold_lines
 
 
-@click.command()
-@click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=PATH)
-@wanted("Count the instructions of these outputs; default: the case's.")
 def info(target: Path, want: tuple[str, ...]) -> None:
-    """Describe a case: its parts, drives, loads, posture, what is wanted, and its instruction count. Or a file of a run or a sweep,
-    finished or not."""
+    """See :func:`.commands.info`."""
     folder = unfinished(target)
     if folder or target.suffix in (".h5", ".hdf5"):
         if want:

@@ -8,22 +8,14 @@ import shlex
 import shutil
 from pathlib import Path
 
-import click
-
+from ..base.publish import filling
 from ..errors import PathError, UnknownNameError
 from ..shipped_cases import shipped_cases
-from ..system.publish import filling
 from .echo import echo
-from .options import PATH
-
-_SIMPLE = "four_bar"
 
 
-@click.command()
-@click.argument("folder", type=PATH)
-@click.option("--like", default=_SIMPLE, show_default=True, metavar="NAME", help="Begin with this case of those that cases lists.")
 def new(folder: Path, like: str) -> None:
-    """Begin a case of your own in the new FOLDER, as a copy of one that comes with the package, under the folder's name."""
+    """See :func:`.commands.new`."""
     found = shipped_cases()
     if like not in found:
         raise UnknownNameError("case", like, found)

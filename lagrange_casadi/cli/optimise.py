@@ -10,67 +10,21 @@ from typing import Any
 import click
 from tqdm import tqdm
 
-from ..arguments import typed
+from ..base.publish import check_writable, writing
+from ..base.vocabulary import Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
-from ..draw.pictures import PICTURES
 from ..errors import DeclarationError
-from ..instants.rung import BACKENDS, Backend
-from ..optimise import Front, Optimum
-from ..optimise import optimise as search
-from ..optimise.figure import draw_optimum
-from ..optimise.front import POINTS
-from ..optimise.front_figure import draw_front
-from ..system.numerals import real
-from ..system.publish import check_writable, writing
+from ..figures.front import draw_front
+from ..figures.optimum import draw_optimum
+from ..shapes.pictures import PICTURES
+from ..studies.optimise import Front, Optimum
+from ..studies.optimise import optimise as search
 from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
-from .options import PATH, instants, parameters, settings_by
-
-_BOUNDS = "NAME=LEAST:LARGEST"
+from .options import parameters
 
 
-def _bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
-    """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
-    name, _, words = (word.strip() for word in text.partition("="))
-    try:
-        low, high = (word if typed(word)[1] else real(word) for word in words.split(":"))
-    except ValueError:
-        raise click.BadParameter(f"expected {_BOUNDS}, as in l=0.15:0.4, got '{text}'") from None
-    return name, (low, high)
-
-
-@click.command()
-@click.argument("case", type=PATH)
-@click.option(
-    "--minimise",
-    required=True,
-    multiple=True,
-    metavar="TERM",
-    help="peak:QUANTITY, max:, mean: or rms:, or a parameter; repeated, for their front.",
-)
-@click.option(
-    "--over", "bounds", type=_bounds, multiple=True, required=True, metavar=_BOUNDS, help="A parameter to choose; repeatable."
-)
-@click.option(
-    "--subject-to", "limits", multiple=True, metavar="'TERM<=NUMBER'", help="A limit, as 'peak:effort:O<=12'; repeatable."
-)
-@click.option("--starts", type=int, default=4, show_default=True, metavar="NUMBER", help="How many designs to start from.")
-@click.option(
-    "--screen", type=int, default=256, show_default=True, metavar="NUMBER", help="Among how many designs starts are chosen."
-)
-@click.option("--points", type=int, default=POINTS, show_default=True, metavar="NUMBER", help="Points of a front, at most.")
-@click.option(
-    "--transmission", type=float, default=0.05, show_default=True, metavar="SINE", help="Least sine of transmission angles."
-)
-@settings_by("Give another parameter a value; repeatable.")
-@instants()
-@click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
-@click.option("--dask", metavar="ADDRESS", help="Search on a cluster: its Dask scheduler, as tcp://HOST:8786.")
-@click.option("--resume", is_flag=True, help="Go on with a search that was stopped; start where there is nothing.")
-@click.option("--force", is_flag=True, help="Start anew, whatever is there.")
-@click.option("--out", type=PATH, help="History and result, as HDF5; default: <case>_optimum.h5 here.")
-@click.option("--figure", type=PATH, help="The picture; default: <case>_optimum.png here.")
 def optimise(
     case: Path,
     minimise: Sequence[str],
@@ -89,11 +43,7 @@ def optimise(
     out: Path | None,
     figure: Path | None,
 ) -> int:
-    """Find the design of CASE for which a peak or a mean is least, within limits that hold over the whole motion.
-
-    Of several terms it finds their front: designs of which none is better in all of them. A search that was stopped leaves the best
-    so far, and goes on with --resume.
-    """
+    """See :func:`.commands.optimise`."""
     over = dict(bounds)
     if len(over) < len(bounds):
         raise DeclarationError("over: a parameter has bounds twice")

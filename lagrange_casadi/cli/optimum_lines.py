@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from ..optimise import Front, Optimum
+from ..studies.optimise import Front, Optimum
 
 
 def optimum_lines(found: Optimum) -> Iterator[str]:

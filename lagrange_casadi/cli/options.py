@@ -7,21 +7,22 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..arguments import number, typed
-from ..arithmetic.compensated import PRECISIONS
-from ..declare.even_points import EvenPoints
-from ..declare.times import Over
+from ..base.numerals import real, whole
+from ..base.vocabulary import BACKENDS, PRECISIONS
 from ..errors import DeclarationError
-from ..instants.rung import BACKENDS
-from ..sweep import Axis, Range, Values
-from ..system.numerals import real, whole
+
+if TYPE_CHECKING:
+    from ..declare.even_points import EvenPoints
+    from ..declare.times import Over
+    from ..studies.sweep import Axis
 
 EVEN_POINTS = "START:STOP:COUNT"
 OVER = "JOINT=START:STOP:COUNT"
+BOUNDS = "NAME=LEAST:LARGEST"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
@@ -61,6 +62,8 @@ def steps_over(text: str) -> Over:
 
 def axis(text: str) -> tuple[str, Axis]:
     """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; numbers may have a unit, as 30deg."""
+    from ..studies.sweep import Range, Values
+
     name, words = (word.strip() for word in text.partition("=")[::2])
     parts = words.split(":")
     if not (name and words) or len(parts) not in (1, 3, 4):
@@ -82,6 +85,8 @@ def axis(text: str) -> tuple[str, Axis]:
 
 def length(text: str) -> float:
     """A length, which may have a unit, as 5mm."""
+    from ..base.units import number
+
     try:
         return number(_value(text), "m", finite=False)
     except ValueError:
@@ -128,8 +133,53 @@ def table(text: str) -> float:
         raise click.BadParameter(f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'") from None
 
 
+def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
+    """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
+    name, _, words = (word.strip() for word in text.partition("="))
+    try:
+        low, high = (_value(word) for word in words.split(":"))
+    except ValueError:
+        raise click.BadParameter(f"expected {BOUNDS}, as in l=0.15:0.4, got '{text}'") from None
+    return name, (low, high)
+
+
+def tolerance(text: str) -> tuple[str, str]:
+    """NAME=VALUE; the parameter's unit tells what the value may be."""
+    name, equals, value = (word.strip() for word in text.partition("="))
+    if not (name and equals and value):
+        raise click.BadParameter(f"expected NAME=VALUE, as in l=0.1mm or m1=1%, got '{text}'")
+    return name, value
+
+
+def share(text: str) -> float:
+    """A positive number, or one over another."""
+    above, _, below = text.partition("/")
+    try:
+        found = real(above) / real(below or "1")
+    except (ValueError, ZeroDivisionError):
+        found = math.nan
+    if not 0.0 < found < math.inf:
+        raise click.BadParameter(f"expected a share of the length, as 1/500, got {text!r}")
+    return found
+
+
+def ratios(context: click.Context, option: click.Parameter, words: Sequence[str]) -> tuple[float, ...]:
+    """Numbers other than 0, of an option that is repeatable, with commas between several."""
+    found = []
+    for word in separated(context, option, words):
+        try:
+            found.append(real(word))
+        except ValueError:
+            found.append(math.nan)
+        if not math.isfinite(found[-1]) or found[-1] == 0.0:
+            raise click.BadParameter(f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'")
+    return tuple(found)
+
+
 def _value(word: str) -> Any:
     """A number, or the text of one with a unit. Raises ``ValueError`` for anything else."""
+    from ..base.units import typed
+
     return word if typed(word)[1] else real(word)
 
 
@@ -159,7 +209,7 @@ _PRECISION = click.option(
     "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Precision of all arithmetic."
 )
 _NEWTON = click.option(
-    "--newton", type=int, metavar="STEPS", help="Close every loop by so many Newton steps from the instant before."
+    "--newton", type=int, metavar="STEPS", help="Close iterated loops by so many Newton steps from the instant before."
 )
 _TABLE = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
 _FLAGS = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")

@@ -8,45 +8,27 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
-from ..arguments import typed
-from ..draw.index import MANIFEST, NAME, write_index
-from ..draw.kept import parse_specs
+from ..base.publish import check_writable
+from ..base.units import typed
 from ..errors import NoDesignError
+from ..shapes.index import MANIFEST, NAME, write_index
+from ..shapes.kept import parse_specs
 from ..store.runs import figure_specs, load
 from ..store.untrusted import told_as
-from ..sweep import Sweep, is_sweep
-from ..sweep.default_figures import default_plots
-from ..sweep.plots import Spec, draw_sweep
-from ..system.publish import check_writable
+from ..studies.sweep import Sweep, is_sweep
+from ..studies.sweep.default_figures import default_plots
+from ..studies.sweep.plots import Spec, draw_sweep
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import PATH, place
 from .strength_lines import untold_lines
 
 _UNDRAWN = "cannot be drawn"
 
 
-@click.command()
-@click.argument("file", type=PATH)
-@click.option("--out", type=PATH, required=True, help="The figures' folder.")
-@click.option(
-    "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
-)
-@click.option(
-    "--at",
-    type=place,
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="Of a sweep: where another parameter stays, or which designs of a list.",
-)
-@click.option(
-    "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
-)
-@click.option("--si", is_flag=True, help="Axes in SI without prefixes, in place of units that people read, as kN and mm.")
 def plot(
     file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]], si: bool
 ) -> None:
-    """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
+    """See :func:`.commands.plot`."""
     check_writable(out, folder=True)
     MANIFEST.check(out)
     if is_sweep(file):

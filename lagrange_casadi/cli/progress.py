@@ -10,7 +10,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from ..sweep.axes import counted, grouped
+from ..studies.sweep.axes import counted, grouped
 from .echo import echo
 
 _SECONDS = 10.0

@@ -8,41 +8,29 @@ from pathlib import Path
 
 import click
 
+from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
-from ..evaluate import evaluate
-from ..export.wasm import check_zig
 from ..instants.solution import Solution
 from ..judge.certificate import failure
+from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
+from ..report.of_sweep import is_of, write_sweep_report
 from ..store.runs import load
 from ..store.untrusted import told_as
-from ..sweep import Sweep, is_sweep
-from ..sweep.page import is_of, write_sweep_report
-from ..system.publish import check_writable
+from ..studies.evaluate import evaluate
+from ..studies.sweep import Sweep, is_sweep
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by, wanted
-from .options import over as by_drive
+from .options import parameters
 from .strength_lines import untold_lines
 
 _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
 
 
-@click.command()
-@click.argument("target", metavar="FILE.h5|CASE", type=PATH)
-@click.option("--out", type=PATH, metavar="REPORT.html", help="The page; default: <name>.html here.")
-@settings_by("Of a case: give a parameter another value.")
-@instants("Of a case: instants [s]; default: its own.")
-@by_drive
-@wanted("Of a case: what is shown besides motion; default: what it wants.")
-@click.option(
-    "--live", is_flag=True, help="Of a case: put the engine into the page, with sliders for the parameters; needs ziglang."
-)
-@click.option("--case", type=PATH, help="Of a sweep: its case, for the mechanism in motion.")
 def report(
     target: Path,
     out: Path | None,
@@ -53,11 +41,7 @@ def report(
     live: bool,
     case: Path | None,
 ) -> None:
-    """Write a page that shows FILE.h5, or CASE evaluated, in any browser: one file, which needs no network and no Python.
-
-    The mechanism moves, with its forces on it; charts and tables are beside it. Of a sweep there are maps, fronts, a table of
-    designs, and the mechanism of the one that is pressed.
-    """
+    """See :func:`.commands.report`."""
     file = target.suffix in _FILES
     if file and (settings or t or over or want or live):
         raise click.UsageError("--set, --t, --over, --want and --live go with a case, not with a file")

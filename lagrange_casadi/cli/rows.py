@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..declare.density import Array
-from ..sweep import Sweep
-from ..sweep.columns import STATUS
-from ..system.publish import writing
+from ..base.arrays import Array
+from ..base.publish import writing
+from ..studies.sweep import Sweep
+from ..studies.sweep.columns import STATUS
 from .echo import echo
 
 _WIDTH = 10

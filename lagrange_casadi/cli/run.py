@@ -11,30 +11,27 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ..arithmetic.compensated import Precision
+from ..base.publish import check_writable
+from ..base.streams import is_standard_output
+from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene, fitted_of, strength_of
 from ..declare.times import Over, Timing
-from ..draw.index import MANIFEST
-from ..draw.kept import dump_specs
 from ..errors import CertificateError
-from ..evaluate import evaluate
 from ..instants.frames import TIME, columns
-from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
+from ..shapes.index import MANIFEST
+from ..shapes.kept import dump_specs
 from ..store.runs import check_target, save
-from ..study.peaks import forces, refine, resultants
-from ..system.publish import check_writable
-from ..system.room import MOST_THREADS
-from ..system.streams import is_standard_output
+from ..studies.evaluate import evaluate
+from ..studies.peaks import forces, refine, resultants
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_lines
-from .options import EVEN_POINTS, PATH, even_points, instants, parameters, rung, settings_by, wanted
-from .options import over as by_drive
+from .options import parameters
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
 from .rows import csv_written, rows_of
@@ -42,22 +39,6 @@ from .slope_lines import slope_lines
 from .strength_lines import strength_lines, untold_lines
 
 
-@click.command()
-@click.argument("case", type=PATH)
-@settings_by()
-@instants()
-@by_drive
-@click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
-@wanted("effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.")
-@rung
-@click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
-@click.option("--out", type=PATH, help="The file; default: <case>.h5 here.")
-@click.option("--figures", type=PATH, help="The figures' folder; default: <case>_figures here.")
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
-@click.option("--csv", type=PATH, metavar="FILE.csv", help="Write a row for every instant as CSV too.")
-@click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
-@click.option("--elastic", is_flag=True, help="Let the beams of links tell what equilibrium leaves open.")
-@click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
@@ -79,7 +60,7 @@ def run(
     elastic: bool,
     no_certificate: bool,
 ) -> None:
-    """Evaluate CASE, a folder with a case.py, a Python file, or one that cases lists, and write an HDF5 file and figures."""
+    """See :func:`.commands.run`."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
     if out and out.suffix not in (".h5", ".hdf5"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,53 +11,12 @@ from ..beams.profiles import read_profiles
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..strength.critical_plane import FINDLEY
-from ..strength.fatigue import CRITERIA
-from ..strength.stress import KINDS
-from ..study.sizing import Sized, size
-from ..system.numerals import real
+from ..studies.sizing import Sized, size
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by
-from .options import over as by_drive
+from .options import parameters
 from .strength_lines import safety_lines, told
 
 
-def share(text: str) -> float:
-    """A positive number, or one over another."""
-    above, _, below = text.partition("/")
-    try:
-        found = real(above) / real(below or "1")
-    except (ValueError, ZeroDivisionError):
-        found = math.nan
-    if not 0.0 < found < math.inf:
-        raise click.BadParameter(f"expected a share of the length, as 1/500, got {text!r}")
-    return found
-
-
-@click.command(name="size")
-@click.argument("case", type=PATH)
-@click.option("--profiles", type=PATH, metavar="FILE.csv", help="A column name, and one for each dimension [m].")
-@click.option("--safety", type=float, default=2.0, show_default=True, metavar="FACTOR", help="The least factor of safety.")
-@click.option(
-    "--deflection",
-    type=share,
-    metavar="SHARE",
-    help="The largest deflection across a link over its length, as 1/500. Default: any.",
-)
-@click.option("--link", "links", multiple=True, metavar="LINK", help="Size this link; repeatable. Default: all that profiles fit.")
-@click.option(
-    "--criterion", type=click.Choice((*CRITERIA, FINDLEY)), default="goodman", show_default=True, help="How a mean counts."
-)
-@click.option(
-    "--yielding",
-    type=click.Choice(tuple(kind for kind in KINDS if kind not in ("normal", "shear"))),
-    default="von_mises",
-    show_default=True,
-    help="The stress that yields.",
-)
-@settings_by()
-@instants()
-@by_drive
 def size_command(
     case: Path,
     profiles: Path | None,
@@ -71,7 +29,7 @@ def size_command(
     t: EvenPoints | None,
     over: Over | None,
 ) -> None:
-    """Choose for each link of CASE, of the profiles of a table, the lightest that is safe under the loads that its mass brings."""
+    """See :func:`.commands.size`."""
     loaded = load_case(case)
     beside = loaded.path.parent / "profiles.csv"
     if profiles is None and not beside.is_file():

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from ..base.quantities import AVERAGED, Output
+from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError
-from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..instants.told import told
-from ..quantities import AVERAGED, Output
 from ..sensitivity.peaks import PeakKind
-from ..study.sensitivities import Changes, sensitivities
+from ..studies.sensitivities import Changes, sensitivities
 
 _WIDTH = 13
 _WORDS = {

@@ -12,7 +12,7 @@ from ..instants.solution import Solution
 from ..strength.parts import untold
 from ..strength.safety import Life, Safety
 from ..strength.stress import KINDS, StressPeak
-from ..study.strength_peaks import refine_safety, refine_stress
+from ..studies.strength_peaks import refine_safety, refine_stress
 
 _BAR = 40
 _GUESS = 1e3

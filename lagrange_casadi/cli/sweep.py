@@ -8,58 +8,22 @@ from pathlib import Path
 
 import click
 
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..instants.refusal import Status
-from ..instants.rung import Backend
-from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
-from ..sweep import sweep as carry_out
-from ..sweep.axes import counted, grouped
-from ..sweep.resting import resting_note
-from ..sweep.turning import turning_note
-from ..system.room import MOST_THREADS
+from ..studies.sweep import Axis, Keep, Sweep, read_designs
+from ..studies.sweep import sweep as carry_out
+from ..studies.sweep.axes import counted, grouped
+from ..studies.sweep.resting import resting_note
+from ..studies.sweep.turning import turning_note
 from .echo import echo
-from .options import AXIS, EVEN_POINTS, PATH, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
-from .options import over as by_drive
+from .options import parameters
 from .progress import shown
 
 
-@click.command()
-@click.argument("case", type=PATH)
-@click.option(
-    "--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last varies fastest."
-)
-@click.option(
-    "--designs",
-    type=PATH,
-    metavar="FILE.csv",
-    help="Sweep a list: a line of names, then one line for each design.",
-)
-@settings_by("Give a parameter that is not swept another value; repeatable.")
-@instants()
-@by_drive
-@click.option(
-    "--xi", type=even_points, metavar=EVEN_POINTS, help="Keep section forces at these ratios xi/l too, each the largest over time."
-)
-@wanted("An output that info CASE lists; all leaves out the motion; repeatable.")
-@click.option(
-    "--keep",
-    type=click.Choice(KEEPS),
-    default="peaks",
-    show_default=True,
-    help="Keep peaks, section laws too, or all outputs over time too.",
-)
-@untabled_rung
-@click.option("--workers", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads of this machine; default: one a core.")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on a cluster: its Dask scheduler, as tcp://HOST:8786.")
-@click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
-@click.option("--force", is_flag=True, help="Start anew, and replace what is there.")
-@click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
-@click.option("--quiet", is_flag=True, help="Show no progress.")
-@click.option("--out", type=PATH, help="The file; default: <case>_sweep.h5 here.")
 def sweep(
     case: Path,
     axes: Sequence[tuple[str, Axis]],
@@ -82,15 +46,7 @@ def sweep(
     quiet: bool,
     out: Path | None,
 ) -> None:
-    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file.
-
-    CASE is a folder with a case.py, a Python file, or one that cases lists. Of each design the peaks of what is wanted are kept,
-    with their instants and places, and means of efforts. A stopped sweep goes on with --resume. best, table and plot read the file.
-
-    \b
-    lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
-    lagrange-casadi best slider_crank_sweep.h5 --minimise peak:section:rod:bending
-    """
+    """See :func:`.commands.sweep`."""
     if bool(axes) == bool(designs):
         raise click.UsageError("expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv")
     if len({name for name, _ in axes}) < len(axes):

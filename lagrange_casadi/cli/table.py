@@ -7,33 +7,23 @@ from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
-import click
-
+from ..base.publish import check_writable
+from ..base.streams import is_standard_output
 from ..errors import NoDesignError
-from ..sweep import Sweep, chosen
-from ..sweep.axes import counted, grouped
-from ..sweep.best import conditions_in, missed, tally
-from ..sweep.columns import STATUS
-from ..sweep.instant_axis import in_words
-from ..system.publish import check_writable
-from ..system.streams import is_standard_output
+from ..studies.sweep import Sweep, chosen
+from ..studies.sweep.axes import counted, grouped
+from ..studies.sweep.best import conditions_in, missed, tally
+from ..studies.sweep.columns import STATUS
+from ..studies.sweep.instant_axis import in_words
 from .echo import echo
-from .options import PATH
 from .rows import show, write_csv
 
 _WIDE = 6
 _TOLD = 6
 
 
-@click.command()
-@click.argument("file", metavar="FILE.h5", type=PATH)
-@click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only rows like this: <, <=, >, >=, == or !=; repeatable.")
-@click.option("--column", "columns", multiple=True, metavar="COLUMN", help="This column; repeatable. Default: the main peaks.")
-@click.option("--rows", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many rows to show.")
-@click.option("--csv", type=PATH, metavar="OUT.csv", help="Write all rows; default: all columns without axes.")
 def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: Path | None) -> None:
-    """Show the designs of the sweep FILE.h5, or write them as CSV. A row is a design, or where columns have a value for every
-    xi or t, a design at one of them."""
+    """See :func:`.commands.table`."""
     if csv:
         check_writable(csv)
     sweep = Sweep.open(file)

@@ -8,44 +8,21 @@ from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
-import click
-
+from ..base.publish import check_writable, writing
+from ..base.vocabulary import Backend
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..errors import DeclarationError
-from ..instants.rung import BACKENDS, Backend
-from ..study.tolerances import SAMPLES, Spreads
-from ..study.tolerances import tolerances as spreads_of
-from ..system.publish import check_writable, writing
+from ..studies.tolerances import Spreads
+from ..studies.tolerances import tolerances as spreads_of
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by, wanted
-from .options import over as by_drive
+from .options import parameters
 
 _FEW = 3
 """Parameters that are named for each peak."""
 
 
-def _tolerance(text: str) -> tuple[str, str]:
-    """NAME=VALUE; the parameter's unit tells what the value may be."""
-    name, equals, value = (word.strip() for word in text.partition("="))
-    if not (name and equals and value):
-        raise click.BadParameter(f"expected NAME=VALUE, as in l=0.1mm or m1=1%, got '{text}'")
-    return name, value
-
-
-@click.command()
-@click.argument("case", type=PATH)
-@click.option(
-    "--tolerance", "within", type=_tolerance, multiple=True, required=True, metavar="NAME=VALUE", help="Plus or minus; repeatable."
-)
-@settings_by()
-@instants()
-@by_drive
-@wanted("As in run; default: the case's; repeatable.")
-@click.option("--samples", type=int, default=SAMPLES, show_default=True, metavar="NUMBER", help="Designs drawn at random.")
-@click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
-@click.option("--csv", "out", type=PATH, metavar="FILE.csv", help="All peaks, a row each.")
 def tolerances(
     case: Path,
     within: Sequence[tuple[str, str]],
@@ -57,7 +34,7 @@ def tolerances(
     backend: Backend,
     out: Path | None,
 ) -> None:
-    """Tell how far the peaks of CASE spread where parameters are within tolerances, and what each of these adds."""
+    """See :func:`.commands.tolerances`."""
     told = dict(within)
     if len(told) < len(within):
         raise DeclarationError("tolerance: a parameter has one twice")

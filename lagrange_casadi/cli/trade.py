@@ -10,30 +10,20 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
+from ..base.publish import check_writable, writing
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..draw.pictures import PICTURES
-from ..draw.trade_plot import draw_trade
 from ..errors import DeclarationError
+from ..figures.trade_plot import draw_trade
 from ..instants.rung import Rung
-from ..study.trade import RUNGS, Trade
-from ..study.trade import trade as measure
-from ..system.publish import check_writable, writing
+from ..shapes.pictures import PICTURES
+from ..studies.trade import RUNGS, Trade
+from ..studies.trade import trade as measure
 from .echo import echo
-from .options import PATH, instants, parameters, settings_by, wanted
-from .options import over as by_drive
+from .options import parameters
 
 
-@click.command()
-@click.argument("case", type=PATH)
-@settings_by()
-@instants()
-@by_drive
-@wanted()
-@click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
-@click.option("--out", type=PATH, help="The numbers, as JSON; default: <case>_trade.json here.")
-@click.option("--figure", type=PATH, help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
@@ -44,7 +34,7 @@ def trade(
     out: Path | None,
     figure: Path | None,
 ) -> None:
-    """Measure time and error of every method on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
+    """See :func:`.commands.trade`."""
     if accuracy is not None and not 0.0 < accuracy < math.inf:
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
@@ -66,8 +56,11 @@ def trade(
     _print(found)
     echo(f"wrote {out} and {figure}")
     if accuracy is not None:
-        best = found.fastest(accuracy)
-        echo(f"fastest within {accuracy:g}: {best.rung.options} ({1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e})")
+        for place, among in (("", found), (" in exported C", found.exported)):
+            if among.measurements:
+                best = among.fastest(accuracy)
+                cost = f"{1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e}"
+                echo(f"fastest within {accuracy:g}{place}: {best.rung.options} ({cost})")
 
 
 def _print(found: Trade) -> None:

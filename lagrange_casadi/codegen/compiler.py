@@ -24,8 +24,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from ..base import cache
 from ..errors import CompilerError, lacking, warn
-from ..system import cache
 from . import programs
 
 Language = Literal["c", "c++"]

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.compensated import DTYPES, Precision
+from ..arithmetic.compensated import DTYPES
+from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP

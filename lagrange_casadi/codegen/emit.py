@@ -16,10 +16,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
+from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
-from ..system.symbolic import symbolic
 from .calls import Call
 from .split import split
 from .stages import Stages, plain

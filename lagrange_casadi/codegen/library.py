@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.compensated import DTYPES, Precision
+from ..arithmetic.compensated import DTYPES
+from ..base.vocabulary import Precision
 from .calls import Call
 from .compiler import Compiler, broken, loaded, statements
 from .designs import CALL, DEEPEST, DESIGNS, STRIDE, Reduction

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
+from ..base.tables import SPACE
 from ..summits.polynomials import interpolation
-from ..tables import SPACE
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Precision
 from .emit import in_single, opened
 from .split import split
 from .tables import with_tables

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
 from .emit import LANES_PLACE, START, WIDE, dump, work

@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from ..base.numerals import real
+from ..base.publish import uninterrupted
 from ..errors import CompilerError
-from ..system.numerals import real
-from ..system.publish import uninterrupted
 
 VARIABLE = "LAGRANGE_CASADI_COMPILER_TIMEOUT"
 """The variable that sets another time limit, in seconds."""

@@ -20,13 +20,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Pair, Pairs, Precision
+from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
-from ..declare.density import Array
-from ..declare.motion import Laws
+from ..base.arrays import Array
+from ..base.symbolic import Graphs, symbolic
+from ..base.vocabulary import Precision
+from ..declare.laws import Laws
 from ..equations.scene_graph import SceneGraph
-from ..system.symbolic import Graphs, symbolic
 
 FEW_TURNS = 128.0
 """Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""

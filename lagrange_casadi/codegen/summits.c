@@ -290,7 +290,7 @@ static void designs_largest(designs_now* now) {
   for (k = 0; k < DESIGNS_QUANTITIES; ++k) designs_grow(now, k, now->peaks[k].best);
 }
 
-/* The first instant at which a quantity is as large as its peak, but for rounding, if it is before what was found. */
+/* The first instant at which a quantity has a number, as large as its peak but for rounding, if it is before what was found. */
 static void designs_sampled(designs_now* now, const designs_panel* panel, int q) {
   designs_peak* peak = now->peaks + q;
   const designs_real least = peak->best - peak->rounding, under = least - DESIGNS_CLOSE*least - DESIGNS_LEAST;
@@ -312,7 +312,7 @@ static void designs_sampled(designs_now* now, const designs_panel* panel, int q)
       if (!lanes_where_less(under, most)) continue;
       for (j = 0; j < DESIGNS_CHUNK*LANES && i + j < panel->n && i + j <= first; ++j) {
         x = designs_magnitude(row[i + j]);
-        if (!(x >= least) || (i + j == first && !(x > size))) continue;
+        if (!(x >= least) || (i + j == first && !(x > size)) || (now->rests && designs_nothing(row[i + j]))) continue;
         first = i + j;
         size = x;
         curve = k;

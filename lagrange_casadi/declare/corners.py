@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..system.symbolic import Graphs, symbolic
-from .density import Array
+from ..base.arrays import Array
+from ..base.symbolic import Graphs, symbolic
 from .kinks import Smooth
 from .mechanism import Mechanism
 from .motion import smooth_laws
@@ -70,17 +70,23 @@ class Corners(Graphs):
         """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""
         found = np.zeros(len(p), bool)
         for smooth in self.laws.values():
+            near = smooth.clearance.near(start[:, None], stop[:, None], p, lambda some: _instants(start[some], stop[some]))
+            if not near.any():
+                continue
             # Most designs share what their motions depend on.
-            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])
+            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])[near]
             each, number = np.unique(rows, axis=0, return_inverse=True)
-            found |= _broken_law(smooth, each.tobytes())[number.ravel()]
+            found[near] |= _broken_law(smooth, each.tobytes())[number.ravel()]
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
         """Of which designs a constraint has a kink; ``seen`` as above, (d, symbols, t)."""
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
-            found |= smooth.broken(seen(name), p)
+            paths = seen(name)
+            near = smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, paths.__getitem__)
+            if near.any():
+                found[near] |= _broken_constraint(smooth, paths[near], np.where(smooth.uses, p[near], 0.0))
         return found
 
 
@@ -88,4 +94,17 @@ class Corners(Graphs):
 def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
     """For each row of a start, a stop and parameters whether a law has a kink."""
     start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
-    return smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], np.array(p).T.reshape(start.size, -1))
+    return smooth.broken(_instants(start, stop), np.array(p).T.reshape(start.size, -1))
+
+
+def _instants(start: Array, stop: Array) -> Array:
+    """Paths (d, 1, n) in time."""
+    return np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None]
+
+
+def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np.bool_]:
+    """Which of the paths (d, symbols, t) have a kink; designs often share what a cam sees."""
+    rows = np.concatenate([paths.reshape(len(paths), -1), p], axis=1)
+    _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    found = smooth.broken(paths[which], p[which])[number.ravel()]
+    return np.asarray(found, bool)

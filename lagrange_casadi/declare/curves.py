@@ -10,8 +10,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import number, public
+from ..arguments import public
 from ..arithmetic import lookups
+from ..base.units import number
 from ..errors import DeclarationError, NumberError, shown
 from .splines import Cell, smoothed, through
 

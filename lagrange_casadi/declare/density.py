@@ -14,13 +14,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from ..arguments import Symbolic, public
+from ..base.arrays import Array
 from ..errors import DeclarationError
 from .curves import Curve, rows
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

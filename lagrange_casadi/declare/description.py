@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import functools
+import json
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 
+from ..base.symbolic import Graphs, symbolic
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
 from .density import Density, NumericDensity
@@ -19,6 +22,9 @@ from .parts import Friction, Link, Load, Point, PointMass, RigidMass
 Description = dict[str, Any]
 
 _PLACE = {"body": str, "x": float, "y": float}
+_PLACED = "#"
+"""The key of a place in a template's text; no name holds this sign."""
+
 _VECTOR = [float, float, float]
 _MATRIX = [_VECTOR, _VECTOR, _VECTOR]
 _DENSITY = {"breaks": [float], "cells": [[float]]}
@@ -142,6 +148,62 @@ def parts_of(description: Description) -> list[str]:
     return [part for table in tables for part in description[table]] + list(description.get("outputs", ()))
 
 
+class Place(int):
+    """The number of a number of a template among all of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Template(Graphs):
+    """A description but for its numbers, in whose stead are :class:`Place`; ``numbers(p)`` is all of them."""
+
+    content: Description
+    numbers: Any
+
+    def filled(self, values: Mapping[str, float]) -> Description:
+        """The description for values of all parameters."""
+        numbers = self.numbers(list(values.values())).full().ravel().tolist()
+        found: Description = _with(self.content, lambda place: numbers[place])
+        for name, value in values.items():
+            found["parameters"][name]["value"] = value
+        for body in found["bodies"].values():
+            if "density" in body:
+                body["mass"] = density_of(body).mass
+        return found
+
+    def dumps(self) -> str:
+        """The template as text."""
+        return json.dumps([_with(self.content, lambda place: {_PLACED: int(place)}), self.numbers.serialize()])
+
+    @classmethod
+    def loads(cls, text: str) -> Template:
+        """The template that :meth:`dumps` made a text of."""
+        content, numbers = json.loads(text, object_hook=lambda found: Place(found[_PLACED]) if _PLACED in found else found)
+        return cls(content, ca.Function.deserialize(numbers))
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None) -> Template:
+        """The template of what :func:`describe` gives."""
+        content, asked = numbered(mechanism, driven)
+        if mechanism.outputs:
+            content["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
+        if mechanism.rounded:
+            content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
+        if drives is not None:
+            content |= {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+        numbers = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(expression) for expression in asked)))
+        return cls(content, ca.Function("numbers", [mechanism.symbols], [numbers], ["p"], ["numbers"]))
+
+
+def _with(content: Any, number: Callable[[Place], Any]) -> Any:
+    """A copy of a description with something else for each of its places."""
+    if isinstance(content, dict):
+        return {name: _with(part, number) for name, part in content.items()}
+    if isinstance(content, list):
+        return [_with(part, number) for part in content]
+    return number(content) if isinstance(content, Place) else content
+
+
+@symbolic
 def describe(
     mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], drives: Collection[str] | None = None
 ) -> Description:
@@ -151,15 +213,12 @@ def describe(
     space has its coordinates in sequence, with their kinds; their ``axes`` and how the child's axes are ``turned``, both where all
     coordinates are zero; and its own axes, the ``triad``. Directions are in the parent's axes, a row each.
     """
-    numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
-    found = _described(mechanism, values, driven, lambda _: next(numbers))
-    if mechanism.outputs:
-        found["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
-    if mechanism.rounded:
-        found["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
-    if drives is None:
-        return found
-    return found | {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+    return _template(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(values)
+
+
+@functools.lru_cache(maxsize=32)
+def _template(mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None) -> Template:
+    return Template.of(mechanism, driven, drives)
 
 
 def _lies_by_default(joint: Joint) -> bool:
@@ -183,30 +242,22 @@ def motions_of(description: Description) -> dict[str, str]:
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
-def numbered(mechanism: Mechanism) -> tuple[Description, list[Any]]:
+@symbolic
+def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Description, list[Any]]:
     """A description with places in the place of its numbers, and the expressions of the parameters that stand at these places.
 
-    A link's mass and density are no such places: they are made of others.
+    The mass of a link that has a density is no such place, for it follows from the density; nor are values of parameters.
     """
     asked: list[Any] = []
 
-    def number(expression: Any) -> float:
+    def number(expression: Any) -> Place:
         asked.append(expression)
-        return len(asked) - 1.0
+        return Place(len(asked) - 1)
 
-    return _described(mechanism, dict.fromkeys(mechanism.parameters, 1.0), (), number), asked
-
-
-@functools.lru_cache(maxsize=32)
-def _numbers(mechanism: Mechanism) -> ca.Function:
-    """All numbers of a description at once, in the order in which it asks for them."""
-    _, asked = numbered(mechanism)
-    return ca.Function("numbers", [mechanism.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *asked))])
+    return _described(mechanism, driven, number), asked
 
 
-def _described(
-    mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], number: Callable[[Any], float]
-) -> Description:
+def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[Any], Any]) -> Description:
     def place(point: Point) -> Description:
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
         return found | {"z": number(point.z)} if mechanism.space else found
@@ -224,16 +275,16 @@ def _described(
         length = number(body.length)
         if isinstance(body.mass, RigidMass):
             return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
-        density = body.mass.at(number, length)
-        told = written(density)
+        told = along(body, body.mass)
         if body.mass.slices is not None:
             names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
-            told["slices"] = {name: written(moment.at(number, length)) for name, moment in names}
-        found = {"length": length, "mass": density.mass, "density": told}
+            told["slices"] = {name: along(body, moment) for name, moment in names}
+        found = {"length": length, "mass": None, "density": told}
         return found if body.beam is None else found | {"beam": told_beam(body.beam, number)}
 
-    def written(density: NumericDensity) -> Description:
-        return {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]}
+    def along(link: Link, density: Density) -> Description:
+        scale = link.length if density.per_length else 1.0
+        return {"breaks": list(density.breaks), "cells": [vector(c * scale for c in cell) for cell in density.cells]}
 
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
@@ -269,7 +320,7 @@ def _described(
     loads = {name: load_of(load) for name, load in mechanism.loads.items()}
     joints = {joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint) for joint in mechanism.joints.values()}
     parameters = {
-        name: {"value": values[name], "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
+        name: {"value": None, "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
         for name, parameter in mechanism.parameters.items()
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}

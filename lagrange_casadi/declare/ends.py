@@ -7,9 +7,9 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.compensated import Precision
 from ..arithmetic.lookups import lookup
-from ..system.symbolic import symbolic
+from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
 
 BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far an argument may be beyond the ends of a curve by rounding, as :func:`beyond_ends` tells it."""

@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import number
+from ..base.arrays import Array
+from ..base.room import require
+from ..base.units import number
 from ..errors import DeclarationError, shown
-from ..system.room import require
-from .density import Array
 
 EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import number, typed
+from ..base.units import number, typed
 from ..errors import DeclarationError, NumberError, one_line, shown
 from .parts import Expression
 

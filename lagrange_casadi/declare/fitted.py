@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ..arguments import NotNegative, Positive, Symbolic, public
 from ..beams.material import Material
@@ -45,7 +45,7 @@ class Plain:
     bore: Symbolic
     width: Symbolic
     pressure: Positive | None = None
-    speed: Positive | None = None
+    speed: Annotated[float | None, "may be a text"] = None
     heating: Positive | None = None
 
 

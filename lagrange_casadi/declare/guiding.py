@@ -10,8 +10,8 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 
+from ..base.tables import ANGLE, LENGTH
 from ..errors import DeclarationError, UnknownNameError
-from ..tables import ANGLE, LENGTH
 from .joints import Joint
 from .mechanism import Mechanism
 from .motion import Motion

@@ -1,10 +1,9 @@
 """Where an expression has a kink or a jump, found numerically along a path, from the operations in which it can have one.
 
-What is differentiated twice must have a slope that does not jump: else rates jump, and accelerations
-say nothing of it. With comparisons, sizes, whole parts and divisors, and with functions at the ends of
-where they are defined, it may jump or not: the pieces of a cam's curve may go on smoothly, and those of
-a table do not. So every place at which an operation may make a kink is found to the last bit, and value
-and slopes on both sides of it are compared.
+What is differentiated twice must have a slope that does not jump: else rates jump, and accelerations say nothing of it. With
+comparisons, sizes, whole parts and divisors, and with functions at the ends of where they are defined, it may jump or not: the
+pieces of a cam's curve may go on smoothly, and those of a table do not. So every place at which an operation may make a kink is
+found to the last bit, and value and slopes on both sides of it are compared.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -20,14 +19,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..arithmetic.lookups import is_entry
 from ..arithmetic.running_errors import running_errors
+from ..base.arrays import Array
 from ..errors import DeclarationError
-from .density import Array
+from .clearance import Clearance, bound
 from .limits_beside import Flags, Side, between, vanishes
+from .marks import marks_of
 
 _SAME, _FAINT = 1e-6, 1e-9
 """What is no jump: of the value or slope there, and of the largest along the path."""
+
+_MOST_PLACES = 0.9
+"""At which share of instants a constraint's terms are no larger than what they are measured by."""
 
 _HALVINGS, _ROUNDS = 64, 8
 """How often a step is halved, and how many places are looked for in one."""
@@ -73,11 +76,10 @@ class Kink:
 class Smooth:
     """A scalar expression whose slopes must not jump, and operations in it that may make them.
 
-    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of
-    operations that may make a kink where they pass zero, or a whole number if ``whole``; what is
-    ``open`` there may be without bound, or have a slope that is, and may make a kink where it only
-    touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)`` the
-    value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
+    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of operations that may make a kink
+    where they pass zero, or a whole number if ``whole``; what is ``open`` there may be without bound, or have a slope that is, and
+    may make a kink where it only touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)``
+    the value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
     """
 
     symbols: tuple[Any, ...]
@@ -101,7 +103,7 @@ class Smooth:
             return None
         found: dict[tuple[int, bool, bool], Any] = {}
         for operation, operands in operations(function, [x, fixed]):
-            for mark, whole, open_ in _marks(operation, operands):
+            for mark, whole, open_ in marks_of(operation, operands):
                 if not mark.is_constant() and ca.depends_on(mark, x):
                     found[mark.element_hash(), whole, open_] = mark
         if not found:
@@ -126,6 +128,11 @@ class Smooth:
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
         return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
 
+    @cached_property
+    def clearance(self) -> Clearance:
+        """Tells along which paths no mark comes near to where it passes, at a small part of the cost of looking for kinks."""
+        return Clearance(self.marks, self.whole, self.open)
+
     def broken(self, paths: Array, p: Array) -> Flags:
         """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
         found = np.zeros(len(paths), bool)
@@ -142,13 +149,17 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
-            usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
-            usual = np.where(np.isfinite(usual), usual, 0.0)
-            # A constraint's value is zero but for rounding: it is as large as what is added up in it.
-            terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
-            usual = np.array([np.maximum(usual[0], terms), usual[1:].max(axis=0)]).max(axis=2)
             marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
             passed, touched = self._places(_Steps.of(paths, p), marks)
+            if not (passed.owner.size or touched.owner.size):
+                return
+            usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
+            usual = np.where(np.isfinite(usual), usual, 0.0)
+            # A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope
+            # beside a pole says nothing of what is added up elsewhere.
+            terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
+            value = np.maximum(usual[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
+            usual = np.array([value, usual[1:].max(axis=(0, 2))])
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
@@ -317,6 +328,9 @@ class _Steps:
         before = state(low)
         for _ in range(_HALVINGS if self.owner.size else 0):
             middle = (low + high) / 2
+            if not ((low < middle) & (middle < high)).any():
+                # No number is between them.
+                break
             same = (state(middle) == before).all(axis=0)
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return self.to(low, high)
@@ -329,7 +343,11 @@ def _called(function: Any, *columns: Array) -> Array:
     """The rows (rows, m) of a function of columns."""
     if not columns[0].shape[1]:
         return np.zeros((function.size1_out(0), 0))
-    return np.asarray(function(*(ca.DM(array) for array in columns)).full())
+    given, found, call, _ = bound(function, columns[0].shape[1])
+    for array, values in zip(given, columns, strict=True):
+        array[...] = values.T
+    call()
+    return np.ascontiguousarray(found[0].T)
 
 
 def _both(rows: Array) -> Array:
@@ -343,45 +361,3 @@ def _worst(steps: _Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, st
     for k in np.flatnonzero(broken.any(axis=0)):
         row = 0 if broken[0, k] else 1
         yield int(steps.owner[k]), ("value", "slope")[row], float(parts[row, k]), places[:, k]
-
-
-def _marks(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
-    """What makes an operation a kink where it passes zero, or a whole number; and whether it is open there."""
-    x, y = operands[0], operands[-1]
-    if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
-        yield (y - x if operation == ca.OP_LT else x - y), False, False
-    elif operation in (ca.OP_FABS, ca.OP_SIGN, ca.OP_COPYSIGN):
-        yield from ((one, False, False) for one in operands)
-    elif operation in (ca.OP_EQ, ca.OP_NE):
-        yield ca.fabs(x - y), False, False
-    elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):
-        yield ca.fabs(x), False, False
-    elif operation in (ca.OP_AND, ca.OP_OR):
-        yield from ((ca.fabs(one), False, False) for one in operands)
-    elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
-        # What a table has for a cell is a whole number already.
-        if not is_entry(x):
-            yield (x if operation == ca.OP_FLOOR else -x), True, False
-    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
-        yield x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), True, False
-        yield y, False, True
-    elif operation in (ca.OP_DIV, ca.OP_INV):
-        yield y, False, True
-    elif operation == ca.OP_TAN:
-        yield ca.cos(x), False, True
-    elif operation in (ca.OP_SQRT, ca.OP_LOG):
-        yield x, False, True
-    elif operation == ca.OP_LOG1P:
-        yield 1.0 + x, False, True
-    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
-        yield 1.0 - x * x, False, True
-    elif operation == ca.OP_ACOSH:
-        yield x - 1.0, False, True
-    elif operation == ca.OP_HYPOT:
-        yield x * x + y * y, False, True
-    elif operation == ca.OP_ATAN2:
-        # Its cut is where the first is zero and the second negative.
-        yield x, False, False
-        yield x * x + y * y, False, True
-    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (y.is_constant() and float(y) >= 0.0 and float(y).is_integer()):
-        yield x, False, True

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from ..arithmetic.compensated import Precision
+from ..base.vocabulary import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
 from .density import Density
 from .joints import Joint

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .density import Array
+from ..base.arrays import Array
 
 Flags = npt.NDArray[np.bool_]
 

@@ -13,10 +13,11 @@ from typing import Any, cast
 
 import casadi as ca
 
-from ..arguments import Number, public
+from ..arguments import public
+from ..base.symbolic import Graphs, symbolic
+from ..base.units import Number
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from ..system.symbolic import Graphs, symbolic
 from .constraints import constraint, row
 from .density import Density
 from .expressions import bound, check_line, check_name, value_of

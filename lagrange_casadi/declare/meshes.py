@@ -7,8 +7,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.numerals import readable
 from ..geometry.vectors import ZERO
-from ..system.numerals import readable
 from .joints import Joint
 from .parts import Body, Expression, Point, Vector
 

@@ -15,8 +15,8 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import public
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
-from ..system.symbolic import Graphs, symbolic
 from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import coordinates, scalar, symbols_of, told
@@ -178,47 +178,6 @@ def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
         return None
     rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
     return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
-
-
-@symbolic
-def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
-    """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives of several laws; at a spline's knot, that of one side.
-
-    Raises :class:`DeclarationError` for a spline that does not tell its knots.
-    """
-    t, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
-    rows = []
-    for joint, law in laws.items():
-        motion = motion_function({joint: law}, parameters)
-        bend = motion(t, p)[2]
-        if law.spline:
-            if not law.knots:
-                raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which its third derivative needs")
-            # Not by the spline's own derivative: at a knot CasADi's splines of degree 0 write beside their memory.
-            values = motion(ca.DM(law.knots).T, ca.DM.zeros(p.numel()))[2].full().ravel()
-            bend = ca.interpolant("bend", "linear", [law.knots], values)(t)
-        rows.append(ca.densify(ca.jacobian(bend, t)))
-    return ca.Function("jerk", [t, p], [ca.vertcat(ca.MX(0, 1), *rows)], ["t", "p"], ["d_jerk"])
-
-
-@dataclass(frozen=True, eq=False)
-class Laws(Graphs):
-    """The motion of several drives in two functions as :func:`motion_function` makes them.
-
-    ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
-    where it is, the sampled ones counted after the smooth ones.
-    """
-
-    smooth: Any
-    sampled: Any | None
-    order: tuple[int, ...]
-
-    @classmethod
-    def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
-        """The functions of laws by the joint's name."""
-        smooth, sampled = ({name: law for name, law in laws.items() if law.spline is spline} for spline in (False, True))
-        order = tuple([*smooth, *sampled].index(name) for name in laws)
-        return cls(motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None, order)
 
 
 def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:

@@ -11,9 +11,9 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..base.numerals import readable
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError
-from ..system.numerals import readable
-from ..system.symbolic import symbolic
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression
@@ -157,7 +157,12 @@ def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advanc
         if period is not None:
             # A remainder is exact; it is of the middle of the cycle.
             middle = begin + period / 2.0
-            x = ca.remainder(t - middle, period) + middle
+            x = ca.remainder(t - middle, period)
+            if _bends(stretches[0]) or _bends(stretches[-1]):
+                # At the seam, as near to one middle as to the next, C takes the one and the other by
+                # turns. The acceleration jumps there: the next cycle begins, however it is evaluated.
+                x = x - period * (x >= period / 2.0)
+            x = x + middle
             gone = advance * ca.floor((t - x) / period + 0.5)
         starts = [stretch.start for stretch in stretches] + ([] if period is not None else [stretches[-1].stop])
         later = [x >= start for start in starts]
@@ -178,6 +183,14 @@ def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advanc
         return value * held
 
     return graph
+
+
+def _bends(stretch: Stretch) -> bool:
+    """Whether a stretch may begin and end with an acceleration."""
+    if stretch.law is None:
+        return False
+    bend = stretch.law.begins[0]
+    return not (isinstance(bend, int | float) and bend == 0.0)
 
 
 def _chosen(rows: Any) -> Any:

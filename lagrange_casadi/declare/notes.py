@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from ..quantities import Output
-from .density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from .description import Description, drives_of, in_space, motions_of
 from .limits import ROUNDED
 

@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from ..arguments import Symbolic, in_words, number, public
+from ..arguments import Symbolic, public
+from ..base.numerals import readable
+from ..base.units import in_words, number
 from ..beams.beam import Beam
 from ..errors import NumberError, ParameterError, shown
 from ..geometry.vectors import Expression as Expression
 from ..geometry.vectors import Vector as Vector
-from ..system.numerals import readable
 from .density import Density
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Parameter:
             raise ParameterError(found)
 
     def number(self, value: Any) -> float:
-        """A value as a number, see :func:`.arguments.number`. Raises :class:`.NumberError` for what is none; it may be infinite."""
+        """A value as a number, see :func:`.units.number`. Raises :class:`.NumberError` for what is none; it may be infinite."""
         return number(value, self.unit, finite=False)
 
     def fault(self, value: Any) -> str:

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
+from ..base.numerals import readable
+from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
-from ..system.numerals import readable
-from ..system.symbolic import symbolic
 from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from .density import Array
+from ..base.arrays import Array
 from .motion import Motion, motion_function
 
 _SHARE = 1 / 32

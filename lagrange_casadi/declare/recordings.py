@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import UNITS, count, number, public
+from ..arguments import public
+from ..base.arrays import Array
+from ..base.csv_rows import read_rows
+from ..base.units import UNITS, count, number
 from ..errors import DeclarationError, NumberError, UnknownNameError, one_line
-from ..system.csv_rows import read_rows
 from .curves import Curve, curve
-from .density import Array
 from .expressions import coordinates, scalar, symbols_of
 from .motion import Motion
 from .parts import Expression

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import casadi as ca
 
+from ..base.quantities import Output, force_members
+from ..base.tables import table_of
 from ..errors import DeclarationError, UnknownNameError
-from ..quantities import Output, force_members
-from ..tables import table_of
 from .density import Density
 from .joints import Joint
 from .limits import no_sections

@@ -10,11 +10,13 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from ..arguments import Outputs, number, public, texts, within
-from ..arithmetic.compensated import Precision
+from ..arguments import Outputs, public, texts
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import ANGLE, LENGTH
+from ..base.units import number, within
+from ..base.vocabulary import Precision
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
-from ..system.symbolic import Graphs, symbolic
-from ..tables import ANGLE, LENGTH
+from ..methods import method
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked
@@ -319,9 +321,8 @@ class Scene(Graphs):
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing at the first instant, where it can be assembled, and the parts."""
-        from ..report import scene_summary
-
-        return scene_summary(self)
+        found: str = method("Scene._repr_html_")(self)
+        return found
 
     @public
     def report(
@@ -338,9 +339,7 @@ class Scene(Graphs):
         :meth:`.Solution.report`; with ``live`` :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError`
         where there is no parameter to change.
         """
-        from ..report import scene_report
-
-        scene_report(self, path, parameters, wanted, live)
+        method("Scene.report")(self, path, parameters, wanted, live)
 
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
@@ -366,6 +365,7 @@ class Scene(Graphs):
         parts, moved = demands(self.mechanism, precision), [demand for law in self.laws.values() for demand in law.demands]
         return Demands(parts.symbols, (*parts.each, *moved)) if moved else parts
 
+    @public
     def checked(self, values: Mapping[str, float]) -> None:
         """Raise :class:`.ParameterError` for values of all parameters with which a part or a move of the motion cannot be."""
         if any(law.demands for law in self.laws.values()):

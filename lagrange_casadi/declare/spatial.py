@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..arguments import public
+from ..base.symbolic import symbolic
 from ..beams.beam import Beam
 from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
-from ..system.symbolic import symbolic
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying

@@ -15,11 +15,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import number
+from ..base.arrays import Array
+from ..base.brief import Brief
+from ..base.tables import ANGLE, LENGTH
+from ..base.units import number
 from ..errors import DeclarationError, NumberError, UnknownNameError, shown
-from ..system.brief import Brief
-from ..tables import ANGLE, LENGTH
-from .density import Array
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
 from .limits import told_parameters

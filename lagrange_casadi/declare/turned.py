@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .density import Array
+from ..base.arrays import Array
 from .reaching import Reaching
 from .scene import Scene
 from .times import Timing, reaching

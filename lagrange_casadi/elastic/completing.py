@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.compensated import ROUNDING
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import FORCE, MOMENT
 from ..declare.scene import Wanted
 from ..instants.solution import Solution
 from ..judge.accuracy import ALONG, most
-from ..quantities import Output
-from ..tables import FORCE, MOMENT
 from .least_energy import Completed
 
 _ROUNDINGS = 8.0

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..arguments import Numeric, public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.held import ends_of
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.sizes import largest

@@ -17,9 +17,11 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import MOMENT
 from ..beams.told import beam_told
 from ..codegen.stages import plain
-from ..declare.density import Array
 from ..declare.description import Description, density_of, in_space
 from ..declare.giving import Elastic
 from ..equations.checks import Column
@@ -28,9 +30,7 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError, one_line
 from ..instants.laws import law_of
 from ..instants.section_law import SectionLaw
-from ..quantities import Output
 from ..strength.member import FORCES, Member
-from ..tables import MOMENT
 from .compliance import Compliance, Nodes, nodes, sorted_edges
 
 _NONE = 1e-9

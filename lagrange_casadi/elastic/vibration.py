@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import Description, density_of
 from ..declare.held import ENDS, Ends, ends_of
 from ..errors import DeclarationError

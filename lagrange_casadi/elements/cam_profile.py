@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.publish import check_writable, writing
 from ..errors import DeclarationError, LagrangeCasadiError
-from ..system.publish import check_writable, writing
 
 _LEAST = 16
 _SAME = 1e-9

@@ -22,7 +22,7 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import Count, Symbolic, public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point

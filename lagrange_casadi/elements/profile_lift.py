@@ -14,16 +14,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ..arguments import public
+from ..arguments import Numeric, public
+from ..base.arrays import Array
+from ..base.csv_rows import read_rows
 from ..declare.curves import Curve, curve
-from ..declare.density import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
 from ..errors import DeclarationError, one_line
-from ..system.csv_rows import read_rows
 from .cam import layout_of
 
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(\w+)\s*\])?")
@@ -82,7 +81,7 @@ def profile_lift(
     mechanism: Mechanism,
     cam: Joint,
     follower: Joint,
-    points: npt.ArrayLike | str | os.PathLike[str],
+    points: Numeric | str | os.PathLike[str],
     *,
     point: Point | None = None,
     roller: float | None = None,

@@ -6,10 +6,10 @@ import math
 
 import casadi as ca
 
+from ..base.numerals import readable
 from ..declare.meshes import FITTING, Fit
 from ..declare.parts import Expression
 from ..errors import DeclarationError
-from ..system.numerals import readable
 
 LEAST = 1e-12
 """What is smaller is not above zero."""

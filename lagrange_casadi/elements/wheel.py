@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ..arguments import count, number, public
+from ..arguments import public
+from ..base.units import count, number
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link
 from ..declare.spatial import SpatialMechanism

@@ -18,7 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.joints import Joint
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import Vector

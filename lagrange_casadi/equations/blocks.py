@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import MobilityError
 from .bars import idle_spins
 from .freed import Freed, rank_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, cast
 
-from ..quantities import Output
+from ..base.quantities import Output
 
 Kind: TypeAlias = Literal[
     "beyond",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""

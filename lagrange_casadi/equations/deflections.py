@@ -17,8 +17,8 @@ import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..base.quantities import Output
 from ..declare.mechanism import Mechanism
-from ..quantities import Output
 from .checks import Column
 from .multibody import column
 from .strains import moduli, strains

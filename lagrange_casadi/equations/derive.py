@@ -11,14 +11,14 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Outputs, public
+from ..base import cache
+from ..base.quantities import Output
+from ..base.symbolic import symbolic
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
 from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
-from ..quantities import Output
-from ..system import cache
-from ..system.symbolic import symbolic
 from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections
@@ -26,6 +26,7 @@ from .drives import closure
 from .fingerprint import fingerprint
 from .least_work import feeling, least_work
 from .mobility import internal_forces
+from .model_data import ModelData
 from .moving import Moving
 from .multibody import column
 from .open_forces import open_forces
@@ -47,11 +48,10 @@ _STEPS = 50
 
 @public
 @symbolic
-def derive(scene: Scene, wanted: Outputs | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
+def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
-    With ``iterate`` every loop is left to Newton's method, and none is solved in closed form. With ``elastic`` it tells how forces
-    change with what equilibrium leaves open.
+    With ``elastic`` it tells how forces change with what equilibrium leaves open.
 
     A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
 
@@ -61,7 +61,7 @@ def derive(scene: Scene, wanted: Outputs | None = None, *, iterate: bool = False
     want = Wanted.of(scene.mechanism, names)
     _check_aimed(scene, names)
     try:
-        found = _kept(scene, want, iterate, elastic)
+        found = _kept(scene, want, elastic)
     except PostureError as error:
         error.scene = scene
         raise
@@ -76,7 +76,6 @@ def assembled(
     values: Mapping[str, float],
     wanted: Sequence[str] | None = None,
     *,
-    iterate: bool = False,
     elastic: bool = False,
 ) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
@@ -86,17 +85,17 @@ def assembled(
     Raises what :func:`derive` does, where they can be assembled with neither.
     """
     try:
-        graph = derive(scene, wanted, iterate=iterate, elastic=elastic)
+        graph = derive(scene, wanted, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
         there = _at(scene, tuple(values.items()))
-        derive(there, wanted, iterate=iterate, elastic=elastic)
+        derive(there, wanted, elastic=elastic)
         return there
     if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            derive(there, wanted, iterate=iterate, elastic=elastic)
+            derive(there, wanted, elastic=elastic)
             return there
     return scene
 
@@ -112,26 +111,25 @@ def _nearest(scene: Scene) -> Scene | None:
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
     key = fingerprint(scene, want)
-    key = f"{key}-iterated" if key and iterate else key
     key = f"{key}-elastic" if key and elastic else key
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
         return SceneGraph.loads(text, scene, want)
     try:
-        graph = _derive(scene, want, iterate, elastic)
+        graph = _derive(scene, want, elastic)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
-        found = None if near is None else _kept(near, want, iterate, elastic)
+        found = None if near is None else _kept(near, want, elastic)
         if isinstance(found, SceneGraph):
             return found
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
-        found = _kept(near, want, iterate, elastic)
+        found = _kept(near, want, elastic)
         if isinstance(found, SceneGraph):
             return found
     if key:
@@ -188,10 +186,10 @@ class _Borne:
         return cls(acting, forces.free, rubbed.forces)
 
 
-def _derive(scene: Scene, asked: Wanted, iterate: bool, elastic: bool) -> SceneGraph:
+def _derive(scene: Scene, asked: Wanted, elastic: bool) -> SceneGraph:
     mechanism = scene.mechanism
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
-    moving = Moving.of(scene, want, iterate)
+    moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
     borne = _Borne.of(moving, columns) if want.forces else _Borne({}, ca.SX(0, 1), {})
     columns = {key: value for key, value in columns.items() if key not in borne.columns}
@@ -209,6 +207,7 @@ def _derive(scene: Scene, asked: Wanted, iterate: bool, elastic: bool) -> SceneG
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(
         scene=scene,
+        data=ModelData.of(scene, moving.driven),
         wanted=asked,
         driven=moving.driven,
         motion=moving.motion,

@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
+from dataclasses import replace
 
-from ..declare.description import Description, describe
+from ..base.symbolic import symbolic
+from ..declare.description import Description, Template
 from ..declare.scene import Scene
-from ..system.symbolic import symbolic
 from .tree import span
 
 
 @symbolic
 def described(scene: Scene, values: Mapping[str, float]) -> Description:
-    """The description of a scene's mechanism, for values of its parameters.
+    """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
+    return template(scene).filled(values)
+
+
+@symbolic
+@functools.lru_cache(maxsize=32)
+def template(scene: Scene) -> Template:
+    """The description of a scene's mechanism but for its numbers.
 
     In space it names the ``bars``, links whose spin about their own axis is idle and taken to be none, and the coordinates that are
     ``unmeasured``.
     """
     mechanism = scene.mechanism
-    found = describe(mechanism, values, scene.laws, scene.weights)
+    found = Template.of(mechanism, scene.laws, scene.weights)
     if not mechanism.space:
         return found
     tree = span(scene.guided, scene.laws)
     unmeasured = [name for name, (joint, axis) in mechanism.coordinates.items() if not tree.measures(joint, axis)]
-    return found | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured}
+    return replace(found, content=found.content | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured})

@@ -12,9 +12,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.symbolic import symbolic
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
-from ..system.symbolic import symbolic
 
 
 @symbolic

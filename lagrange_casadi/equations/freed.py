@@ -9,7 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .balls import axes_of, turn
 from .iteration import place_roughly
 from .multibody import Coordinate, Multibody, column

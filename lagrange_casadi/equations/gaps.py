@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..declare.mechanism import Mechanism
-from ..system.symbolic import symbolic
 from .joints import held_directions, off
 from .multibody import LoopEquations, Multibody
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.symbolic import Graphs, symbolic
 from ..declare.scene import Scene, Wanted
-from ..quantities import Output
-from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column
 from .meshes import transmissions_of
 from .mobility import internal_forces
@@ -37,7 +37,7 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts that are ``open`` besides."""
     mechanism = scene.mechanism
     want = Wanted.of(mechanism, ["effort"])
-    moving = Moving.of(scene, want, False)
+    moving = Moving.of(scene, want)
     losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
     signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
     forces = internal_forces(

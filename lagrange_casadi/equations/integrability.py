@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import DeclarationError
 
 _POINTS, _TRIALS = 3, 1000

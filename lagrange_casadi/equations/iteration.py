@@ -22,8 +22,8 @@ LARGEST_STEP = 0.3
 class NewtonLoop:
     """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
 
-    ``names`` are those of its blocks that have no closed form, and are judged by a volume; ``joints`` says what closes all of its
-    blocks, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns only.
+    ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes them, for messages. ``turning``
+    tells which unknowns are angles that matter up to whole turns only.
     """
 
     step: Any

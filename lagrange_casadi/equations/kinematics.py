@@ -76,15 +76,14 @@ class Kinematics:
         return self.found.put_into(expression)
 
 
-def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, iterate: bool = False) -> Kinematics:
+def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> Kinematics:
     """Close every loop, on the branch that is nearest to ``posture`` at the start of the motion.
 
-    ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the link's or the joint's name. With
-    ``iterate`` dyads are left to Newton's method too; their closed form gives the guess.
+    ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the link's or the joint's name.
     Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`PostureError` for a posture that
     leaves branches open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
-    solver = _Solver(multibody, dict(posture), start, iterate)
+    solver = _Solver(multibody, dict(posture), start)
     blocks = solving_order(multibody, solver.beginning())
     waiting: list[tuple[int, ...]] = []
     for tried in range(_WAYS):
@@ -99,7 +98,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
                 waiting += [(*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(ways)))]
             if not waiting or tried == _WAYS - 1:
                 raise
-            solver = _Solver(multibody, dict(posture), start, iterate, waiting.pop())
+            solver = _Solver(multibody, dict(posture), start, waiting.pop())
     if solver.undecided:
         raise solver.undecided.refusal(multibody)
     return solver.finish(blocks)
@@ -108,11 +107,8 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
 class _Solver:
     """Carries the expressions known so far, and their numbers at the start, while the blocks are closed in order."""
 
-    def __init__(
-        self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool, ways: tuple[int, ...] = ()
-    ) -> None:
+    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, ways: tuple[int, ...] = ()) -> None:
         self.ways = ways
-        self.iterate = iterate
         self.multibody = multibody
         self.posture = posture
         self.start = start
@@ -121,7 +117,6 @@ class _Solver:
         self.iterated = Iterated()
         self.residuals: list[Block] = []
         self.closures: dict[str, tuple[Any, bool]] = {}
-        self.dyads: dict[Block, Any] = {}
         self.loose: set[str] = set()
         self.swings: dict[str, Any] = {}
         self.undecided = Undecided()
@@ -163,12 +158,7 @@ class _Solver:
             elif block.unknown and not self.undecided.lacking:
                 self._iterate(block, rough)
             return
-        left_to_newton = self.iterate and any(form.branches for form in block.forms)
         closures = [self._solved(block, form) for form in block.forms]
-        if left_to_newton:
-            self.dyads[block] = ca.mmin(column(closure for closure in closures if closure is not None))
-            self._iterate(block, {c: self.numbers.of(self.known[c])[-1] for c in block.unknown})
-            return
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branches:
                 self.loose |= {c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings}
@@ -328,9 +318,7 @@ class _Solver:
             if block in self.residuals:
                 side = math.copysign(1.0, self.numbers.of(system.volume)[0])
                 volume = ca.fabs(system.volume) if system.free else side * system.volume
-                # Of a dyad the closed form knows how near its dead centre is, and the volume on which branch it is.
-                dyad = self.dyads.get(block)
-                self._judge(block, volume if dyad is None else dyad * ca.copysign(1.0, volume))
+                self._judge(block, volume)
             if system.free:
                 misfits[block.name] = found.put_into(misfit(body, block))
             else:
@@ -367,7 +355,7 @@ class _Solver:
         correction, relative = self.iterated.step(gaps)
         inputs = [self.iterated.symbols, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [correction, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
-        names = tuple(block.name for block in self.residuals if not block.forms)
+        names = tuple(block.name for block in self.residuals)
         joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(step, tuple(self.iterated.guess), tuple(self.iterated.turning), names, joints)
 

@@ -15,13 +15,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.quantities import Output
 from ..declare.density import Density
 from ..declare.giving import Elastic
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..declare.scene import Wanted
 from ..errors import DeclarationError
-from ..quantities import Output
 from .checks import Check, Column
 from .linear import LinearSystem
 from .multibody import column

@@ -23,6 +23,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output, force_members, law_members, own_members, station_members
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
@@ -31,7 +32,6 @@ from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
-from ..quantities import Output, force_members, law_members, own_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
 from .friction import Solved, needed, solve

@@ -9,14 +9,15 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Kinds, Output, force_members
+from ..base.tables import ANGLE
 from ..declare.ends import beyond_ends
+from ..declare.kinds import kinds_of
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from ..geometry.vectors import ZERO, dot
-from ..quantities import Output, force_members
-from ..tables import ANGLE
 from . import kinematics
 from .assembly import assemble
 from .bars import across_bar
@@ -46,7 +47,7 @@ class Moving:
     swings: Mapping[str, Any]
 
     @classmethod
-    def of(cls, scene: Scene, want: Wanted, iterate: bool) -> Moving:
+    def of(cls, scene: Scene, want: Wanted) -> Moving:
         """Assemble the mechanism, and solve its loops."""
         mechanism, tree = scene.mechanism, span(scene.guided, scene.laws)
         borne = needed_reactions(mechanism, want.reactions, want.sections)
@@ -56,7 +57,7 @@ class Moving:
         values = list(mechanism.values(scene.assembly).values())
         first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
         start = Start(scene.span[0], first, values)
-        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start, iterate=iterate)
+        solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
         solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
         return cls(scene, want, body, driven, motion, start, solved, swings)
 
@@ -103,11 +104,11 @@ class Moving:
     def _motions(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
         """Motions and poses; and of angles that loops set, how often each coordinate's turns go into them."""
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
-        motions = _motion_columns(mechanism, body, solved, self.driven)
+        motions, kinds = _motion_columns(mechanism, body, solved, self.driven), kinds_of(mechanism)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
-        loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
+        loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(kinds, output)}
         loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
@@ -221,8 +222,8 @@ def _known_by(coordinate: Coordinate) -> Output:
     return Output("motion", coordinate.name) if coordinate.relative else Output("pose", coordinate.body, "angle")
 
 
-def _is_angle(mechanism: Mechanism, output: Output) -> bool:
-    return output.member in ("", "angle") and output.unit(mechanism) == ANGLE
+def _is_angle(kinds: Kinds, output: Output) -> bool:
+    return output.member in ("", "angle") and output.unit(kinds) == ANGLE
 
 
 def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:

@@ -7,14 +7,14 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.compensated import Precision
+from ..base.quantities import Output
+from ..base.tables import Table, table_of
+from ..base.vocabulary import Precision
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.parts import Link
 from ..declare.results import Asked
 from ..errors import DeclarationError
-from ..quantities import Output
-from ..tables import Table, table_of
 from .checks import Column
 from .kinematics import Kinematics
 from .mobility import stations_of
@@ -77,4 +77,4 @@ def section_force(link: Link, force: str, ratio: Any, found: Mapping[Column, Any
         # One graph serves both precisions.
         seen = sight(at, "single") < place
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
-    return sum(felt_along(found, link, terms, ratio), total)
+    return sum(felt_along(found, link.name, link.length, terms, ratio), total)

@@ -10,8 +10,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.numerals import readable
 from ..errors import PostureError
-from ..system.numerals import readable
 from .blocks import Block
 from .multibody import Coordinate, Multibody, own_coordinate, place_along
 from .substitution import Numbers

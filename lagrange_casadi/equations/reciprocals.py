@@ -13,7 +13,7 @@ import casadi as ca
 
 from ..arithmetic.interpret import Step, followable, steps
 from ..arithmetic.scalars import less, product
-from ..system.symbolic import symbolic
+from ..base.symbolic import symbolic
 
 
 @symbolic

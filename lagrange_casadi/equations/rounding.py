@@ -22,7 +22,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array, Density
+from ..base.arrays import Array
+from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.measures import Measures
 from ..declare.mechanism import Mechanism

@@ -11,15 +11,15 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
-from ..declare.motion import Laws
+from ..base.arrays import Array
+from ..base.quantities import Output, law_members, station_members
+from ..base.symbolic import Graphs, symbolic
+from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
-from ..quantities import Output, law_members, station_members
-from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column, Kind, column_of
-from .gaps import extent
 from .iteration import NewtonLoop
 from .mobility import stations_of
+from .model_data import ModelData
 from .open_forces import OpenForces
 
 
@@ -35,6 +35,7 @@ class SceneGraph(Graphs):
     """
 
     scene: Scene
+    data: ModelData
     wanted: Wanted
     driven: tuple[str, ...]
     motion: Any
@@ -60,26 +61,26 @@ class SceneGraph(Graphs):
 
     def seen(self, constraint: str, out: Array) -> Array:
         """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (..., columns, t)."""
-        rows = [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
-        return np.asarray(out[..., rows, :], float)
+        return np.asarray(out[..., self.seen_columns(constraint), :], float)
 
-    @cached_property
+    def seen_columns(self, constraint: str) -> list[int]:
+        """The rows of ``out`` that tell it."""
+        return [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
+
+    @property
     def laws(self) -> Laws:
         """The motion once more, what samples give apart from what can be followed in any arithmetic."""
-        if self.motion.is_a("SXFunction"):
-            return Laws(self.motion, None, tuple(range(len(self.driven))))
-        return Laws.of({name: self.scene.laws[name] for name in self.driven}, self.scene.mechanism.symbols)
+        return self.data.laws
 
     @symbolic
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
-        mechanism = self.scene.mechanism
-        return mechanism.number(extent(mechanism), dict(zip(mechanism.parameters, map(float, p), strict=True)))
+        return float(self.data.extent(p))
 
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
-        space = self.scene.mechanism.space
+        space = self.data.space
         needed = {
             link: [Output("law", link, member) for member in law_members(space)]
             + [
@@ -101,10 +102,6 @@ class SceneGraph(Graphs):
         """Whether the loops that stand under the name of a closure are iterated."""
         return self.newton is not None and closure in self.newton.names
 
-    def follows(self, closure: str) -> bool:
-        """Whether iteration goes through the loop that stands under the name of a closure, and may leave its branch."""
-        return self.newton is not None and f"'{closure}'" in self.newton.joints
-
     @property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""
@@ -124,7 +121,7 @@ class SceneGraph(Graphs):
                 "joints": loop.joints,
             }
         loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
-        kept = {"driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
+        kept = {"data": self.data.words(), "driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
         if self.open_forces is not None:
             kept["open_forces"] = self.open_forces.dumps()
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
@@ -142,4 +139,5 @@ class SceneGraph(Graphs):
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
         free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
-        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)
+        data = ModelData.loads(kept["data"], scene)
+        return cls(scene, data, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)

@@ -10,14 +10,15 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..base.quantities import Output
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
-from ..quantities import Output
 from . import kinematics
 from .assembly import assemble
 from .checks import Column
 from .kinematics import Start
+from .model_data import ModelData
 from .multibody import column
 from .scene_graph import SceneGraph
 from .tree import span
@@ -55,5 +56,6 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, mechanism.symbols]
     instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
     columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
-    graph = SceneGraph(scene, Wanted.of(mechanism, ["motion"]), driven, motion, instant, solved.newton, tuple(columns), {})
+    data, want = ModelData.of(scene, driven), Wanted.of(mechanism, ["motion"])
+    graph = SceneGraph(scene, data, want, driven, motion, instant, solved.newton, tuple(columns), {})
     return SeenInertia(graph, driven, drives)

@@ -19,11 +19,11 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Output
+from ..base.tables import Terms, table_of
 from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
-from ..quantities import Output
-from ..tables import Terms, table_of
 from .checks import Column
 from .multibody import Multibody
 
@@ -106,23 +106,26 @@ def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
     return found
 
 
-def felt_along(outputs: Mapping[Column, Any], link: Link, terms: Terms, ratio: Any) -> Iterator[Any]:
-    """What a section force at a ratio is of each that acts along the link: loads by their arms, and couples of slices."""
-    for load, powers in spreads_of((key for key in outputs if isinstance(key, Output)), link.name).items():
+def felt_along(outputs: Mapping[Column, Any], link: str, length: Any, terms: Terms, ratio: Any) -> Iterator[Any]:
+    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by their arms, couples of slices."""
+    for load, powers in spreads_of((key for key in outputs if isinstance(key, Output)), link).items():
         for direction, sign, arm in ((terms.spread, terms.arm or 1, bool(terms.arm)), (terms.couple, 1, False)):
-            if Output("spread", link.name, direction, load, 0) in outputs:
-                yield sign * _felt(outputs, link, load, powers, direction, ratio, arm=arm)
+            if Output("spread", link, direction, load, 0) in outputs:
+                yield sign * _felt(outputs, (link, load), length, powers, direction, ratio, arm=arm)
 
 
-def _felt(outputs: Mapping[Column, Any], link: Link, load: str, powers: int, direction: str, ratio: Any, *, arm: bool) -> Any:
-    """What a section at a ratio feels of a load along its link in a direction: the force, or with ``arm`` its moment."""
+def _felt(
+    outputs: Mapping[Column, Any], of: tuple[str, str], length: Any, powers: int, direction: str, ratio: Any, *, arm: bool
+) -> Any:
+    """The force of a link's load along it, the part that a section at a ratio feels in a direction, or with ``arm`` its moment."""
+    link, load = of
 
     def value(member: str, power: int | None = None) -> Any:
-        return outputs[Output("spread", link.name, member, load, power)]
+        return outputs[Output("spread", link, member, load, power)]
 
     width, end = value("width"), value("end")
     x = ca.fmin(ca.fmax((end - ratio) / width, 0), 1)
-    reach, lever = link.length * width, link.length * ca.fmax(end - width - ratio, 0)
+    reach, lever = length * width, length * ca.fmax(end - width - ratio, 0)
 
     def terms() -> Iterator[Any]:
         for power in range(powers):

@@ -14,9 +14,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.quantities import Output
 from ..declare.limits import END
 from ..declare.parts import Link
-from ..quantities import Output
 from .checks import Column
 from .mobility import stations_of
 from .multibody import Coordinate, column

@@ -18,14 +18,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.quantities import Output
+from ..base.tables import table_of
 from ..beams.beam import SLIGHT, Beam
 from ..beams.properties import Properties
 from ..beams.shape import between
 from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
-from ..quantities import Output
-from ..tables import table_of
 from .checks import Column
 from .mobility import stations_of
 from .own import section_force

@@ -20,7 +20,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import DeclarationError
 from .iteration import NewtonLoop
 from .kinematics import Kinematics, Start

@@ -10,22 +10,22 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import casadi as ca
-import h5py
 import numpy as np
 import numpy.typing as npt
 
 from .. import codegen
 from ..arithmetic.compensated import DTYPES
+from ..base.arrays import Array
+from ..base.room import cores
+from ..base.vocabulary import Backend
 from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from ..codegen.stages import Stages, compensated, plain, turns_many
-from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..errors import CompilerError, warn
-from ..system.room import cores
 from ..version import __version__
 from . import grids
 from .cycle_table import CycleTable
-from .rung import Backend, Rung
+from .rung import Rung
 from .solution import Provenance
 
 _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {"auto": ("c++", "c"), "lanes": ("c++",), "c": ("c",), "vm": ()}
@@ -104,7 +104,7 @@ def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> 
     """
     if graph.newton is None:
         return ()
-    (start, stop), count = graph.scene.span, graph.scene.timing().count
+    (start, stop), count = graph.data.span, graph.data.count
     if t == start and not counted:
         return graph.newton.guess
     wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf
@@ -169,6 +169,8 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
 
 def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
     """How numbers were made, with the versions of what made them."""
+    import h5py  # which takes its time, and is needed for files alone
+
     versions = {
         "lagrange_casadi": __version__,
         "casadi": ca.CasadiMeta.version(),

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..declare.density import Array, NumericDensity
-from ..tables import Terms
+from ..base.arrays import Array
+from ..base.tables import Terms
+from ..declare.density import NumericDensity
 from .spread_loads import SpreadLoad
 
 

@@ -15,14 +15,14 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
+from ..base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..system.symbolic import symbolic
-from ..tables import ANGLE, FORCE, LENGTH, MOMENT
 
 TURNS = 4
 """Of the longest period."""
@@ -133,7 +133,7 @@ class Drive:
         moving = ca.vertcat(t, rate, acceleration)
         at_rest = [ca.densify(ca.substitute(row, moving, ca.SX.zeros(3))) for row in rows]
         terms = ca.Function("terms", [d, z, parameters], at_rest, {"cse": True})
-        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.scene.span)
+        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.data.span)
         return cls(graph, p, joint, start, -1 if stop < start else 1, terms)
 
     @property
@@ -227,9 +227,8 @@ class Drive:
 
     def _closures(self, columns: Array) -> Iterator[tuple[str, Array]]:
         """The closures among the columns, with the beginning of a message."""
-        joints = self.graph.scene.mechanism.joints
         for closing, k in self.graph.checks("closure").items():
-            yield f"table: the loop closed by {'joint' if closing in joints else 'constraint'} '{closing}'", columns[k]
+            yield f"table: the loop closed by {self.graph.data.closing(closing)}", columns[k]
 
     def _not_round(self, angle: float) -> str:
         return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
@@ -241,7 +240,7 @@ def the_drive(graph: SceneGraph) -> str:
         named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
         raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
     (joint,) = graph.driven
-    if graph.scene.guided.coordinates[joint][1].kind != "angle":
+    if graph.data.kinds.coordinates[joint] != "angle":
         raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle repeats")
     return joint
 
@@ -336,7 +335,7 @@ def _kind(graph: SceneGraph, column: Column) -> str | Column:
     """What columns are compared by: their unit, or, where that says nothing, themselves; directions with each other."""
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column
-    unit = column.unit(graph.scene.mechanism)
+    unit = column.unit(graph.data.kinds)
     return column.group if column.group == "pose" and unit == "1" else column if unit == "1" else unit
 
 

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array
 from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
-from ..declare.density import Array
 from ..errors import CompilerError, DeclarationError, warn
 
 FACTORS = ("1", "rate", "rate^2", "acceleration")

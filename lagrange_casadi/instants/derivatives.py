@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output, quotient
 from ..declare.wanted_slopes import SENSITIVITY
 from ..errors import UnknownNameError
-from ..quantities import Output, quotient
 
 if TYPE_CHECKING:
     from .solution import Solution

@@ -13,11 +13,11 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..codegen.emit import OK
-from ..declare.density import Array
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 from .backends import run
 from .rules import rules
 from .rung import Rung

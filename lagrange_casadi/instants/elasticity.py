@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..quantities import Output
+from ..base.quantities import Output
 
 
 @dataclass(frozen=True)

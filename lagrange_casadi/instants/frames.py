@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import LagrangeCasadiError
 from .derivatives import derivatives
 

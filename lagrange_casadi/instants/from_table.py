@@ -10,12 +10,12 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.room import cores
+from ..base.symbolic import symbolic
 from ..codegen.emit import NOT_FINITE, OK
-from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
-from ..system.room import cores
-from ..system.symbolic import symbolic
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable

@@ -10,19 +10,18 @@ import ctypes
 import functools
 import math
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
 from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Array
+from ..base.room import require
 from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
-from ..declare.density import Array
 from ..declare.limits import END
 from ..errors import CompilerError, DeclarationError, warn
-from ..system.room import require
 
 WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""
@@ -108,6 +107,8 @@ def fill(
     if shares == 1:
         run(0)
         return
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(shares - 1) as pool:
         others = pool.map(run, range(size, n, size))
         run(0)

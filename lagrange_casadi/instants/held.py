@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
-from ..quantities import Output
+from ..base.arrays import Array
+from ..base.quantities import Output
 
 ENDS = ("least", "largest")
 

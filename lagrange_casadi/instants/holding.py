@@ -24,7 +24,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.scene import Scene
 from ..equations.checks import Check
 from ..equations.derive import assembled, derive
@@ -32,7 +33,6 @@ from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.pressing import frictions_of
 from ..equations.scene_graph import SceneGraph
 from ..errors import check_kind
-from ..quantities import Output
 from .backends import run
 from .held import Holding
 from .rules import OPEN, SLIP

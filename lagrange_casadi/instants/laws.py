@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..declare.density import Array, NumericDensity
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import PLANE, Table
+from ..declare.density import NumericDensity
 from ..declare.limits import END
-from ..quantities import Output
-from ..tables import PLANE, Table
 from .section_law import SectionLaw
 from .spread_loads import spread_load
 from .station_loads import station_load

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import Table, table_of
 from ..declare.description import Description, in_space, parts_of
-from ..quantities import Output
-from ..tables import Table, table_of
 
 
 def table_of_described(description: Description) -> Table:

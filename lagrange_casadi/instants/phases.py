@@ -12,16 +12,16 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.interpret import followable, interpret, numpy_arithmetic
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 
 _TURN = np.longdouble("6.283185307179586476925286766559005768")
 
 
 def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Array]:
     """The angles of drives from their laws of motion, and of loops from the columns ``out`` (columns, t)."""
-    laws, coordinates = graph.laws, graph.scene.guided.coordinates
+    laws, coordinates = graph.laws, graph.data.kinds.coordinates
     rows = {angle: out[graph.outputs[angle]] for angle in graph.loop_angles}
     driven = [np.longdouble(row) for row in np.atleast_2d(graph.motion(t[None], p)[0].full())]
     if followable(laws.smooth):
@@ -31,7 +31,7 @@ def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Ar
         smooth = interpret(laws.smooth, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0]
         driven = [smooth[k] if k < len(smooth) else driven[i] for i, k in enumerate(laws.order)]
     for name, angle in zip(graph.driven, driven, strict=True):
-        if coordinates[name][1].kind == "angle" and Output("motion", name) in graph.outputs:
+        if coordinates[name] == "angle" and Output("motion", name) in graph.outputs:
             whole = np.broadcast_to(np.asarray(angle - _TURN * np.rint(angle / _TURN), float), t.shape)
             rows[Output("motion", name)] = np.asarray(whole)
     return {angle: np.array(row, float) for angle, row in rows.items()}

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.compensated import DTYPES, Precision
+from ..arithmetic.compensated import DTYPES
+from ..base.arrays import Array
+from ..base.vocabulary import Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
-from ..declare.density import Array
 from ..declare.ends import share_beyond
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP
@@ -121,9 +122,9 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     if not bad.any():
         return None
     i = int(np.argmax(bad))
-    coordinates = graph.scene.guided.coordinates
+    coordinates = graph.data.kinds.coordinates
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
-    at = where((name, coordinates[name][1].kind, value) for name, value in zip(graph.driven, driven, strict=True))
+    at = where((name, coordinates[name], value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
     bad_one = _Bad(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent)
     status, why = bad_one.why(functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p))
@@ -179,22 +180,14 @@ def _dead_between(graph: SceneGraph, rule: Rule, start: Array, stop: Array, p: A
 
 def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
     """What to say where a link's length cannot be squared in a precision."""
-    mechanism, numbers = graph.scene.mechanism, np.finfo(DTYPES[precision])
-    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+    numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
-    for name, link in mechanism.links.items():
-        length = mechanism.number(link.length, values)
-        if not low <= length <= high:
+    for name, body in graph.data.description(graph.data.values(p))["bodies"].items():
+        length = body["length"]
+        if length is not None and not low <= length <= high:
             what = f"link '{name}' is {length:.3g} m long, and {precision} precision can only square {low:.1g} to {high:.1g} m"
             return f"the mechanism has no result {at}: {what}"
     return None
-
-
-def _closing(graph: SceneGraph, part: str) -> str:
-    """What closes a loop, in words."""
-    m = graph.scene.mechanism
-    kinds = (("joint", m.joints), ("path", m.paths), ("bar", m.links))
-    return f"{next((kind for kind, names in kinds if part in names), 'constraint')} '{part}'"
 
 
 def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
@@ -212,7 +205,7 @@ def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
     out = graph.instant(t, *motion, z, p).full()[:, 0]
     gaps = {closing: abs(float(out[k])) for closing, k in graph.checks("gap").items()}
     widest = max(gaps.values(), default=math.nan)
-    left = [_closing(graph, closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
+    left = [graph.data.closing(closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
     return ", ".join(left) if 0 < len(left) < len(gaps) else graph.newton.joints
 
 
@@ -266,7 +259,7 @@ class _Bad:
 
     def _loop(self, rule: Rule) -> tuple[Status, str] | None:
         """What is wrong with a loop, with three turns, or with what drives hold; None where nothing is."""
-        value, closed = self._value(rule), _closing(self.graph, str(rule.part))
+        value, closed = self._value(rule), self.graph.data.closing(str(rule.part))
         if value < -rule.limit:
             if rule.kind == "BRANCH":
                 return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {self.at}: take more instants"
@@ -296,11 +289,11 @@ class _Bad:
         """What a broken rule says; None where its column is no number, and a later one says why."""
         part, value, at = str(rule.part), self._value(rule), self.at
         if rule.kind == "GAP" and math.isfinite(value):
-            what = f"what was found for the loop closed by {_closing(self.graph, part)} does not close it"
+            what = f"what was found for the loop closed by {self.graph.data.closing(part)} does not close it"
             return Status.NOT_CLOSED, f"{what} {at}: a gap of {abs(value):.3g} m"
         if rule.kind == "MISFIT" and math.isfinite(value):
             gap = f"a gap of {value:.3g} of the links' length"
-            closed = _closing(self.graph, part)
+            closed = self.graph.data.closing(part)
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
         if rule.kind == "TURNED":
             what = f"the angle of '{part}', which a load sees with its turns,"

@@ -12,21 +12,22 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from ..arithmetic.compensated import ROUNDING, Precision
+from ..arithmetic.compensated import ROUNDING
+from ..base.quantities import Output
+from ..base.tables import MOMENT
+from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import REACH
-from ..quantities import Output
-from ..tables import MOMENT
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
 OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 _COUNTED = 1e-3
-"""Where loops are closed by so many steps: what is zero where they are closed is as small as what is left of them."""
+"""Where iterated loops are closed by so many steps: what is zero where they are closed is as small as what is left of them."""
 
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
@@ -44,7 +45,7 @@ class Rule:
     """What a column must keep to, so that an instant has a result.
 
     A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above its limit, and above its
-    opposite unless links do not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be
+    opposite unless links do not reach; so must a ``BRANCH``, whose loop is iterated. ``GAP`` and ``TURNED`` must be
     within it by size, a ``GAP`` times the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not
     be above it, nor a ``ROW`` by size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not
     be above it, an ``OPEN_MOMENT`` times the extent: else the output ``part`` is not determined. What tells of a ``JAM`` must
@@ -63,18 +64,18 @@ class Rule:
 def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
     """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
     found: list[Rule] = []
-    open_ = max(open_limit(precision, newton), graph.scene.rounding if graph.scene.mechanism.rounded else 0.0)
+    open_ = max(open_limit(precision, newton), graph.data.rounding)
     for k, check in enumerate(graph.columns):
         if not isinstance(check, Check):
             continue
         part = check.part
         if isinstance(part, Output):
-            moment = part.unit(graph.scene.mechanism) == MOMENT
+            moment = part.unit(graph.data.kinds) == MOMENT
             found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_))
         elif check.kind == "beyond":
             found.append(Rule("BEYOND", k, part, BEYOND[precision]))
         elif check.kind == "closure":
-            found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
+            found.append(Rule("BRANCH" if graph.iterates(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
         elif check.kind in ("gimbal", "roll", "hold"):
             found.append(Rule("CLOSURE", k, part, _DEAD * ROUNDING[precision]))
         elif check.kind == "gap":

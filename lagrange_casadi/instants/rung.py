@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
-from ..arguments import Within
-from ..arithmetic.compensated import PRECISIONS, Precision
+from ..base.units import Within
+from ..base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 
-Backend = Literal["auto", "lanes", "c", "vm"]
-BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
+if TYPE_CHECKING:
+    from ..equations.scene_graph import SceneGraph
+
 
 FEWEST_NODES = 8
 MOST_STEPS = 1000
@@ -33,9 +34,8 @@ class Rung:
         ``double``, or ``single``: then no operation is on doubles. Phases are kept in pairs of numbers, so that many turns cost no
         digits.
     newton
-        None solves loops in closed form where there is one, and iterates the others until they are closed. A number, at most
-        1000, takes exactly so many steps of Newton's method for every loop, from the instant before; at the first instant every
-        loop is closed.
+        Of loops that have no closed form: None iterates them until they are closed. A number, at most 1000, takes exactly so many
+        steps of Newton's method, from the instant before; at the first instant they are closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags
@@ -55,9 +55,7 @@ class Rung:
             if name not in valid:
                 raise UnknownNameError(kind, str(name), valid)
         if self.newton is not None and (type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS):
-            raise DeclarationError(
-                f"newton: expected a number of steps, from 1 to {MOST_STEPS} (after some ten nothing changes), got {self.newton!r}"
-            )
+            raise DeclarationError(f"newton: expected a whole number from 1 to {MOST_STEPS}, got {self.newton!r}")
         if self.table is not None and not _tabulates(self.table):
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
@@ -75,6 +73,14 @@ class Rung:
             raise DeclarationError("backend 'vm' computes in doubles only; precision 'single' needs lanes or c")
         if self.backend == "vm" and words:
             raise DeclarationError(f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c")
+
+    def check(self, graph: SceneGraph) -> None:
+        """Raise :class:`DeclarationError` where a graph has nothing that the rung chooses."""
+        if self.newton is not None and graph.newton is None:
+            raise DeclarationError(
+                f"newton: no loop of '{graph.scene.mechanism.name}' is iterated; leave newton out: "
+                "closed forms are exact and faster"
+            )
 
     @property
     def options(self) -> str:

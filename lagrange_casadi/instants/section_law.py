@@ -16,12 +16,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..declare.density import Array, NumericDensity
+from ..base.arrays import Array
+from ..base.brief import Brief
+from ..base.quantities import Output
+from ..base.room import cores, require
+from ..base.tables import PLANE, SPACE, Table
+from ..declare.density import NumericDensity
 from ..declare.limits import END
-from ..quantities import Output
-from ..system.brief import Brief
-from ..system.room import cores, require
-from ..tables import PLANE, SPACE, Table
 from . import grids
 from .basis import Basis, by_force
 from .sizes import growth_of_size, size_of, slope_of_size

@@ -10,17 +10,18 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import table_of
 from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
-from ..declare.density import Array, Density, NumericDensity
-from ..declare.mechanism import Mechanism
+from ..declare.density import NumericDensity
+from ..declare.description import Description, density_of, in_space
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks
 from ..summits.sharpness import Sharpness, bent
-from ..tables import table_of
 from .backends import follow
 from .laws import law_of
 from .sizes import size_of
@@ -56,16 +57,12 @@ class SectionForce:
         return places.T, values.T
 
 
-def section_forces(
-    mechanism: Mechanism, link: str, rows: Mapping[Output, int], values: Mapping[str, float]
-) -> dict[str, SectionForce]:
-    """The section forces of a link by name, for ``values`` of the parameters; ``rows`` are those of all outputs."""
-    part = mechanism.links[link]
-    assert isinstance(part.mass, Density)
-    length = mechanism.number(part.length, values)
-    density = part.mass.at(lambda expression: mechanism.number(expression, values), length)
+def section_forces(description: Description, link: str, rows: Mapping[Output, int]) -> dict[str, SectionForce]:
+    """The section forces of a link of a described mechanism by name; ``rows`` are those of all outputs."""
+    body = description["bodies"][link]
+    length, density = body["length"], density_of(body)
     own = {output: k for output, k in rows.items() if output.along and output.part == link}
-    return {force: SectionForce(force, link, own, length, density) for force in table_of(mechanism.space).forces}
+    return {force: SectionForce(force, link, own, length, density) for force in table_of(in_space(description)).forces}
 
 
 Quantity: TypeAlias = "tuple[int, ...] | Along"

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 def size_of(components: Iterable[Array]) -> Array:

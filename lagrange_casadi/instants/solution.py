@@ -14,14 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import Table
 from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError, shown
-from ..quantities import Output
-from ..tables import Table
+from ..methods import method
 from .derivatives import Derivatives
 from .elasticity import Elasticity
 from .frames import dataset, frame
@@ -77,7 +78,7 @@ class Peak:
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``outputs`` holds every array over time, each of shape (t,); :mod:`.tables` says what each means, its unit and its sign.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.base.tables` says what each means, its unit and its sign.
     ``t`` are the instants [s], ``xi`` the ratios xi/l of the section grids. ``left_open`` are outputs that equilibrium does not
     determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
@@ -184,29 +185,23 @@ class Solution:
 
     def stress(self, link: str) -> Stress:
         """The stresses in a link that has a beam. Raises what :func:`.strength.stress` does."""
-        from ..strength import stress
-
-        return stress(self, link)
+        found: Stress = method("Solution.stress")(self, link)
+        return found
 
     def safety(self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
         """The factors of safety of a link that has a beam, or of what is fitted to a joint: see :func:`.strength.safety`."""
-        from ..strength import joint_safety, safety
-
-        if link in self.description["joints"]:
-            return joint_safety(self, link)
-        return safety(self, link, criterion=criterion, yielding=yielding)
+        found: Safety = method("Solution.safety")(self, link, criterion=criterion, yielding=yielding)
+        return found
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:
         """How long a link that has a beam lasts: see :func:`.strength.life`."""
-        from ..strength import life
-
-        return life(self, link, criterion=criterion)
+        found: Life = method("Solution.life")(self, link, criterion=criterion)
+        return found
 
     def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
         """How a link that has a beam bends: see :func:`.elastic.deflection.deflection`."""
-        from ..elastic.deflection import deflection
-
-        return deflection(self, link, against)
+        found: Deflection = method("Solution.deflection")(self, link, against)
+        return found
 
     @property
     def links_with_sections(self) -> tuple[str, ...]:
@@ -220,9 +215,7 @@ class Solution:
         found = notes(self.t, known, self.description, self.resting)
         slopes = () if self.resting.any() else self.sensitivities.notes()  # at rest all that rubs is open
         if any(output.group == "deflection" for output in self.outputs):
-            from ..elastic.vibration import swinging
-
-            slopes = (*slopes, *swinging(self))
+            slopes = (*slopes, *method("Solution.notes")(self))
         return (*found, *held_notes(self.held), *self.elasticity.notes, *slopes)
 
     @cached_property
@@ -237,8 +230,8 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
-        each = instants.tolist() if isinstance(instants, np.ndarray) else []
-        if not (isinstance(instants, slice) or [type(one) for one in each] == [bool] * self.t.size):
+        marked = isinstance(instants, np.ndarray) and instants.dtype == bool and instants.shape == self.t.shape
+        if not (isinstance(instants, slice) or marked):
             raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         left = {name: values[instants] for name, values in self.certificate.items()}
@@ -330,30 +323,25 @@ class Solution:
         Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end in .html; :class:`.PathError`
         and :class:`.StoreError` where the file cannot be written.
         """
-        from ..report import write_report
-
-        write_report(self, path)
+        method("Solution.report")(self, path)
 
     def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
         """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends: see :func:`.write_animation`."""
-        from ..animation import write_animation
-
-        return write_animation(self, path, film)
+        found: Animation = method("Solution.animate")(self, path, film)
+        return found
 
     def view(self, height: int = 760) -> View:
         """The same page for a notebook, which shows it in a frame of a height [points] where it is the last value of a cell.
 
         Raises :class:`.DeclarationError` where ``motion`` was not wanted.
         """
-        from ..report import view
-
-        return view(self, height)
+        found: View = method("Solution.view")(self, height)
+        return found
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing and the peaks."""
-        from ..report import summary
-
-        return summary(self)
+        found: str = method("Solution._repr_html_")(self)
+        return found
 
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units; an error of ours without xarray."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..declare.density import Array
-from ..quantities import Output
+from ..base.arrays import Array
+from ..base.quantities import Output
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,12 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.tables import LARGEST as LARGEST_ALONG
 from ..equations.checks import FRACTIONS, Check, column_of
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..quantities import Output
-from ..tables import LARGEST as LARGEST_ALONG
 from .cycle import Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from ..quantities import Output
-from ..tables import LARGEST
+from ..base.quantities import Output
+from ..base.tables import LARGEST
 from .solution import Solution
 
 _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..summits.polynomials import interpolation
 
 _HALVINGS = 60

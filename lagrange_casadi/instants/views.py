@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.brief import Brief
+from ..base.room import require
 from ..errors import NoComponentError, UnknownNameError
-from ..system.brief import Brief
-from ..system.room import require
 from .section_law import Basis, SectionLaw
 from .sizes import size_of
 

@@ -15,7 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..equations.checks import Kind
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated
@@ -23,7 +24,6 @@ from ..instants.cycle_table import CycleTable
 from ..instants.refusal import resting
 from ..instants.sizes import largest
 from ..instants.solution import Solution
-from ..quantities import Output
 from .digits import blur
 from .disturbed import Instants, effects, openness
 

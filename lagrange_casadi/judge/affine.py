@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 def affine_zero(gaps: Callable[[Array], Array], count: int, instants: int, decided: Callable[[Array], Array]) -> Array | None:

@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import FORCES, Output
+from ..base.tables import SPACE
 from ..declare.description import Description, density_of, oriented
 from ..instants.solution import Solution
-from ..quantities import FORCES, Output
-from ..tables import SPACE
 from . import digits
 from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE

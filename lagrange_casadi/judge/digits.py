@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
+from ..arithmetic.compensated import DTYPES, ROUNDING
+from ..base.quantities import Output
+from ..base.vocabulary import Precision
 from ..declare.description import coordinates_of
 from ..instants.solution import Solution
-from ..quantities import Output
 
 ROUNDINGS = 4.0
 TOLERANCE, LOOSE = 1e-9, 1e-3

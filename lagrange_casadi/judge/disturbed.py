@@ -22,8 +22,8 @@ import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
 from ..arithmetic.interpret import REMAINDERS, ROUNDINGS, Arithmetic, followable, interpret, numpy_arithmetic
+from ..base.arrays import Array
 from ..codegen.stages import Stages
-from ..declare.density import Array
 from .roundings import left
 
 TRIALS = 8

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import Description, coordinates_of
 from ..instants.solution import Solution
-from ..quantities import Output
 from . import digits
 from .placing import Moving, axis_of
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..base.quantities import Output
 from ..declare.description import Description
 from ..instants.solution import Solution
-from ..quantities import Output
 
 _NEAR = 1e-3
 """The square of the cosine of a second turn below which the turns' rates have lost digits of the body's."""

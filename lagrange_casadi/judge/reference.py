@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Arithmetic, interpret
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..equations.scene_graph import SceneGraph
 from ..errors import AssemblyError, LagrangeCasadiError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 _SPLITTER = 134217729.0
 _LEAST = 1e-280

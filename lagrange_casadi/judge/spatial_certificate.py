@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output, force_members
 from ..declare.description import Description, density_of, measured_of, oriented, slices_of
 from ..instants.solution import Solution
-from ..quantities import Output, force_members
 from . import digits
 from .friction import law_gaps
 from .locked import without_locked

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import Description, oriented
 from ..instants.solution import Solution
 from .written import Entry

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import Description, oriented
 from ..instants.solution import Solution
 from .affine import rates_and_changes

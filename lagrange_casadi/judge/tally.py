@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import drives_of
 from ..instants.section_law import SectionLaw
 from ..instants.solution import Solution
-from ..quantities import Output
 from . import digits
 from .written import Written
 

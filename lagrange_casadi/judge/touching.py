@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import motions_of
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Mesh, Transmission, Wrench
 from ..geometry.vectors import Vector
 from ..instants.solution import Solution
-from ..quantities import Output
 
 _REST = 1e-12
 """Of the fastest motion that is given: a rate below is that of rest, but for rounding."""

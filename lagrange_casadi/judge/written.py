@@ -13,7 +13,8 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
 from .touching import Touch, touches_of
@@ -54,6 +55,7 @@ class Written:
         return np.asarray(self.slopes(places, rates, t[None]).full())
 
 
+@symbolic
 def written(mechanism: Mechanism, values: Mapping[str, float]) -> tuple[Written, ...]:
     """All constraints and rows of a mechanism, for values of its parameters."""
     given = [

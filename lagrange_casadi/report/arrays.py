@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 @dataclass(eq=False)

@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.description import Description
-from ..draw.shapes import joint_shapes, load_shapes, path_spots, shapes
-from ..draw.solid import COLOURS
-from ..draw.views import upright
-from ..errors import DeclarationError
 from ..instants.derivatives import derivatives
 from ..instants.held import held_outputs
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
-from ..quantities import Output
+from ..shapes.places import require_poses
+from ..shapes.shapes import joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.solid import COLOURS
+from ..shapes.views import upright
 from ..strength.parts import looked
 from .arrays import Arrays, finite
 from .instants import shown_instants
@@ -107,16 +107,6 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
     if live:
         found["live"] = live.entry(solution, chosen, arrays)
     return found | {"arrays": arrays.places, "numbers": arrays.block()}
-
-
-def require_poses(solution: Solution, what: str = "a report") -> None:
-    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would show it."""
-    lacking = [body for body in solution.description["bodies"] if Output("pose", body, "x") not in solution.outputs]
-    if lacking:
-        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (f" and {len(lacking) - 3} more" if len(lacking) > 3 else "")
-        raise DeclarationError(
-            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
-        )
 
 
 def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:

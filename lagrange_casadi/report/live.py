@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..base.quantities import Output
 from ..codegen.plain import plain
 from ..declare.corners import Corners
 from ..declare.density import Density
@@ -25,12 +26,11 @@ from ..declare.parts import Link, PointMass, RigidMass
 from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import DeclarationError
-from ..export.folder import LARGEST
-from ..export.sourced import sourced
-from ..export.wasm import check_zig, layout, module, places
 from ..instants.rung import Rung
 from ..instants.solution import Solution
-from ..quantities import Output
+from ..portable.data import LARGEST
+from ..portable.sourced import sourced
+from ..portable.wasm import check_zig, layout, module, places
 from .arrays import Arrays
 
 _CORNERS = (

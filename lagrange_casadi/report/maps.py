@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..instants.solution import Solution
 from ..instants.statistics import counted
 from ..strength.parts import bending_of, strong_of

@@ -9,10 +9,10 @@ from html import escape
 from ..declare.scene import Scene
 from ..declare.times import span_of
 from ..errors import DeclarationError, LagrangeCasadiError
-from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..instants.told import told
-from .contents import require_poses
+from ..shapes.places import require_poses
+from ..studies.evaluate import evaluate
 from .page import page
 from .still import still
 from .words import what

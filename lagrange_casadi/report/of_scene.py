@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from ..declare.scene import Scene, Wanted
-from ..evaluate import evaluate
+from ..studies.evaluate import evaluate
 from .live import Live
 from .page import write_report
 

@@ -18,10 +18,10 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from ..base.publish import writing
 from ..errors import DeclarationError
-from ..export.wasm import engine
 from ..instants.solution import Solution
-from ..system.publish import writing
+from ..portable.wasm import engine
 from .contents import contents
 from .live import Live
 

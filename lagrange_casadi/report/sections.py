@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.quantities import Output
+from ..base.tables import Table
 from ..instants.solution import Solution
-from ..quantities import Output
-from ..tables import Table
 from .arrays import Arrays
 from .words import what
 

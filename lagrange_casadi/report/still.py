@@ -7,13 +7,13 @@ from html import escape
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..declare.description import in_space
-from ..draw.places import drawn_spots, placed
-from ..draw.shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
-from ..draw.solid import COLOURS, PATH
-from ..draw.views import AZIMUTH, ELEVATION, upright, view
 from ..instants.solution import Solution
+from ..shapes.places import drawn_spots, placed
+from ..shapes.shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.solid import COLOURS, PATH
+from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
 _WIDE, _HIGH, _MARGIN = 460.0, 300.0, 34.0
 _TRACED = 120

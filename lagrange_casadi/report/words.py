@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..quantities import Output
-from ..tables import Table
+from ..base.quantities import Output
+from ..base.tables import Table
 
 _CUT = (
     " of the joint's coordinate",

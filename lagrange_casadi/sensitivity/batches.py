@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import codegen
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 def at_points(function: Any, library: codegen.BatchLibrary | None, n: int, given: Mapping[str, tuple[Array, int]]) -> Array:

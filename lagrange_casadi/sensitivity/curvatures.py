@@ -16,14 +16,12 @@ import casadi as ca
 import numpy as np
 
 from .. import codegen
-from ..declare.density import Array
-from ..declare.motion import jerk_function, motion_function
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
-from ..system.symbolic import symbolic
 from .batches import at_points
-from .in_scalars import in_scalars
 from .points import PointFunction
 from .slopes import Numbers, Slopes
 
@@ -81,13 +79,12 @@ class Curvatures:
 def second_function(graph: SceneGraph, points: PointFunction) -> Any:
     """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
     and all parameters, and how it changes along a ``way`` of these."""
-    inner, symbols = points.at_drives, graph.scene.mechanism.symbols
-    laws = in_scalars({name: graph.scene.laws[name] for name in graph.driven}, symbols)
+    inner, laws = points.at_drives, graph.laws.in_scalars()
     given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
     t, z, p, xi = (given[name] for name in ("t", "z", "p", "xi"))
-    driven = motion_function(laws, symbols).call([t, p])
+    driven = laws.motion.call([t, p])
     given |= dict(zip(("d", "d_rate", "d_acceleration"), driven, strict=True))
-    given["d_jerk"] = jerk_function(laws, symbols).expand()(t, p)
+    given["d_jerk"] = laws.jerk()(t, p)
     found, rate, slopes = inner.call([given[inner.name_in(k)] for k in range(inner.n_in())])
     gradient = ca.vertcat(rate, ca.gradient(found, xi), slopes)
     way = ca.SX.sym("way", 2 + p.numel())

@@ -7,14 +7,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.density import Array
-from ..declare.motion import motion_function
-from ..declare.scene import Scene
+from ..base.arrays import Array
+from ..declare.laws import Laws
 from ..declare.times import Timing
-from .in_scalars import in_scalars
 
 
-def end_slopes(scene: Scene, timing: Timing, first: float, last: float, p: Array) -> Array:
+def end_slopes(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
     """The derivatives by all parameters of the first and the last instant, (2, parameters) [s].
 
     Where instants are asked for by a drive, that of coordinate = bound at its time.
@@ -24,8 +22,7 @@ def end_slopes(scene: Scene, timing: Timing, first: float, last: float, p: Array
     bounds = timing.bound_slopes(p)
     if not timing.joint:
         return bounds
-    symbols, law = scene.mechanism.symbols, {timing.joint: scene.laws[timing.joint]}
-    motion = motion_function(law, symbols)
+    motion = laws.only(timing.joint).motion
     rates = np.array([float(motion(time, p)[1]) for time in (first, last)])
     own = np.zeros((2, p.size))
     if motion.is_a("SXFunction"):  # samples are numbers
@@ -35,18 +32,17 @@ def end_slopes(scene: Scene, timing: Timing, first: float, last: float, p: Array
     return np.asarray((bounds - own) / rates[:, None])
 
 
-def end_bends(scene: Scene, timing: Timing, first: float, last: float, p: Array) -> Array:
+def end_bends(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
     """Their second derivatives by all parameters, (2, parameters, parameters) [s].
 
     Raises :class:`.DeclarationError` where a drive that says when they are has samples that do not tell their knots.
     """
     if timing.shared or not p.size:
         return np.zeros((2, p.size, p.size))
-    symbols, t, values = scene.mechanism.symbols, ca.SX.sym("t"), ca.SX.sym("p", p.size)
+    t, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)
     along: Any = t
     if timing.joint:
-        laws = in_scalars({timing.joint: scene.laws[timing.joint]}, symbols)
-        along = motion_function(laws, symbols)(t, values)[0]
+        along = laws.only(timing.joint).in_scalars().motion(t, values)[0]
     found = []
     for time, bound in zip((first, last), timing.ends(values), strict=True):
         hessian, gradient = ca.hessian(ca.SX(along - bound), ca.vertcat(t, values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import codegen
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import begun, follow
 

@@ -11,7 +11,7 @@ import itertools
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .slopes import AtPoints, Numbers, Slopes
 
 _NUDGE_T, _NUDGE_XI = 1e-3, 1e-3
@@ -19,6 +19,12 @@ _NUDGE_T, _NUDGE_XI = 1e-3, 1e-3
 
 _NEAR_T, _NEAR_XI = 1e-2, 1e-5
 """How far a smooth peak is from where it was found at most, likewise."""
+
+_ASIDE, _NEARER = 1e-9, 0.5
+"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on its own side at most."""
+
+_REACHES = (1.0, 8.0, 64.0, 512.0)
+"""So far from a jump its sides are looked for: of what a peak may be beside it."""
 
 
 def at_peaks(
@@ -63,6 +69,40 @@ def at_peaks(
         sound = (value * tt < 0.0) & (np.abs(by_t) <= _NEAR_T * step) & np.isfinite(lacking.sum(axis=1))
     lacking[~sound] = 0.0
     return here, lacking, z[:q]
+
+
+def on_their_side(
+    slopes: Slopes,
+    instants: Array,
+    p: Array,
+    chosen: Numbers,
+    peaks: tuple[Array, Array, Array],
+    found: Array,
+    near: float,
+) -> Array:
+    """The times (q,) at which derivatives of peaks (value, t, xi) are those of their side of a jump.
+
+    A peak that is at a jump is so ``near`` to it that rounding tells on which side its time is: what is ``found`` (q,) there may
+    be of the other one. It is as large as the peak a little before or after.
+    """
+    value, t, xi = peaks
+    times: Array = t.copy()
+    off = np.abs(found - value)
+    left = np.flatnonzero(off > _ASIDE * np.abs(value))
+    for reach in _REACHES:
+        if not left.size:
+            break
+        beside = np.clip(t[left] + reach * near * np.array([[-1.0], [1.0]]), instants[0], instants[-1]).ravel()
+        twice = np.concatenate([left, left])
+        z = slopes.iterated(instants, p, beside)
+        there = slopes.at(beside, z, p, chosen[twice], xi[twice], value[twice])
+        gaps = np.abs(there.value - value[twice]).reshape(2, -1)
+        side = np.argmin(np.where(np.isnan(gaps), np.inf, gaps), axis=0)
+        here = np.arange(left.size)
+        nearer = gaps[side, here] < _NEARER * off[left]
+        times[left[nearer]] = beside.reshape(2, -1)[side, here][nearer]
+        left = left[~nearer]
+    return np.asarray(times)
 
 
 def _along(

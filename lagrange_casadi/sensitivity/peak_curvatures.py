@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .curvatures import Bends, Curvatures, unit_ways
 from .ends import implicit_bends
 from .peaks import PeakKind, PeakSlopes
@@ -46,7 +46,7 @@ def peak_bends(
     sound = np.isfinite(own.slopes).all(axis=1) & np.isfinite(value)
     if not sound.any() or not p.size:
         return found
-    value, t, xi, moved = (array[sound] for array in (value, t, xi, own.moved))
+    value, t, xi, moved = (array[sound] for array in (value, own.t, xi, own.moved))
     chosen, kinds = chosen[sound], own.kinds[sound]
     first, last = instants[0], instants[-1]
     step = (last - first) / max(instants.size - 1, 1)

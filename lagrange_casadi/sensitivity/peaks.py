@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..summits.panels import SIDE, SPACING
 from ..summits.sharpness import Kind, Watch
-from .nearby import at_peaks
+from .nearby import at_peaks, on_their_side
 from .points import SAME_PLACE
 from .slopes import Numbers, Slopes
 
@@ -47,13 +47,14 @@ class PeakSlopes:
     """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,).
 
     ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch, ``switch`` (q,) is the number of that
-    switch, or -1.
+    switch, or -1. ``t`` (q,) are the times at which they were taken: on the peaks' side of a jump.
     """
 
     slopes: Array
     kinds: npt.NDArray[np.int8]
     moved: Array
     switch: Numbers
+    t: Array
 
 
 def peak_slopes(
@@ -74,16 +75,20 @@ def peak_slopes(
     sound = np.isfinite(value) & np.isfinite(t)
     if not sound.all():
         found, kinds = np.full((t.size, p.size), np.nan), np.full(t.size, _UNTOLD, np.int8)
-        moved, switch = np.zeros((t.size, p.size)), np.full(t.size, -1, np.intc)
+        moved, switch, times = np.zeros((t.size, p.size)), np.full(t.size, -1, np.intc), t.copy()
         inner = peak_slopes(slopes, instants, p, chosen[sound], (value[sound], t[sound], xi[sound]), ends, nothing[sound])
         found[sound], kinds[sound], moved[sound], switch[sound] = inner.slopes, inner.kinds, inner.moved, inner.switch
-        return PeakSlopes(found, kinds, moved, switch)
+        times[sound] = inner.t
+        return PeakSlopes(found, kinds, moved, switch, times)
     first, last = instants[0], instants[-1]
     step = (last - first) / max(instants.size - 1, 1)
     near = _near(step, instants)
     at_first, at_last = t - first <= near, last - t <= near
     going = at_first | at_last
     here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step, going | nothing)
+    times = on_their_side(slopes, instants, p, chosen, peaks, here.value, near)
+    if (times != t).any():
+        here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, times, xi), step, going | nothing)
     steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
     kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(np.int8)
     kinds[going] = _END
@@ -93,7 +98,7 @@ def peak_slopes(
         moved[steep], switch[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
         kinds[steep] = np.where(np.isnan(moved[steep]).any(axis=1), _UNTOLD, _SWITCH)
         going |= steep
-    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds, moved, switch)
+    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds, moved, switch, times)
 
 
 def _near(step: float, instants: Array) -> float:
@@ -106,8 +111,7 @@ def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tup
     the number of the switch, -1 where a motion's knot or nothing does."""
     switches, first = slopes.points.switches, len(slopes.points.quantities)
     times, at, back = np.unique(t, return_index=True, return_inverse=True)
-    laws = slopes.graph.scene.laws
-    knots = np.array([knot for name in slopes.graph.driven for knot in laws[name].knots])
+    knots = np.array([knot for knots in slopes.graph.laws.knots for knot in knots])
     found, which = np.full((times.size, p.size), np.nan), np.full(times.size, -1, np.intc)
     if switches:
         many = len(switches)

@@ -17,15 +17,14 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.mechanism import Mechanism
-from ..declare.motion import jerk_function
+from ..base.quantities import Output
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
 from ..equations.checks import Column
+from ..equations.model_data import ModelData
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
-from ..quantities import Output
 from ..summits.sharpness import Kind, Sharpness, Watch
-from ..system.symbolic import Graphs, symbolic
-from ..tables import table_of
 from .along import Along, Place
 
 SAME_PLACE = 1e-9
@@ -55,14 +54,17 @@ class PointFunction(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps."""
-        sharp = [k for k, watch in enumerate(sharpness.watches) if watch.kind in _SWITCHES]
-        inner = _at_drives(graph, quantities, sharpness.watched, sharp)
+    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness | None = None) -> PointFunction:
+        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps.
+
+        Without a ``sharpness`` there is nothing of the latter.
+        """
+        watches = () if sharpness is None else sharpness.watches
+        sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
+        inner = _at_drives(graph, quantities, None if sharpness is None else sharpness.watched, sharp)
         given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
         t, p = (given[name] for name in ("t", "p"))
-        laws = graph.scene.laws
-        jerk = jerk_function({joint: laws[joint] for joint in graph.driven}, graph.scene.mechanism.symbols)
+        jerk = graph.laws.jerk()
         lead = None
         if graph.motion.is_a("SXFunction"):
             given["drives"] = ca.SX(0, 1)
@@ -77,7 +79,7 @@ class PointFunction(Graphs):
         names = ["t", "drives", "z", "p", "xi", "value", "moving", "chosen"]
         every = [given[name] for name in names]
         made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
-        return cls(tuple(quantities), tuple(sharpness.watches[k] for k in sharp), made, lead, inner)
+        return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, lead, inner)
 
 
 def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
@@ -89,12 +91,11 @@ def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sh
     )
     chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
     out = instant(*inputs)
-    mechanism = graph.scene.mechanism
     columns: dict[Column, Any] = {output: out[k] for output, k in graph.outputs.items()}
-    rows, weights = _rows(mechanism, columns, quantities, xi, value, moving, chosen)
+    rows, weights = _rows(graph.data, p, columns, quantities, xi, value, moving, chosen)
     rows += ca.vertsplit(differentiable(watched)(*inputs)[list(sharp)]) if sharp else []
     weights += ca.vertsplit(chosen[len(quantities) :]) if sharp else []
-    rows, weights = ca.substitute([ca.vertcat(*rows), ca.vertcat(*weights)], [mechanism.symbols], [p])
+    rows, weights = ca.vertcat(*rows), ca.vertcat(*weights)
     # The weights choose, and are not differentiated.
     held = ca.SX.sym("held", weights.numel())
     adjoint = ca.jtimes(rows, ca.vertcat(*inputs), held, True)
@@ -128,10 +129,10 @@ def _ends(parts: Sequence[Any]) -> list[int]:
 
 
 def _rows(
-    mechanism: Mechanism, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
+    data: ModelData, p: Any, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
 ) -> tuple[list[Any], list[Any]]:
     """Rows of which a sum is the quantity that is meant, and their weights in it."""
-    table = table_of(mechanism.space)
+    table = table_of(data.space)
     rows: list[Any] = []
     weights: list[Any] = []
     links: dict[str, Along] = {}
@@ -146,7 +147,7 @@ def _rows(
         if quantity.group != "section":
             add([columns[part] for part in quantity.components(table) if part in columns], chosen[k])
             continue
-        link = links.setdefault(quantity.part, Along(mechanism, mechanism.links[quantity.part], columns))
+        link = links.setdefault(quantity.part, Along(data, quantity.part, columns, p))
         names, left = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
         here = {id(place): [link.force(name, place) for name in names] for place in marks}

@@ -7,21 +7,21 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.mechanism import Mechanism
-from ..quantities import Output
-from ..tables import table_of
+from ..base.quantities import Output
+from ..base.tables import table_of
+from ..equations.model_data import ModelData
 from .along import Along, Place
 
 
-def section_slopes(mechanism: Mechanism, link: str, columns: Sequence[Output], by: Sequence[int]) -> Any:
+def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]) -> Any:
     """``sections(columns, slopes, xi, p) -> changes``: those of all section forces of a link, (parameters, forces), at a ratio.
 
     ``columns`` are what goes into them, at an instant; ``slopes`` (parameters, columns) how that changes. At a station a force is
     that on its tip's side. A size changes as what goes along it does.
     """
-    table, p = table_of(mechanism.space), mechanism.symbols
+    table, p = table_of(data.space), ca.SX.sym("p", len(data.parameters))
     values, slopes, xi = ca.SX.sym("columns", len(columns)), ca.SX.sym("slopes", len(by), len(columns)), ca.SX.sym("xi")
-    along = Along(mechanism, mechanism.links[link], dict(zip(columns, ca.vertsplit(values), strict=True)))
+    along = Along(data, link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
     own = {force: along.force(force, Place(xi)) for force in table.forces if table.parts("section", force) == (force,)}
     seeds = ca.SX(p.numel(), len(by))
     for k, j in enumerate(by):
@@ -36,6 +36,5 @@ def section_slopes(mechanism: Mechanism, link: str, columns: Sequence[Output], b
             rows.append(changes[force])
         else:
             rows.append(sum(own[part] * changes[part] for part in parts) / ca.if_else(size > 0.0, size, 1.0))
-    given = [values, slopes, xi, ca.SX.sym("p", p.numel())]
-    rows = ca.substitute([ca.vertcat(*rows).T], [p], [given[3]]) if p.numel() else [ca.vertcat(*rows).T]
-    return ca.Function("at_once", given, [ca.densify(rows[0])], ["columns", "slopes", "xi", "p"], ["changes"], {"cse": True})
+    given, names = [values, slopes, xi, p], ["columns", "slopes", "xi", "p"]
+    return ca.Function("at_once", given, [ca.densify(ca.vertcat(*rows).T)], names, ["changes"], {"cse": True})

@@ -9,17 +9,17 @@ import casadi as ca
 import numpy as np
 
 from .. import codegen
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.room import require
+from ..base.symbolic import symbolic
 from ..codegen.stages import plain
-from ..declare.density import Array
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.laws import made_of
 from ..instants.rung import Rung
 from ..instants.solution import Solution
-from ..quantities import Output
-from ..system.room import require
-from ..system.symbolic import symbolic
 from .batches import at_points
 from .following import iterated
 from .sections import section_slopes
@@ -40,7 +40,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
     rows = [o for o in solution.outputs if (o in series or o.along) and o in graph.outputs]
     sections = len(solution.table.forces) * len(solution.links_with_sections)
     require("the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size))
-    numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
+    numbers = [list(graph.data.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
     for output, column in zip(rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
         found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
@@ -83,7 +83,7 @@ def _along(
     """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
-    function = section_slopes(graph.scene.mechanism, link, columns, by)
+    function = section_slopes(graph.data, link, columns, by)
     made = compiled(rung, lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))))
     library, xi, forces = None if made is None else made[1], solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))

@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import codegen
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..codegen.stages import plain
-from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
-from ..quantities import Output
 from ..summits.sharpness import Sharpness
 from .following import iterated
 from .points import PointFunction
@@ -81,16 +81,28 @@ class Slopes:
         }
         given = {name: np.ascontiguousarray(array, float) for name, array in given.items()}
         if self.library is not None:
-            given["chosen"] = np.ascontiguousarray(chosen, np.intc)
-            self.library.evaluate(given, {"found": found.value, "rate": found.rate, "slopes": found.slopes})
-            return found
-        ones = np.zeros((self.points.function.size1_in("chosen"), n))
-        ones[chosen, np.arange(n)] = 1.0
-        rows = (given[name][None] for name in ("xi", "value", "moving"))
-        columns = self.points.function(t[None], given["drives"].T, given["z"].T, p, *rows, ones)
-        for array, column in zip(found, columns, strict=True):
-            array[:] = column.full().T if array.ndim > 1 else column.full().ravel()
+            numbers = {"chosen": np.ascontiguousarray(chosen, np.intc)}
+            self.library.evaluate(given | numbers, {"found": found.value, "rate": found.rate, "slopes": found.slopes})
+        else:
+            _interpreted(self.points, given, chosen, found, np.arange(n))
+        # A sum over all quantities, of which one has a weight, is no number where any of them is none:
+        # as where friction rests that the chosen one has nothing to do with.
+        broken = ~np.isfinite(np.column_stack(found)).all(axis=1) & (chosen < len(self.points.quantities))
+        for k in np.unique(chosen[broken]):
+            here = np.flatnonzero(broken & (chosen == k))
+            _interpreted(self._alone(int(k)), given, np.zeros(here.size, np.intc), found, here)
         return found
+
+    def _alone(self, number: int) -> PointFunction:
+        """The function of one quantity alone, which nothing else has a part in."""
+        if number not in self._single:
+            self._single[number] = PointFunction.of(self.graph, self.points.quantities[number : number + 1])
+        return self._single[number]
+
+    @cached_property
+    def _single(self) -> dict[int, PointFunction]:
+        """Those that were asked for, by number."""
+        return {}
 
     def _drives(self, t: Array, p: Array) -> Array:
         """What motions by samples give at times, (n, drives)."""
@@ -99,3 +111,19 @@ class Slopes:
     def iterated(self, t: Array, p: Array, places: Array) -> Array:
         """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed."""
         return iterated(self.graph, self.following, t, p, places)
+
+
+def _interpreted(
+    points: PointFunction,
+    given: Mapping[str, Array],
+    chosen: Numbers,
+    found: AtPoints,
+    here: npt.NDArray[np.intp],
+) -> None:
+    """Put into ``found`` what is ``chosen`` at the points ``here``, by CasADi's virtual machine."""
+    ones = np.zeros((points.function.size1_in("chosen"), here.size))
+    ones[chosen, np.arange(here.size)] = 1.0
+    rows = (given[name][None, here] for name in ("xi", "value", "moving"))
+    columns = points.function(given["t"][None, here], given["drives"][here].T, given["z"][here].T, given["p"], *rows, ones)
+    for array, column in zip(found, columns, strict=True):
+        array[here] = column.full().T if array.ndim > 1 else column.full().ravel()

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .peaks import PeakSlopes, peak_slopes
 from .slopes import Numbers, Slopes
 

@@ -10,8 +10,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..base.seal import Seen, kind_of, verify
 from ..errors import StoreError
-from ..system.seal import Seen, kind_of, verify
 from .untrusted import told_as
 
 SCHEMA = "lagrange-casadi"

@@ -11,7 +11,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -21,8 +21,12 @@ import h5py
 import numpy as np
 
 from ..arguments import public
-from ..declare.density import Array
-from ..declare.description import Description, check_places, motions_of, shape_of
+from ..base.arrays import Array
+from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
+from ..base.quantities import Output
+from ..base.seal import kind_of, seal
+from ..base.tables import CF, SPACE
+from ..declare.description import check_places, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
@@ -32,14 +36,11 @@ from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..judge.certificate import LOOSE, blur, certify
-from ..quantities import Output
-from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
-from ..system.seal import kind_of, seal
-from ..tables import ANGLE, CF, LENGTH, SPACE
+from .numbers import check_numbers, drive_axis, numbers
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of
-from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
+from .untrusted import check_links, parsed, shown
 
 SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
@@ -78,7 +79,7 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     the file cannot be written.
     """
     if "\0" in figures or not figures.isascii():
-        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {shown(figures)}")
+        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}")
     target = Path(path)
     check_target(target)
     _require_room(solution, target)
@@ -181,7 +182,7 @@ def _check_certificate(solution: Solution) -> Iterator[str]:
 def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
     place, quantity, name = _place(output), output.meant(solution.table), output
     dataset = file[place]
-    _check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
+    check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
     gap, finite = _read_through(dataset, solution, name)
     if solution.determined(name):
         if not finite:
@@ -351,7 +352,7 @@ def _read(file: h5py.File) -> Solution:
     check_links(file)
     description = parsed(file.attrs["mechanism"], shape_of, "mechanism")
     check_places(description)
-    t, xi = (_numbers(file[axis]) for axis in _AXES)
+    t, xi = (numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
     outputs: dict[Output, Array] = {}
@@ -363,7 +364,7 @@ def _read(file: h5py.File) -> Solution:
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
             if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
-                outputs[output] = _numbers(item, t.shape)
+                outputs[output] = numbers(item, t.shape)
 
     file.visititems(visit)
     words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
@@ -371,17 +372,17 @@ def _read(file: h5py.File) -> Solution:
     left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
     told, reasons = (parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because"))
     elastic = Elasticity(tuple(map(Output.of, told)), tuple(reasons))
-    certificate = {name: _numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
+    certificate = {name: numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
     case = shown(file.attrs["case"])
     ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
-    over = _drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
+    over = drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
     solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over, elastic)
     for link in solution.links_with_sections:
         law = solution.section(link).law
         whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
-    return replace(solution, sensitivities=slopes_of(file, solution, _numbers), held=_held(file, solution))
+    return replace(solution, sensitivities=slopes_of(file, solution, numbers), held=_held(file, solution))
 
 
 def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
@@ -390,25 +391,6 @@ def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
     for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
         if Output("effort", name) not in solution.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
-        least, largest = (_numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS)
+        least, largest = (numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS)
         found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
     return found
-
-
-def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
-    """The coordinate by which instants were asked for. Raises ``ValueError`` for that of a joint which is not driven."""
-    values, joint, unit = _numbers(dataset, shape), shown(dataset.attrs["joint"]), shown(dataset.attrs["units"])
-    kind = motions_of(description).get(joint)
-    if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
-        raise ValueError(f"the instants are over '{joint}' in {unit}, which is no drive's coordinate")
-    return DriveAxis(joint, unit, values)
-
-
-def _numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
-    _check_numbers(dataset, shape)
-    return np.asarray(dataset[()], np.float64)
-
-
-def _check_numbers(dataset: Any, shape: Sequence[int] | None) -> None:
-    check_dataset(dataset, shape)
-    check_chunks(dataset)

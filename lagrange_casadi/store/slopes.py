@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 import h5py
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.wanted_slopes import SENSITIVITY
 from ..instants.derivatives import Derivatives, derivatives
 from ..instants.solution import Solution
-from ..quantities import Output
 from .scales import Scales
 
 

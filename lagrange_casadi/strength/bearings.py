@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 
 from ..arguments import NotNegative, Numeric, Positive, public
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.quantities import Output
 from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..instants.statistics import counted
-from ..quantities import Output
 from .safety import Safety, Verdict
 
 

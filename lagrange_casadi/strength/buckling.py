@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Numeric, Positive, public
+from ..base.arrays import Array
 from ..beams.beam import SLIGHT
-from ..declare.density import Array
 from .member import Member
 
 _HALVINGS = 80

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import NotNegative, public
+from ..base.arrays import Array
 from ..beams.material import Material
-from ..declare.density import Array
 from ..errors import DeclarationError, shown
 from .fatigue import Place, sought
 from .stress import Stress

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arguments import Numeric, public
+from ..base.arrays import Array
 from ..beams.beam import Notch
 from ..beams.material import Material
-from ..declare.density import Array
 from ..errors import UnknownNameError
 from ..instants.section_law import Side
 from .rainflow import rainflow

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Array
 from ..beams.beam import Beam
 from ..beams.properties import Properties
 from ..beams.shape import between
 from ..beams.told import beam_told
-from ..declare.density import Array
 from ..declare.description import in_space
 from ..equations.bars import unaimed
 from ..errors import DeclarationError, check_kind

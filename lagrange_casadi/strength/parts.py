@@ -46,6 +46,13 @@ def _parts(solution: Solution) -> tuple[list[str], list[str]]:
     return links, [name for name, joint in joints.items() if "fitted" in joint]
 
 
+def part_safety(solution: Solution, part: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
+    """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and :func:`.joint_safety`."""
+    if part in solution.description["joints"]:
+        return joint_safety(solution, part)
+    return safety(solution, part, criterion=criterion, yielding=yielding)
+
+
 def fitted_in(solution: Solution) -> tuple[str, ...]:
     """The joints that have pins or bearings whose reactions are told."""
     fitted = (name for name, joint in solution.description["joints"].items() if "fitted" in joint)

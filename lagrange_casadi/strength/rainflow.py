@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import public
-from ..declare.density import Array
+from ..base.arrays import Array
 from ..errors import DeclarationError
 
 

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..arguments import Share, public
+from ..base.arrays import Array
 from ..beams.beam import Notch
-from ..declare.density import Array
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
 from ..summits.polynomials import interpolation

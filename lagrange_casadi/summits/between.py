@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from .sharpness import Kind, Watch
 
 Flags = npt.NDArray[np.bool_]

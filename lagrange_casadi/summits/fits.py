@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 SEVEN = 7
 """Values through which a polynomial is laid."""

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from . import fits
 from .between import beyond, passed
 from .sharpness import Watch

@@ -7,7 +7,7 @@ import functools
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..declare.density import Array
+from ..base.arrays import Array
 
 
 @functools.cache

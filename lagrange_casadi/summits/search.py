@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..declare.density import Array
+from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
 from .panels import SIDE, SPACING, CurveSource, Panel, Samples, Summit, sides
@@ -110,12 +110,12 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
     that are as large but for rounding the first is told, for else rounding would choose their sign. A curve that is no number at an
     instant, as friction at rest leaves it, is not sought in the steps beside it; a quantity that is none at all has no peak.
     """
-    lacks = np.isnan(samples.values)
+    given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
     search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
-    found = search.found(t, samples)
+    found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
     return Peaks(found.value + none, found.t + none, found.xi + none, found.told)
@@ -170,13 +170,13 @@ class _Search:
         return int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))
 
     def found(self, t: Array, samples: Samples) -> Peaks:
-        """The peaks; of those at instants, only now the first is sought."""
+        """The peaks; of those at instants, only now the first is sought, among those at which there is a number."""
         for q in np.flatnonzero(np.isfinite(self.best)):
             rows, least = np.flatnonzero(self.quantity == q), self.best[q] - self.rounding[q]
-            sizes = np.abs(samples.values[rows])
+            sizes = np.nan_to_num(np.abs(samples.values[rows]), nan=-1.0, posinf=np.inf)
             i = int(np.argmax((sizes >= least).any(axis=0)))
             row = int(rows[np.argmax(sizes[:, i])])
-            if abs(samples.values[row, i]) >= least and (self.size[q] < least or t[i] < self.t[q] - self.step / 2):
+            if sizes[:, i].max() >= least and (self.size[q] < least or t[i] < self.t[q] - self.step / 2):
                 self.t[q], self.xi[q], self.sign[q] = t[i], samples.places[row, i], math.copysign(1.0, samples.values[row, i])
         told = (self.told & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, told)

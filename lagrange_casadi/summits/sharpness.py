@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
-from ..declare.density import Array
+from ..base.arrays import Array
+from ..base.symbolic import symbolic
+from ..base.tables import LARGEST
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
-from ..system.symbolic import symbolic
-from ..tables import LARGEST
 
 
 class Kind(enum.IntEnum):
@@ -88,7 +88,7 @@ class Sharpness:
         if followable(graph.laws.smooth):
             found.look(graph.laws.smooth, [inputs[0], inputs[-1]])
         rows = ca.densify(ca.vertcat(ca.SX(0, 1), *(row for row, _ in found.kept.values())))
-        knots = sorted({t for name in graph.driven for t in graph.scene.laws[name].knots})
+        knots = sorted({t for knots in graph.laws.knots for t in knots})
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(knots))
 

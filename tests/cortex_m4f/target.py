@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from lagrange_casadi.case import load_case
-from lagrange_casadi.export import export
+from lagrange_casadi.exports import export
 
 HERE = Path(__file__).parent
 COMPILER, NM, SIZE, EMULATOR = "arm-none-eabi-gcc", "arm-none-eabi-nm", "arm-none-eabi-size", "qemu-system-arm"

@@ -65,7 +65,8 @@ typedef enum {
   PRESS_AT_REST = 19 /* a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction */
 } press_status;
 
-/* Numbers that may change without generating anything again. */
+/* Numbers that may change without generating anything again.
+   Corners of motions, constraints and lifts were looked for with the defaults alone. */
 typedef struct {
   press_real r; /* parameter r [m]; in (-inf, inf); default 0.1 */
   press_real l; /* parameter l [m]; in (-inf, inf); default 0.2 */

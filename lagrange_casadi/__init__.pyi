@@ -1,0 +1,80 @@
+"""The public names, for type checkers and for :mod:`lazy_loader`, which imports each when it is first asked for."""
+
+from . import actuators, animation, beams, bearings, density, elements, errors, figures, motion, peaks, strength
+from .base.symbolic import symbolic
+from .case import Case, load_case
+from .declare.curves import Curve, curve, table
+from .declare.mechanism import Mechanism
+from .declare.scene import Scene
+from .declare.shaking import shaking
+from .declare.spatial import SpatialMechanism
+from .elastic.vibration import vibration
+from .equations.derive import derive
+from .equations.lagrange import LagrangeSystem
+from .errors import LagrangeCasadiError
+from .exports import export
+from .instants.holding import holding
+from .instants.solution import Peak, Solution
+from .store.runs import check, load, save
+from .studies.designs.prepared import Prepared, prepare
+from .studies.evaluate import evaluate
+from .studies.optimise import Front, Optimum, optimise
+from .studies.peaks import refine
+from .studies.sensitivities import Sensitivities, sensitivities
+from .studies.sizing import size
+from .studies.sweep import Sweep, best, read_designs, sweep
+from .studies.tolerances import tolerances
+from .studies.tool import tool_deflection
+from .version import __version__
+
+__all__ = [
+    "Case",
+    "Curve",
+    "Front",
+    "LagrangeCasadiError",
+    "LagrangeSystem",
+    "Mechanism",
+    "Optimum",
+    "Peak",
+    "Prepared",
+    "Scene",
+    "Sensitivities",
+    "Solution",
+    "SpatialMechanism",
+    "Sweep",
+    "__version__",
+    "actuators",
+    "animation",
+    "beams",
+    "bearings",
+    "best",
+    "check",
+    "curve",
+    "density",
+    "derive",
+    "elements",
+    "errors",
+    "evaluate",
+    "export",
+    "figures",
+    "holding",
+    "load",
+    "load_case",
+    "motion",
+    "optimise",
+    "peaks",
+    "prepare",
+    "read_designs",
+    "refine",
+    "save",
+    "sensitivities",
+    "shaking",
+    "size",
+    "strength",
+    "sweep",
+    "symbolic",
+    "table",
+    "tolerances",
+    "tool_deflection",
+    "vibration",
+]

@@ -1,0 +1,9 @@
+"""Kinds of arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+"""Numbers in double precision."""

@@ -1,0 +1,165 @@
+"""Every output by its name; :mod:`.base.tables` has its axes, unit, sign and meaning.
+
+An output is a :class:`Output` wherever it is worked with. Its full name is a text, ``group:part:member`` (``section:rod:bending``,
+``reaction:guide:fy``, ``effort:O``), which users write and read; the same name with slashes is its place in the file. Nothing else
+in the package takes a name apart.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ..errors import check_kind
+from .tables import PLANE, SPACE, Quantity, Table, table_of
+
+FORCES = PLANE.forces
+"""The section forces of planar mechanisms."""
+
+
+def law_members(space: bool) -> tuple[str, ...]:
+    """The coefficients of a link's section law."""
+    return table_of(space).law
+
+
+def station_members(space: bool) -> tuple[str, ...]:
+    """What is told of a station of a link."""
+    return table_of(space).station
+
+
+def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
+    """The components of a force, and of its moment where it has one."""
+    forces, moments = (("fx", "fy", "fz"), ("mx", "my", "mz")) if space else (("fx", "fy"), ("mz",))
+    return (*forces, *moments) if moment else forces
+
+
+def own_members(*, moment: bool = True) -> tuple[str, ...]:
+    """The components of a reaction in space on the joint's own axes."""
+    return ("fu", "fv", "fw", "mu", "mv", "mw") if moment else ("fu", "fv", "fw")
+
+
+AVERAGED = ("effort", "friction", "output")
+"""Groups whose outputs have means over time beside their peaks."""
+
+_LIKE = {"m": "rad", "m/s": "rad/s", "m/s^2": "rad/s^2", "N m": "N"}
+
+
+def compared(units: Sequence[str]) -> list[int]:
+    """Of each unit the number of those among which a size is large or small: lengths beside angles, moments beside forces.
+
+    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles tell.
+    """
+    kinds = [_LIKE.get(unit, unit) for unit in units]
+    numbers = {kind: k for k, kind in enumerate(dict.fromkeys(kinds))}
+    return [numbers[kind] for kind in kinds]
+
+
+_LAWS = {*PLANE.law, *SPACE.law}
+_SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))")
+_ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
+_COORDINATE = ".coordinate"
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """What units of outputs depend on, by name.
+
+    ``coordinates`` and ``frictions`` are kinds, "angle" or "slide", of coordinates and of those along which joints rub; ``outputs``
+    are the units of the user's outputs.
+    """
+
+    coordinates: Mapping[str, str]
+    frictions: Mapping[str, str]
+    outputs: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Output:
+    """One output of a mechanism: what it is of its ``part``.
+
+    ``group`` and ``member`` are those of its :class:`Quantity`. The certificate is of no ``part``. ``station`` names what acts on a
+    link at a station, or along it; what acts along it has members for each ``power`` of the place.
+    """
+
+    group: str
+    part: str
+    member: str = ""
+    station: str = ""
+    power: int | None = None
+
+    @classmethod
+    def of(cls, name: str | Output) -> Output:
+        """The output that a full name says. Raises ``KeyError`` for a text that is none."""
+        if isinstance(name, Output):
+            return name
+        check_kind("output", name, "a full name, as 'effort:O'", str)
+        group, _, text = name.partition(":")
+        part, *rest = text.split(":")
+        if group in ("motion", "effort"):
+            for member, ending in (("", _COORDINATE), *_ENDINGS.items()) if group == "motion" else ():
+                if text.endswith(ending):
+                    return cls(group, text.removesuffix(ending), member)
+            return cls(group, text)
+        if group == "section" and len(rest) == 2:
+            station, member = rest
+            if station == "law" and member in _LAWS:
+                return cls("law", part, member)
+            if found := _SPREAD.fullmatch(member):
+                direction, power, end = found.groups()
+                return cls("spread", part, end or direction, station, None if end else int(power))
+            return cls("station", part, member, station)
+        if group == "holding":
+            part, _, member = text.rpartition(":")
+            return cls(group, part, member)
+        if group == "certificate" and not rest:
+            return cls(group, "", part)
+        if len(rest) > 1:
+            raise KeyError(name)
+        return cls(group, part, "".join(rest))
+
+    def __str__(self) -> str:
+        """The full name."""
+        if self.group == "motion":
+            plain = _COORDINATE if self.part.endswith(tuple(_ENDINGS.values())) else ""
+            return f"motion:{self.part}{_ENDINGS.get(self.member, plain)}"
+        if self.along:
+            power = "" if self.power is None else self.power
+            return f"section:{self.part}:{self.station or 'law'}:{self.member}{power}"
+        return ":".join(word for word in (self.group, self.part, self.member) if word)
+
+    @property
+    def quantity(self) -> Quantity:
+        """Its row of the table of planar mechanisms, or where these have none of spatial ones: axes and unit are the same in both.
+
+        What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
+        """
+        return (PLANE if (self.group, self.member) in PLANE else SPACE).row(self.group, self.member)
+
+    def meant(self, table: Table) -> Quantity:
+        """Its row of a table. Raises ``KeyError`` where there is none."""
+        return table.row(self.group, self.member)
+
+    def components(self, table: Table) -> tuple[Output, ...]:
+        """Of what it is the size: the outputs of a resultant, else itself."""
+        members = table.parts(self.group, self.member)
+        return (self,) if members == (self.member,) else tuple(Output(self.group, self.part, member) for member in members)
+
+    @property
+    def along(self) -> bool:
+        """Whether it goes into the section forces of a link."""
+        return self.group in ("law", "station", "spread")
+
+    def unit(self, kinds: Kinds) -> str:
+        """The unit in a mechanism of such kinds."""
+        if self.group == "output":
+            return kinds.outputs[self.part]
+        if self.group == "friction":
+            return self.quantity.unit_for(kinds.frictions[self.part])
+        found = kinds.coordinates.get(self.part) if self.group in ("motion", "effort") else None
+        return self.quantity.unit_for(found or "angle")
+
+
+def quotient(unit: str, by: str) -> str:
+    """The unit of a derivative: ``N m/m``, and ``N/(kg/m)`` of what is itself one."""
+    return unit if by == "1" else f"{unit}/{by}" if by.isalnum() else f"{unit}/({by})"

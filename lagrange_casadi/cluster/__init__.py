@@ -1,0 +1,1 @@
+"""Dask's workers, for sweeps and for searches."""

@@ -1,0 +1,203 @@
+"""What goes with the source: build files, a self-test with golden vectors, an example, and what to read first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..base.tables import Table
+from ..portable.contract import CORNERS, REST, Contract, Member
+from ..portable.golden import RATIOS
+from ..portable.program import literal
+from ..portable.sections import comparisons, in_words
+from ..portable.slopes import in_readme, selftest_function, selftest_numbers
+from ..portable.source import Source
+from ..portable.text import markdown, quoted, template
+from .fatigue import counting
+from .matlab import matlab
+
+_ROWS = 12
+"""That the example prints."""
+
+
+def companions(source: Source) -> dict[str, str]:
+    """The other files of the folder, by name."""
+    c = source.contract
+    words = source.words
+    effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
+    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
+    link = c.links[0] if c.links else None
+    rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
+    null = ", 0" if c.settings else ""
+    mid = _example_section(c) if link else ""
+    (start, stop), count = source.program.graph.data.span, source.program.graph.data.count
+    steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
+    number = literal(c.precision)
+    return (
+        {
+            "CMakeLists.txt": template("CMakeLists.txt", **words),
+            f"{c.prefix}Config.cmake.in": template("Config.cmake.in", **words),
+            "example.c": template(
+                "example.c",
+                **words,
+                null=null,
+                rest=rest,
+                start=number(start),
+                step=number((stop - start) / (_ROWS * steps)),
+                skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
+                count=_ROWS * steps,
+                coordinate=drive.name,
+                coordinate_unit=quoted(drive.unit),
+                output=effort.name,
+                output_unit=quoted(effort.unit),
+                declared=f"  {c.prefix}_forces forces;\n" if link else "",
+                section=mid,
+                heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
+            ),
+            "selftest.c": _selftest(source, words),
+            "README.md": template(
+                "README.md",
+                **words | {"name": markdown(c.name)},
+                story=source.story,
+                inputs=_table(c.inputs),
+                outputs=_table(c.outputs),
+                parameters=_settings(c),
+                links=", ".join(f"`{k.constant}`" for k in c.links) or "none",
+                mapped=_mapped(c) + (in_readme(c, source.slopes) if source.slopes else ""),
+            ),
+        }
+        | matlab(source, drive, effort)
+        | counting(source)
+    )
+
+
+def _example_section(c: Contract) -> str:
+    link = c.links[0]
+    half = literal(c.precision)(0.5)
+    return (
+        f"    status = {c.prefix}_section(&model, &outputs, {link.constant}, {half}, &forces);\n"
+        f"    if (status != {c.prefix.upper()}_OK) return failed(status);\n"
+        f'    printf("   %13.6g", (double) forces.bending);\n'
+    )
+
+
+def _table(members: tuple[Member, ...]) -> str:
+    return "\n".join(
+        f"| `{m.name}` | {markdown(m.unit)} | {m.meaning} | {'; '.join(x for x in (m.sign, m.range) if x)} |" for m in members
+    )
+
+
+def _settings(c: Contract) -> str:
+    if not c.settings:
+        return "There are none: every number of the scene is fixed.\n"
+    rows = "\n".join(f"| `{m.name}` | {markdown(m.unit)} | {m.range} |" for m in c.settings)
+    return f"`{c.prefix}_defaults` holds the defaults. {CORNERS}\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
+
+
+def _mapped(c: Contract) -> str:
+    if not c.mapped:
+        return ""
+    rows = "\n".join(f"| {markdown(name)} | `{called}` |" for name, called in c.mapped.items())
+    return f"\nSome names cannot stand in C as they are:\n\n| in the scene | here |\n| --- | --- |\n{rows}\n"
+
+
+def _selftest(source: Source, words: dict[str, str]) -> str:
+    g, c = source.golden, source.contract
+    coordinates = {m.source: k for k, m in enumerate(c.inputs)}
+    times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
+    wide = literal("double")
+
+    def row(values: Iterable[float]) -> str:
+        return ", ".join(wide(float(x)) for x in values)
+
+    def rows(table: Iterable[Iterable[float]]) -> str:
+        return ",\n".join(f"  {{{row(values)}}}" for values in table)
+
+    return template(
+        "selftest.c",
+        **words,
+        instants=len(g.times),
+        n_inputs=len(c.inputs),
+        n_outputs=len(c.outputs),
+        n_links=len(c.links),
+        n_ratios=len(RATIOS),
+        steps=g.steps,
+        times=rows(times),
+        inputs=rows(g.inputs),
+        inputs_off=row(g.inputs_off),
+        outputs=rows(g.outputs),
+        outputs_off=row(g.outputs_off),
+        forces=(_forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "")
+        + (selftest_numbers(source.slopes, row) if source.slopes else ""),
+        given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
+        taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
+        taken_outputs="\n".join(
+            f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
+            for k, m in enumerate(c.outputs)
+        ),
+        sections=(_sections(c) if c.links else "") + (selftest_function(c, source.slopes) if source.slopes else ""),
+        check_sections=("  check_sections(&model, &outputs, k);\n" if c.links else "")
+        + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
+        first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
+        first_output=c.outputs[0].name,
+        null=", 0" if c.settings else "",
+        time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
+        no_rest=", 0" if c.rests else "",
+        bad_parameter=_bad_parameter(c),
+        bad_ratio=_bad_ratio(c),
+    )
+
+
+def _rest(t: float) -> float:
+    return float(t - float(np.float32(t)))
+
+
+def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
+    k = coordinates[m.source]
+    rest = coordinates.get(f"{REST}{m.source}")
+    value, given = f"(double) inputs.{m.name}", f"inputs_at[k][{k}]"
+    if rest is not None:
+        value, given = f"{value} + (double) inputs.{c.inputs[rest].name}", f"{given} + inputs_at[k][{rest}]"
+    return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
+
+
+def _forces(table: Table, rows: str, off: str) -> str:
+    words, many = in_words(table), len(table.forces)
+    return (
+        f"\n/* {words[0].upper()}{words[1:]}, of each link, at each ratio. */\n"
+        f"static const double forces_at[INSTANTS][LINKS*RATIOS*{many}] = {{\n{rows}\n}};\n"
+        f"static const double forces_off[LINKS*{many}] = {{{off}}};\n"
+        f"static const double ratios[RATIOS] = {{{', '.join(map(str, RATIOS))}}};\n"
+    )
+
+
+def _sections(c: Contract) -> str:
+    links = ",\n".join(f"  {link.constant}" for link in c.links)
+    words = {"p": c.prefix, "P": c.prefix.upper(), "links": links, "many": len(c.table.forces)}
+    return template("selftest_sections.c", **words, comparisons=comparisons(c.table))
+
+
+def _bad_parameter(c: Contract) -> str:
+    if not c.settings:
+        return ""
+    p, P = c.prefix, c.prefix.upper()
+    return (
+        f"  {{\n    {p}_parameters parameters = {p}_defaults;\n    parameters.{c.settings[0].name} = ({p}_real) NAN;\n"
+        f"    expect({p}_prepare(&model, &parameters), {P}_BAD_PARAMETER);\n"
+        f"    expect({p}_evaluate(&model, &inputs, &outputs), {P}_NOT_PREPARED);\n  }}\n"
+    )
+
+
+def _bad_ratio(c: Contract) -> str:
+    if not c.links:
+        return ""
+    p, P, link = c.prefix, c.prefix.upper(), c.links[0].constant
+    call = f"{p}_section(&model, &outputs"
+    return (
+        f"  {{\n    {p}_forces forces;\n"
+        f"    expect({call}, {link}, ({p}_real) 1.5, &forces), {P}_BAD_RATIO);\n"
+        f"    expect({call}, {link}, ({p}_real) NAN, &forces), {P}_BAD_RATIO);\n"
+        f"    expect({call}, ({p}_link) {len(c.links)}, ({p}_real) 0.5, &forces), {P}_NO_LINK);\n"
+        f'    if (forces.axial == forces.axial) complain("forces are left as they were where there is no link");\n  }}\n'
+    )

@@ -1,0 +1,177 @@
+"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources and a page to read."""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ..base.arrays import Array
+from ..base.cache import working_folder
+from ..codegen import find_compiler
+from ..codegen.compiler import Compiler, broken, compiled, complaint
+from ..errors import CompilerError, LagrangeCasadiError, StoreError
+from ..portable.contract import REST
+from ..portable.header import header
+from ..portable.program import literal
+from ..portable.source import Source
+from ..portable.text import indented, template
+from .fmu_description import Description, page
+
+_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+def check_tools() -> None:
+    """Raise :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C compiler is."""
+    _fmpy()
+    _compiler()
+
+
+def fmu(source: Source, p: Array) -> bytes:
+    """The archive ``<prefix>.fmu`` of a program whose parameters start with ``p``.
+
+    The same program gives the same bytes, as far as the compiler does. Raises :class:`CompilerError` for what it refuses, and
+    :class:`StoreError` for what FMPy finds wrong.
+    """
+    fmpy, prefix = _fmpy(), source.contract.prefix
+    description = Description(source, p, (f"{prefix}.c", f"{prefix}_fmi2.c"))
+    headers = Path(fmpy.__file__).parent / "c-code"
+    sources = {file: (headers / file).read_text() for file in _HEADERS}
+    sources |= {f"{prefix}.h": header(source), f"{prefix}.c": source.code, f"{prefix}_fmi2.c": wrapper(description)}
+    library = f"{prefix}{fmpy.sharedLibraryExtension}"
+    files = {f"sources/{file}": text.encode() for file, text in sources.items()}
+    files["modelDescription.xml"] = description.xml.encode()
+    files["documentation/index.html"] = page(description).encode()
+    files[f"binaries/{fmpy.platform}/{library}"] = _built(sources, description.sources, library, _compiler())
+    archive = _archive(files)
+    findings = _findings(archive)
+    if findings:
+        raise StoreError(f"FMPy finds {prefix}.fmu wrong: {' '.join(findings[0].split())}")
+    return archive
+
+
+def wrapper(description: Description) -> str:
+    """The C that makes a unit of the exported functions."""
+    source, c, inputs = description.source, description.contract, description.inputs
+    wide = literal("double")
+    carried = ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
+    carried += ["model.closed = state->model.closed;"] if source.program.newton is not None else []
+    values = [(m.path, m.default) for m in c.settings] + [(m.path, description.start[m.source]) for m in inputs]
+    return template(
+        "fmu.c",
+        **source.words,
+        guid=description.guid,
+        parameters=len(c.settings),
+        values=len(values),
+        outputs=len(c.outputs),
+        timed=int(c.timed),
+        start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values),
+        turning=",\n".join(f"  {int(m.wrapped)} /* {m.path} */" for m in c.outputs),
+        start_time=wide(source.program.graph.data.span[0]),
+        limits=_limits(description),
+        given=f"  {c.prefix}_parameters parameters;\n" if c.settings else "",
+        set="".join(f"  parameters.{m.name} = ({c.prefix}_real) state->values[{k}];\n" for k, m in enumerate(c.settings)),
+        prepared="&model, &parameters" if c.settings else "&model",
+        carried="".join(f"  if (state->begun) {line}\n" for line in carried),
+        give=indented(_given(description)),
+        take="\n".join(f"  found[{k}] = (double) outputs->{m.name};" for k, m in enumerate(c.outputs)),
+        functions=template("fmu_functions.c", check=_CHECK if c.settings else ""),
+    )
+
+
+_CHECK = """\
+    if (vr[i] < PARAMETERS) {
+      if (refused(unit, vr[i], value[i])) return fmi2Error;
+      state->prepared = 0;
+    }
+"""
+
+
+def _limits(description: Description) -> str:
+    """The limits of parameters, and what tells of one that is beyond."""
+    c, wide = description.contract, literal("double")
+    if not c.settings:
+        return ""
+    rows = ",\n".join(f'  {{"{m.path}", {wide(m.low)}, {wide(m.high)}}}' for m in c.settings)
+    return template("fmu_limits.c", **description.source.words, rows=rows)
+
+
+def _given(description: Description) -> Iterable[str]:
+    """Statements that make inputs of a state; in single precision a number's rest is that of the double."""
+    c = description.contract
+    places = {m.source: f"state->values[{k}]" for k, m in enumerate(description.inputs, len(c.settings))} | {"time": "state->time"}
+    for m in c.inputs:
+        if m.source in places:
+            yield f"inputs->{m.name} = ({c.prefix}_real) {places[m.source]};"
+        else:
+            whole = m.source.removeprefix(REST)
+            yield f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double) inputs->{c.input_of(whole)});"
+
+
+def _fmpy() -> Any:
+    try:
+        import fmpy
+        import fmpy.validation
+    except ImportError:
+        raise LagrangeCasadiError("an FMU needs FMPy; install it with: pip install 'lagrange_casadi[fmu]'") from None
+    return fmpy
+
+
+def _compiler() -> Compiler:
+    found = find_compiler()
+    if found is None:
+        raise CompilerError("an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC")
+    return found
+
+
+def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compiler: Compiler) -> bytes:
+    """The library, built where no path gets into it."""
+    flags = compiler.flags("".join(sources.values()))
+    with working_folder() as work:
+        try:
+            for file, text in sources.items():
+                (work / file).write_text(text, encoding="utf-8")
+            command = [*compiler.command, *flags, *units, "-o", library, "-lm"]
+            run = compiled(command, work)
+            if run.returncode == 0:
+                _check_loads(work / library, compiler)
+                return (work / library).read_bytes()
+        except OSError as error:
+            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
+    raise CompilerError(complaint(compiler, run))
+
+
+def _check_loads(library: Path, compiler: Compiler) -> None:
+    """Raise :class:`CompilerError` unless the library loads here and says that it is a unit of FMI 2.0."""
+    try:
+        version = ctypes.CDLL(str(library)).fmi2GetVersion
+        version.restype = ctypes.c_char_p
+        told = version()
+    except (OSError, AttributeError) as error:
+        raise broken(compiler, error) from None
+    if told != b"2.0":
+        raise broken(compiler, ValueError(f"fmi2GetVersion says {told!r}"))
+
+
+def _archive(files: Mapping[str, bytes]) -> bytes:
+    """A zip without a clock, in order."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.compress_type, entry.create_system = zipfile.ZIP_DEFLATED, 3
+            entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+            archive.writestr(entry, files[name])
+    return out.getvalue()
+
+
+def _findings(archive: bytes) -> list[str]:
+    """What FMPy has to say against an archive."""
+    with working_folder() as work:
+        path = work / "unit.fmu"
+        path.write_bytes(archive)
+        return list(_fmpy().validation.validate_fmu(str(path)))

@@ -1,0 +1,141 @@
+"""A scene as a folder of C that stands alone."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..arguments import Outputs, public
+from ..base.manifest import Manifest
+from ..base.publish import check_writable
+from ..base.vocabulary import Precision
+from ..declare.expressions import check_line
+from ..declare.scene import Scene
+from ..errors import DeclarationError, PathError
+from ..instants.rung import Rung, Steps
+from ..portable.contract import Contract
+from ..portable.data import LARGEST
+from ..portable.header import header
+from ..portable.source import Source
+from ..portable.sourced import sourced
+from ..portable.wasm import check_zig
+from ..portable.wasm import wasm as for_pages
+from ..version import __version__
+from .companions import companions
+from .fmu import check_tools
+from .fmu import fmu as archive
+
+MANIFEST = Manifest(
+    "export.json",
+    "lagrange-casadi export",
+    "export into",
+    "an export",
+    "choose another folder, or say force=True, which touches no other file",
+)
+_BUILD = "build"
+"""Where README says to build: no obstacle to exporting once more, nor touched by it."""
+
+
+@public
+def export(
+    scene: Scene,
+    out: str | os.PathLike[str],
+    *,
+    name: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    wanted: Outputs | None = None,
+    precision: Precision = "double",
+    newton: Steps | None = None,
+    table: float | None = None,
+    largest: int | None = None,
+    force: bool = False,
+    fmu: bool = False,
+    wasm: bool = False,
+) -> Contract:
+    """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
+
+    Parameters
+    ----------
+    name
+        What it is called in C; default: the mechanism's name.
+    parameters
+        Values that become the defaults; with ``table`` they are fixed.
+    wanted
+        Output names; default: the scene's.
+    precision, newton, table
+        How it is evaluated there: see :class:`.Rung`.
+    largest
+        Bytes that a table may take; default: 16 MB, in single precision 64 kB.
+    force
+        Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
+        an export's are never touched; those of an earlier one that this one has not are removed, unless they were changed.
+    fmu
+        Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
+    wasm
+        Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and ``README.wasm.md``. Needs ziglang.
+
+    Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
+    folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
+    what :func:`.evaluate` raises.
+    """
+    if not isinstance(scene, Scene):
+        raise DeclarationError(f"export: expected a Scene, got {scene!r}")
+    folder = Path(out)
+    check_line("name", name or scene.mechanism.name)
+    rung = Rung("auto", precision, newton, table)
+    check_writable(folder, folder=True)
+    if fmu:
+        check_tools()
+    if wasm:
+        check_zig("WebAssembly")
+    source = sourced(
+        scene, name or scene.mechanism.name, parameters, wanted, rung, LARGEST[precision] if largest is None else largest
+    )
+    agreed = source.contract
+    texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
+    texts |= companions(source)
+    files = {file: text.encode() for file, text in texts.items()}
+    if wasm:
+        files |= for_pages(source)
+    unit = f"{agreed.prefix}.fmu"
+    told = MANIFEST.known(folder)
+    allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
+    MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
+    if told and f"{agreed.prefix}.h" not in told and not force:
+        raise PathError(f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}")
+    if fmu:
+        files[unit] = archive(source, np.array(list(source.values.values())))
+    with MANIFEST.filling(folder, _told(source), alone=True, **allowed) as draft:
+        for file, content in files.items():
+            (draft / file).write_bytes(content)
+    return agreed
+
+
+def _told(source: Source) -> dict[str, Any]:
+    """What the folder holds, for programs: names, units and places of all members."""
+    agreed = source.contract
+
+    def rows(members: Sequence[Any]) -> list[dict[str, str]]:
+        return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
+
+    return {
+        "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
+        "mechanism": agreed.name,
+        "prefix": agreed.prefix,
+        "precision": agreed.precision,
+        "options": source.rung,
+        "error": {"largest": float(f"{source.golden.worst[0]:.0e}"), "output": source.golden.worst[1]},
+        "fixed": dict(source.fixed),
+        "scene": source.scene,
+        "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
+        "inputs": rows(agreed.inputs),
+        "outputs": rows(agreed.outputs),
+        **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
+        "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
+        "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
+    }

@@ -1,0 +1,116 @@
+"""A mex function for MATLAB and Octave: its source, what builds it, and an example."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from ..portable.contract import Contract, Member
+from ..portable.program import literal
+from ..portable.source import Source
+from ..portable.text import octave, octave_printed, template
+
+_RESTS = """
+   Numbers are doubles here: what single precision would round off a coordinate or a time is kept, without a member of its own."""
+
+_WORDS = frozenset(["catch", "classdef", "elseif", "end", "function", "global", "otherwise", "parfor", "persistent", "spmd", "try"])
+"""Words of MATLAB and Octave that are none of C."""
+
+
+def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
+    """The files by name; the example shows an input and an output."""
+    c = source.contract
+    words = source.words | {"coordinate": coordinate.name, "coordinate_unit": octave(coordinate.unit)}
+    words |= {"output": output.name, "output_unit": octave(output.unit)}
+    words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
+    start, stop = source.program.graph.data.span
+    number = literal("double")
+    return {
+        f"{c.prefix}_mex.c": template(
+            "mex.c",
+            **words,
+            rests=_RESTS if c.rests else "",
+            inputs=_members(c, "inputs", [m for m in c.inputs if not m.rest_of]),
+            outputs=_members(c, "outputs", c.outputs),
+            parameters=_members(c, "parameters", c.settings),
+            links=", ".join(f'"{link.name}"' for link in c.links) or "0",
+            prepare=_prepare(c),
+            time_rest=f", ({c.prefix}_real) (t - (double) ({c.prefix}_real) t)" if c.rests else "",
+            section=_section(c, words) if c.links else _no_section(c),
+            matrices=f"{', '.join(c.table.forces[:-1])} and {c.table.forces[-1]}",
+        ),
+        "build_mex.m": template("build_mex.m", **words),
+        "mex_example.m": template(
+            "mex_example.m", **words, start=number(start), step=number((stop - start) / 12), more="\n".join(_more(c, output))
+        ),
+    }
+
+
+def _field(member: Member) -> str:
+    """How a script reads a member of a struct."""
+    plain = member.name[0].isalpha() and member.name not in _WORDS
+    return f".{member.name}" if plain else f".('{member.name}')"
+
+
+def _members(c: Contract, struct: str, members: Iterable[Member]) -> str:
+    rests = {m.rest_of: m.name for m in c.inputs if m.rest_of} if struct == "inputs" else {}
+
+    def place(name: str) -> str:
+        return f"offsetof({c.prefix}_{struct}, {name})"
+
+    rows = ((m.name, place(m.name), place(rests[m.source]) if m.source in rests else "0") for m in members)
+    return "\n".join(f'  {{"{name}", {at}, {rest}}},' for name, at, rest in rows)
+
+
+def _prepare(c: Contract) -> str:
+    """Statements that give the parameters that were given, and prepare the model."""
+    p = c.prefix
+    check = '  if (given) check_struct(given, "parameters", members_of_parameters, "");\n'
+    if not c.settings:
+        return f"{check}  status = {p}_prepare(model);"
+    return (
+        f"  {p}_parameters parameters = {p}_defaults;\n  int k;\n{check}"
+        "  for (k = 0; given && members_of_parameters[k].name; ++k) {\n"
+        "    const mxArray* value = mxGetField(given, 0, members_of_parameters[k].name);\n"
+        "    if (!value) continue;\n"
+        "    if (!is_numbers(value) || mxGetNumberOfElements(value) != 1) {\n"
+        f'      mexErrMsgIdAndTxt("{p}:type", "parameter \'%s\' must be one real number.",\n'
+        "                        members_of_parameters[k].name);\n"
+        "    }\n"
+        "    put(&parameters, members_of_parameters + k, number(value, 0));\n"
+        "  }\n"
+        f"  status = {p}_prepare(model, &parameters);"
+    )
+
+
+def _section(c: Contract, words: Mapping[str, str]) -> str:
+    forces = c.table.forces
+    return template(
+        "mex_section.c",
+        **words,
+        pointers=", ".join(f"*{force}" for force in forces),
+        added="\n".join(f'  {force} = added(found, "{force}", many, width, mxDOUBLE_CLASS);' for force in forces),
+        filled="\n".join(f"      {force}[j*many + i] = (double) forces.{force};" for force in forces),
+    )
+
+
+def _no_section(c: Contract) -> str:
+    return (
+        "static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios, const mxArray* parameters) {\n"
+        "  (void) given;\n  (void) link;\n  (void) ratios;\n  (void) parameters;\n  (void) names_of_links;\n"
+        f'  mexErrMsgIdAndTxt("{c.prefix}:name", "there is no link with sections.");\n  return 0;\n}}\n'
+    )
+
+
+def _more(c: Contract, output: Member) -> Iterable[str]:
+    """What the example shows of links and parameters."""
+    if c.links:
+        link = c.links[0].name
+        yield f"forces = {c.prefix}_mex('section', outputs, '{link}', linspace(0, 1, 5));"
+        yield f"fprintf('largest bending moment of {link}: %g N m\\n', max(abs(forces.bending(:))));"
+    if c.settings:
+        first = c.settings[0]
+        yield f"parameters = struct('{first.name}', 1.01*{literal('double')(first.default)});"
+        yield f"other = {c.prefix}_mex({c.prefix}_mex('motion', t, parameters), parameters);"
+        unit = octave_printed(output.unit)
+        yield f"fprintf('{output.name} changes by at most %g {unit} where {first.name} is 1 %% larger\\n', ..."
+        yield f"        max(abs(other{_field(output)} - outputs{_field(output)})));"

@@ -1,0 +1,67 @@
+"""The ways in which a mechanism can be assembled, side by side, each with the posture that chooses it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import BinaryIO
+
+from ..declare.scene import Scene
+from ..errors import AssemblyError, PostureError
+from ..instants.solution import Solution
+from ..shapes.pictures import one_at_a_time, save
+from ..studies.evaluate import evaluate
+from .into import draw_into
+
+_MOST, _LARGE = 8, 40
+"""How many ways are drawn, and of how many bodies a mechanism may be: each way is derived."""
+
+
+@one_at_a_time()
+def draw_postures(scene: Scene, file: BinaryIO) -> int:
+    """Draw the ways in which a scene that leaves them open can be assembled at its start, up to eight, as PNG; how many there are.
+
+    Nothing is written where there is none, or where some loop lacks rough values to be iterated from.
+    """
+    from matplotlib.figure import Figure
+
+    found = list(assemblies(scene)) if len(scene.mechanism.moving) <= _LARGE else []
+    if not found:
+        return 0
+    columns = min(len(found), 2)
+    rows = -(-len(found) // columns)
+    figure = Figure(figsize=(5.6 * columns, 4.4 * rows), layout="constrained")
+    panels = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for axes, (posture, solution) in zip(panels, found, strict=False):
+        draw_into(axes, solution)
+        axes.set_title(f"posture={{{posture}}}", fontsize=9)
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    figure.suptitle(f"{scene.mechanism.name} at t = {scene.t[0]:g} s", fontsize=11)
+    save(figure, file, dpi=110)
+    return len(found)
+
+
+def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
+    """Each way to assemble a scene at its start, as the entries of its posture in words, and its motion at that instant."""
+    waiting: list[Mapping[str, float]] = [scene.posture]
+    many = 0
+    while waiting and many < _MOST:
+        posture = waiting.pop(0)
+        try:
+            one = replace(scene, posture=posture, t=(scene.t[0], scene.t[0], 1), wanted=("motion",))
+            solution = evaluate(one, backend="vm", certificate=False)
+        except PostureError as error:
+            if error.ways and not any(name in posture and name not in scene.posture for way in error.ways[0] for name in way):
+                waiting = [dict(posture) | dict(way) for way in error.ways[0]] + waiting
+            continue
+        except AssemblyError:
+            continue
+        many += 1
+        yield ", ".join(_entry(scene, name, value) for name, value in posture.items()), solution
+
+
+def _entry(scene: Scene, name: str, value: float) -> str:
+    joint = scene.mechanism.joints.get(name)
+    return f"'{name}': {value:.6g}" if joint and joint.slides else f"'{name}': '{round(math.degrees(value), 4) + 0.0:.6g} deg'"

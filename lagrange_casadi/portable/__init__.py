@@ -1,0 +1,1 @@
+"""A scene as C that stands alone, and as WebAssembly for pages."""

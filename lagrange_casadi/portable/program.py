@@ -1,0 +1,183 @@
+"""The functions of an exported program: what of a scene graph it evaluates, how much of it, and from what constants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.symbolic import symbolic
+from ..base.vocabulary import Precision
+from ..codegen.emit import hoisted, newton_rule
+from ..codegen.plain import plain
+from ..codegen.stages import controlled
+from ..declare.motion import ends_function
+from ..equations.checks import Check, Column
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..instants.cycle_table import CycleTable
+from ..instants.tabulate import still
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The motion of a joint by samples: cubics between ``knots`` (n + 1): value, rate, acceleration and jerk of each (n, 4)."""
+
+    joint: str
+    knots: Array
+    pieces: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """What is emitted.
+
+    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``order`` says which of
+    the motions, written in scalars and then ``samples``, each drive has. ``cycle`` is a table to be read instead of an instant, and
+    ``still`` are stations that are told beside it, for they do not move.
+    """
+
+    graph: SceneGraph
+    precision: Precision
+    functions: Mapping[str, ca.Function]
+    columns: tuple[Column, ...]
+    sizes: dict[str, int]
+    order: tuple[int, ...]
+    samples: tuple[Samples, ...]
+    newton: int | None
+    cycle: CycleTable | None
+    still: Mapping[Output, float]
+
+    @property
+    def text(self) -> str:
+        """The C of its functions."""
+        return plain(self.functions, self.precision)
+
+    @property
+    def rule(self) -> dict[str, float]:
+        """When iterated loops are done, and lost."""
+        return newton_rule(self.precision, self.newton)
+
+
+@symbolic
+def program(
+    graph: SceneGraph, precision: Precision, newton: int | None, p: Array, read: tuple[SceneGraph, CycleTable] | None
+) -> Program:
+    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``.
+
+    Raises :class:`DeclarationError` for a motion by a spline that does not tell its knots.
+    """
+    evaluated = graph if read is None else read[0]
+    fixed = read is not None
+    stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
+    hidden = {*evaluated.checks("turns").values(), *evaluated.checks("multiplier").values()}
+    kept = [k for k in range(len(evaluated.columns)) if k not in hidden]
+    columns = tuple(evaluated.columns[k] for k in kept) if read is None else graph.columns
+    constants, instant = hoisted(stages.instant, kept)
+    mechanism = graph.scene.mechanism
+    symbols = mechanism.symbols
+    gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
+    sound, positive = _sound(graph, symbols, precision)
+    functions = {
+        "law": stages.law,
+        "count": stages.count,
+        "constants_of": constants,
+        "matter": _matter(graph, symbols, extent_first=gapped),
+        "sound": sound,
+    }
+    if fixed:
+        # They were checked when they were fixed.
+        del functions["sound"]
+        functions = {name: _fixed(function, p) for name, function in functions.items()}
+    ends = ends_function({joint: graph.scene.laws[joint] for joint in graph.driven}, symbols)
+    if ends is not None:
+        functions["beyond"] = _fixed(ends, p) if fixed else ends
+    functions["instant"] = instant
+    if stages.loops is not None:
+        functions["loops"] = stages.loops
+    sizes = {
+        "p": 0 if fixed else symbols.numel(),
+        "constants": constants.size1_out(0),
+        "moment": stages.count.size1_in(0),
+        "counted": stages.count.size1_out(0),
+        "drives": len(graph.driven),
+        "smooth": stages.law.size1_out(1),
+        "loops": stages.instant.size1_in(3),
+        "evaluated": len(kept),
+        "rows": max(1, len(columns)),
+        "matter": functions["matter"].size1_out(0),
+        "gapped": int(gapped),
+        "sound": 0 if fixed else functions["sound"].size1_out(0),
+        "positive": 0 if fixed else positive,
+    }
+    samples = tuple(_samples(graph, joint, p) for joint in graph.laws.with_samples)
+    filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
+    places = {} if read is None else still(graph, tuple(p.tolist()))
+    return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle, places)
+
+
+def _fixed(function: Any, p: Array) -> Any:
+    """A function with numbers for its parameters, which are its last input."""
+    inputs = function.sx_in()
+    return ca.Function(function.name(), [*inputs[:-1], ca.SX(0, 1)], function.call([*inputs[:-1], ca.DM(p)]), {"cse": True})
+
+
+def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
+    """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio.
+
+    With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
+    """
+    found: list[Any] = [graph.data.extent(symbols)] if extent_first else []
+    for name in graph.links:
+        length, density = graph.data.matter(name, symbols)
+        found += [length, *(c for cell in density.cells for c in cell)]
+    return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
+
+
+def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, int]:
+    """``sound(p)``: what parameters change and must not be negative for the parts to be possible; and how many must be positive.
+
+    Those come first.
+    """
+    both = graph.scene.demands(precision).in_order(symbols)
+    positive, others = ([value for value in values if _changes(value)] for values in both)
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
+    return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)
+
+
+def _changes(value: Any) -> bool:
+    return isinstance(value, ca.SX) and not value.is_constant()
+
+
+def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:
+    number = graph.driven.index(joint)
+    knots = np.array(graph.laws.knots[number])
+    if not knots.size:
+        raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which exported C needs")
+    rows = [np.atleast_2d(row.full())[number] for row in graph.motion(ca.DM(knots).T, ca.DM(p))]
+    jerk = np.diff(rows[2]) / np.diff(knots)
+    return Samples(joint, knots, np.stack([*(row[:-1] for row in rows), jerk], axis=1))
+
+
+Format = Callable[[float], str]
+
+
+def literal(precision: Precision) -> Format:
+    """How a number is written in C, so that it is read as the same number again."""
+    single = precision == "single"
+
+    def write(value: float) -> str:
+        number = float(np.float32(value)) if single else float(value)
+        if math.isinf(number):
+            return "-INFINITY" if number < 0 else "INFINITY"
+        text = f"{number:.9g}" if single else f"{number:.17g}"
+        text = text if any(mark in text for mark in ".en") else f"{text}.0"
+        return f"{text}f" if single else text
+
+    return write

@@ -1,0 +1,146 @@
+"""Derivatives of the outputs by parameters in an exported program: their function, their names in C, and what they must be."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..base.quantities import Output, quotient
+from ..declare.wanted_slopes import SENSITIVITY
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..instants.rung import Rung
+from ..sensitivity.series import at_instants
+from ..sensitivity.total import total
+from .contract import Contract, Setting
+from .text import comment, indented, template
+
+FUNCTION = "slopes_of"
+"""What CasADi's function is called in C."""
+
+_ROUNDING, _FAINT = 1e-9, 1e-11
+"""How far a derivative may be off, of its largest over the cycle, and of what is large of its unit: the derivatives by the same
+parameter, and the outputs over it. Of the latter are the terms of a derivative that is nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExportedSlopes:
+    """The derivatives of all outputs of a contract ``by`` some of its parameters.
+
+    ``function`` is :func:`.total`; ``expected`` (instants, outputs, parameters) are what it must give at the instants of the
+    self-test, each within ``off`` (outputs, parameters).
+    """
+
+    by: tuple[Setting, ...]
+    function: Any
+    expected: Array
+    off: Array
+
+
+def exported_slopes(graph: SceneGraph, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array) -> ExportedSlopes:
+    """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among those of the cycle ``t``."""
+    rows = [Output.of(member.source) for member in contract.outputs]
+    numbers = [list(graph.data.parameters).index(name) for name in by]
+    function = total(graph, [graph.outputs[output] for output in rows], numbers)
+    both = at_instants(graph, rows, t, p, numbers, Rung("vm"))
+    found, largest = both[:, :, 1:], np.abs(both).max(axis=0)
+    values, largest = largest[:, :1], largest[:, 1:]
+    off = _ROUNDING * largest
+    over = np.divide(1.0, np.abs(p[numbers]), out=np.zeros(len(numbers)), where=p[numbers] != 0.0)
+    for unit in contract.units:
+        same = [k for k, member in enumerate(contract.outputs) if member.unit == unit]
+        off[same] += _FAINT * (largest[same].max(axis=0) + values[same].max() * over)
+    settings = tuple(setting for setting in contract.settings if setting.source in by)
+    return ExportedSlopes(settings, function, found[np.searchsorted(t, chosen)], off)
+
+
+def check_rung(rung: Rung) -> None:
+    """Raise :class:`.DeclarationError` for a rung by which exported C computes no derivatives."""
+    if rung.precision == "single" or rung.newton is not None or rung.table is not None:
+        raise DeclarationError(
+            f"export: output '{SENSITIVITY}' goes with double precision, loops that are closed, and no table; want the others alone"
+        )
+
+
+def types(c: Contract, slopes: ExportedSlopes) -> str:
+    """The structs, for the header."""
+    p = c.prefix
+    rows = [f"  {p}_real {s.name}; /* {comment(f'by {s.meaning}, for a unit of it [{s.unit}]')} */" for s in slopes.by]
+    units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
+    members = (f"  {p}_changes {m.name}; /* [{comment(unit)}] */" for m, unit in zip(c.outputs, units, strict=True))
+    return (
+        "\n/* How an output changes with parameters. */\n"
+        f"typedef struct {{\n{chr(10).join(rows)}\n}} {p}_changes;\n"
+        "\n/* How the outputs change, each by its own name. */\n"
+        f"typedef struct {{\n{chr(10).join(members)}\n}} {p}_sensitivities;\n"
+    )
+
+
+def declaration(c: Contract) -> str:
+    """The function, for the header."""
+    p = c.prefix
+    head = f"{p}_status {p}_sensitivity("
+    return (
+        "\n/* The outputs at an instant, and their exact derivatives by parameters. The time [s] is that of the instant:\n"
+        "   where the scene's motion depends on parameters, drives change with them as its laws do at that time. */\n"
+        f"{head}{p}_model* model, {p}_real time, const {p}_inputs* inputs,\n"
+        f"{' ' * len(head)}{p}_outputs* outputs, {p}_sensitivities* sensitivities);\n"
+    )
+
+
+def code(c: Contract, slopes: ExportedSlopes, drives: int, loops: bool) -> str:
+    """The function, for the source."""
+    pairs = itertools.product(c.outputs, slopes.by)
+    put = (f"sensitivities->{m.name}.{s.name} = s[{k}];" for k, (m, s) in enumerate(pairs))
+    return template(
+        "sensitivity.c",
+        p=c.prefix,
+        P=c.prefix.upper(),
+        many=len(c.outputs) * len(slopes.by),
+        drives=max(1, drives),
+        put=indented(put),
+        given=indented(f"  {line}" for line in _given(c)),
+        loops="model->loops" if loops else "0",
+    )
+
+
+def _given(c: Contract) -> Iterator[str]:
+    for name, ending in (("d", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
+        for k, drive in enumerate(c.drives):
+            yield f"{name}[{k}] = inputs->{c.input_of(f'motion:{drive}{ending}')};"
+
+
+def selftest_numbers(slopes: ExportedSlopes, row: Any) -> str:
+    """What the self-test expects; ``row`` writes numbers."""
+    rows = ",\n".join(f"  {{{row(x.ravel())}}}" for x in slopes.expected)
+    many = slopes.off.size
+    return (
+        "\n/* How the outputs change with each parameter. */\n"
+        f"static const double slopes_at[INSTANTS][{many}] = {{\n{rows}\n}};\n"
+        f"static const double slopes_off[{many}] = {{{row(slopes.off.ravel())}}};\n"
+    )
+
+
+def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
+    """How the self-test compares them."""
+    pairs = itertools.product(c.outputs, slopes.by)
+    compared = (
+        f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name}, slopes_off[{i}], 0);'
+        for i, (m, s) in enumerate(pairs)
+    )
+    first, by = c.outputs[0].name, slopes.by[0].name
+    return template("selftest_sensitivity.c", p=c.prefix, P=c.prefix.upper(), compared=indented(compared), first=f"{first}.{by}")
+
+
+def in_readme(c: Contract, slopes: ExportedSlopes) -> str:
+    """What the folder's README says of them."""
+    by = ", ".join(f"`{s.name}`" for s in slopes.by)
+    return (
+        f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their exact derivatives by {by}:\n"
+        f"`sensitivities.{c.outputs[0].name}.{slopes.by[0].name}`, in the output's unit over the parameter's.\n"
+    )

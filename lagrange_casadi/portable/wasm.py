@@ -1,0 +1,173 @@
+"""An exported program as WebAssembly, for web pages: the module, a wrapper in JavaScript, its types, and what to read first."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from typing import Any
+
+from ..base.cache import working_folder
+from ..codegen.compiler import Compiler, compiled, complaint
+from ..errors import CompilerError, LagrangeCasadiError
+from .contract import Contract, Member
+from .header import header
+from .sections import about
+from .source import Source
+from .stack import deepest
+from .text import comment, markdown, template
+
+_FLAGS = ("-target", "wasm32-wasi", "-std=c99", "-Oz", "-ffp-contract=off", "-fno-math-errno", "-mexec-model=reactor")
+_STACK = 1 << 16
+"""Bytes beside those that the program states: for the C library's mathematics."""
+
+_CALLS = ("prepare", "motion", "batch", "message")
+
+
+def check_zig(what: str) -> None:
+    """Raise :class:`LagrangeCasadiError` where the package that compiles is missing, which ``what`` needs."""
+    if importlib.util.find_spec("ziglang") is None:
+        raise LagrangeCasadiError(f"{what} needs ziglang; install it with: pip install 'lagrange_casadi[live]'")
+
+
+def module(source: Source, more: Mapping[str, str] | None = None, calls: Sequence[str] = ()) -> bytes:
+    """The module of a program, which imports nothing; ``more`` are other files of C with functions ``calls`` that are seen too.
+
+    The same program gives the same bytes, as far as the compiler does. Raises :class:`LagrangeCasadiError` where ziglang is
+    missing, :class:`CompilerError` for what it refuses.
+    """
+    check_zig("WebAssembly")
+    c = source.contract
+    seen = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
+    linked = [f"-Wl,--export={name}" for name in (*seen, *calls, "__heap_base")]
+    linked += ["-Wl,--strip-all", "-Wl,-z,stack-size=" + str(-(-(deepest(source.code) + _STACK) // 16) * 16)]
+    files = {f"{c.prefix}.h": header(source), f"{c.prefix}.c": source.code, "layout.c": _told(source)} | dict(more or {})
+    compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
+    with working_folder() as work:
+        try:
+            for file, text in files.items():
+                (work / file).write_text(text, encoding="utf-8")
+            code = [file for file in files if file.endswith(".c")]
+            run = compiled([*compiler.command, *_FLAGS, *linked, *code, "-o", "module.wasm"], work)
+            if run.returncode == 0:
+                return (work / "module.wasm").read_bytes()
+        except OSError as error:
+            raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
+    raise CompilerError(complaint(compiler, run))
+
+
+def _told(source: Source) -> str:
+    """C that compiles only where a model takes as many bytes as the wrapper is told."""
+    p = source.contract.prefix
+    return f'#include "{p}.h"\ntypedef char as_told[sizeof({p}_model) == {places(source)["end"]} ? 1 : -1];\n'
+
+
+def engine() -> str:
+    """The JavaScript by which a module is called."""
+    return (resources.files(__package__) / "templates" / "engine.js").read_text()
+
+
+def layout(source: Source) -> dict[str, Any]:
+    """What the wrapper must know of the C's structs: how many numbers each holds, and how many bytes a model takes."""
+    c = source.contract
+    counts = {"parameters": len(c.settings), "inputs": len(c.inputs), "outputs": len(c.outputs)}
+    return {"prefix": c.prefix, "precision": c.precision, "model": places(source)["end"]} | counts | {"forces": len(_forces(c))}
+
+
+def places(source: Source) -> dict[str, int]:
+    """Where in a model its members are [bytes], and at ``end`` how many it takes."""
+    sizes = {"real": 8 if source.contract.precision == "double" else 4, "int": 4, "unsigned": 4}
+    found, at = {}, 0
+    for name, kind, count in source.model:
+        at = -(-at // sizes[kind]) * sizes[kind]
+        found[name] = at
+        at += sizes[kind] * count
+    return found | {"end": -(-at // 8) * 8}
+
+
+def wasm(source: Source) -> dict[str, bytes]:
+    """The files for web pages, by name."""
+    c, content = source.contract, module(source)
+    texts = {
+        f"{c.prefix}.js": template("wasm.js", **_words(source), contract=_contract(source), engine=engine()),
+        f"{c.prefix}.d.ts": _types(source),
+        "README.wasm.md": _page(source, len(content)),
+    }
+    return {f"{c.prefix}.wasm": content} | {file: text.encode() for file, text in texts.items()}
+
+
+def _words(source: Source) -> dict[str, str]:
+    """What stands in a line of a comment."""
+    return source.words | {"name": " ".join(comment(source.contract.name).split())}
+
+
+def _forces(c: Contract) -> tuple[str, ...]:
+    return c.table.forces if c.links else ()
+
+
+def _contract(source: Source) -> str:
+    c = source.contract
+
+    def told(m: Member) -> dict[str, Any]:
+        return {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.comment}
+
+    def end(value: float) -> float | None:
+        return value if math.isfinite(value) else None
+
+    rows = {name: c.table.row("section", name) for name in _forces(c)}
+    content = {
+        "name": c.name,
+        "prefix": c.prefix,
+        "precision": c.precision,
+        "model": places(source)["end"],
+        "parameters": [told(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)} for m in c.settings],
+        "inputs": [told(m) for m in c.inputs],
+        "outputs": [told(m) for m in c.outputs],
+        "links": [link.name for link in c.links],
+        "forces": [{"name": name, "unit": row.unit, "meaning": about(c.table, name)} for name, row in rows.items()],
+    }
+    return json.dumps(content, indent=1)
+
+
+def _types(source: Source) -> str:
+    c = source.contract
+
+    def members(rows: Sequence[tuple[str, str]]) -> str:
+        return "\n".join(f"  /** {comment(told)} */\n  {name}: number;" for name, told in rows)
+
+    return template(
+        "wasm.d.ts",
+        **_words(source),
+        parameters=members([(m.name, m.comment) for m in c.settings]),
+        inputs=members([(m.name, m.comment) for m in c.inputs]),
+        outputs=members([(m.name, m.comment) for m in c.outputs]),
+        forces=members([(name, about(c.table, name)) for name in _forces(c)]),
+        links=" | ".join(json.dumps(link.name) for link in c.links) or "never",
+    )
+
+
+def _page(source: Source, size: int) -> str:
+    c, t = source.contract, source.golden.times
+    setting, link = next(iter(c.settings), None), next(iter(c.links), None)
+    effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
+    first = f"mechanism.evaluate(mechanism.motion({t[0]:.6g}))"
+    followed = (
+        "\n- Iterated loops are followed from the instant before: times must be near each other, and begin where the scene's\n"
+        "  motion does."
+        if source.iterated
+        else ""
+    )
+    return template(
+        "wasm.md",
+        **_words(source) | {"name": markdown(c.name)},
+        size=size,
+        prepare=f"mechanism.prepare({{ {setting.name}: {setting.default:.6g} }});" if setting else "mechanism.prepare();",
+        times=", ".join(f"{time:.6g}" for time in t[:3]),
+        output=effort.name,
+        section=f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n" if link else "",
+        followed=followed,
+        story=source.story,
+    )

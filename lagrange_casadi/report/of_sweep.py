@@ -1,0 +1,155 @@
+"""A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design that is looked at, in motion.
+
+The mechanism is a live page within the page: it evaluates whatever design it is told.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shlex
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.scene import Scene, Wanted
+from ..declare.wanted_slopes import SENSITIVITY
+from ..equations.described import described
+from ..equations.fingerprint import fingerprint, sources
+from ..errors import DeclarationError, shown
+from ..studies.evaluate import evaluate
+from ..studies.sweep.axes import DESIGN
+from ..studies.sweep.best import best
+from ..studies.sweep.columns import STATUS
+from ..studies.sweep.default_figures import usual_pair, varied
+from ..studies.sweep.reading import Sweep
+from . import Live, assembled, live_digest, page, with_motion, write_page
+from .arrays import Arrays
+from .page import SWEEP_SCRIPTS, script
+
+MOST = 300_000
+"""Numbers that a page holds at most: 8 bytes each, 11 in the page."""
+
+_LEAST = 500
+"""Designs that it shows at least, where there are so many."""
+
+_NO_SCENE = "For the mechanism in motion, make the page with the case that was swept."
+
+
+def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene | None = None, command: str = "") -> None:
+    """Write a page that shows a sweep, replacing the file at ``path`` whole or not at all.
+
+    With its ``scene`` the mechanism of each design moves; ``command`` is how a command line begins that evaluates it. Raises
+    :class:`.DeclarationError` for the scene of another sweep, for a sweep without columns to show, and what
+    :func:`.write_report` raises.
+    """
+    if not (scene is None or isinstance(scene, Scene)):
+        raise DeclarationError(f"report: scene: expected a Scene, got {shown(scene)}")
+    write_page(Path(path), lambda: _page(sweep, scene, command))
+
+
+def is_of(sweep: Sweep, scene: Scene) -> bool:
+    """Whether a sweep is of a scene: its parts are those that were swept, and where the same code says so its expressions too."""
+    swept = sweep.identity["mechanism"]
+    values = {name: parameter["value"] for name, parameter in swept["parameters"].items()}
+    if values.keys() != scene.mechanism.parameters.keys() or json.loads(json.dumps(described(scene, values))) != swept:
+        return False
+    told: dict[str, Any] = {}
+    for name, value in sweep.identity["wanted"].items():
+        if name != SENSITIVITY:  # of which the graph knows nothing
+            told[name] = tuple(value) if isinstance(value, list) else value
+    known = fingerprint(scene, Wanted(**told))
+    return known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
+
+
+def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
+    if scene is not None and not is_of(sweep, scene):
+        raise DeclarationError(f"{sweep.path}: the sweep is not of this scene; take the case that was swept, as it was then")
+    names = [name for name, column in sweep.columns.items() if not column.axes and name != STATUS]
+    if not names:
+        raise DeclarationError(f"{sweep.path}: there is nothing to show: it keeps no column with one value for each design")
+    pair = next(iter(usual_pair(sweep, {})), tuple(names[:2]))
+    front = [design.number for design in best(sweep, minimise=pair)] if len(pair) == 2 else []
+    arrays, numbers = Arrays(), _shown(sweep, len(names), front)
+    told: dict[str, Any] = {
+        "case": sweep.case,
+        "parameters": [{"name": name, "title": name, "unit": unit, "sized": False} for name, unit in sweep.parameters.items()],
+        "columns": [{"name": name, "title": name, "unit": sweep.unit(name), "sized": name.startswith("peak:")} for name in names],
+        "varied": varied(sweep),
+        "pair": list(pair),
+        "counts": [
+            [f"without: {sweep.statuses[status][1]}" if status else "with a result", count]
+            for status, count in sweep.counts().items()
+            if count
+        ],
+        "statuses": {str(number): words for number, (_, words) in sweep.statuses.items()},
+        "command": command or f"lagrange-casadi run {shlex.quote(sweep.case)}",
+        "note": _NO_SCENE,
+        "frame": None if scene is None else _frame(sweep, scene, front, command),
+    }
+    values = _values(sweep, [*sweep.parameters, *names, STATUS], numbers)
+    for one in (*told["parameters"], *told["columns"]):
+        one["values"] = arrays.add(values[one["name"]])
+    told["designs"] = {
+        "shown": int(numbers.size),
+        "total": sweep.size,
+        "grid": DESIGN not in sweep.dimensions,
+        "numbers": arrays.add(numbers.astype(float)),
+        "status": arrays.add(values[STATUS].astype(float)),
+    }
+    told |= {"arrays": arrays.places, "numbers": arrays.block()}
+    others = [live_digest()] if scene is not None else []
+    scripts = [script(name) for name in SWEEP_SCRIPTS]
+    return assembled(f"{sweep.case}: a sweep", told, scripts, wasm=scene is not None, others=others)
+
+
+def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
+    """The designs that are shown, by number: all, or evenly spread ones and those of the front."""
+    most = max(_LEAST, MOST // (many + len(sweep.parameters) + 2))
+    found = np.concatenate([numbers for numbers, _ in sweep.blocks([STATUS])])
+    if found.size <= most:
+        return found
+    return np.unique(np.concatenate([found[:: math.ceil(found.size / most)], np.array(front, np.int64)]))
+
+
+def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> dict[str, npt.NDArray[Any]]:
+    """Columns of some designs, by name."""
+    parts: dict[str, list[npt.NDArray[Any]]] = {name: [] for name in names}
+    for numbers, values in sweep.blocks(names):
+        there = np.isin(numbers, wanted)
+        for name in names:
+            parts[name].append(np.asarray(values[name][there], float))
+    return {name: np.concatenate(blocks) for name, blocks in parts.items()}
+
+
+def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
+    """The live page of the mechanism, which begins with a design that has a result."""
+    first = front[0] if front else next((int(n) for numbers, v in sweep.blocks([STATUS]) for n in numbers[v[STATUS] == 0]), None)
+    if first is None:
+        raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
+    asked = sweep.identity["t"]
+    timing = scene.timing()
+    if json.loads(json.dumps(timing.words(scene.mechanism.symbols))) != asked:
+        if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
+            raise DeclarationError(f"{sweep.path}: its instants are not those of the scene: {asked}")
+        timing = scene.timing(over=(asked[3], *asked[:3])) if len(asked) > 3 else scene.timing(t=tuple(asked))
+    wanted = with_motion(_names(sweep.identity["wanted"]))
+    words: dict[str, Any] = {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
+    if any(isinstance(bound, str) for bound in asked[:2]):
+        words = {}
+    solution = evaluate(scene, parameters=sweep.design(first), wanted=wanted, elastic=False, **words)
+    return page(solution, Live(scene, timing, wanted, command))
+
+
+def _bounds(asked: list[Any]) -> tuple[Any, ...]:
+    return tuple(asked[:3])
+
+
+def _names(told: dict[str, Any]) -> list[str]:
+    """The names of outputs that were wanted."""
+    kinds = {"reactions": "reaction", "multipliers": "multiplier", "loads": "load", "sections": "section", "own": "output"}
+    found = [name for name in ("effort", "motion") if told[name]]
+    return found + [f"{kind}:{part}" for group, kind in kinds.items() for part in told[group]]

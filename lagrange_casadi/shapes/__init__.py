@@ -1,0 +1,1 @@
+"""What is drawn of a mechanism, as places and shapes; and what all pictures share."""

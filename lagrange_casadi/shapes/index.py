@@ -1,0 +1,50 @@
+"""A page that shows all figures of a folder, for whoever has a browser and a folder of fifty pictures."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..base.manifest import Manifest
+
+NAME = "index.html"
+MANIFEST = Manifest(
+    "figures.json",
+    "lagrange-casadi figures",
+    "draw into",
+    "an earlier drawing",
+    "move what you want to keep, or choose another folder",
+)
+
+_STYLE = """
+:root { color-scheme: light dark; }
+body { margin: 0 auto; max-width: 1700px; padding: 16px clamp(12px, 2vw, 32px); font: 15px/1.45 system-ui, sans-serif; }
+h1 { font-size: 24px; margin: 0 0 4px; overflow-wrap: anywhere; }
+nav { columns: 16em; margin: 10px 0 18px; font-size: 13.5px; }
+nav a { display: block; overflow-wrap: anywhere; }
+main { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); gap: 16px; align-items: start; }
+figure { margin: 0; background: #fff; color: #222; border: 1px solid #8886; border-radius: 10px; padding: 8px; }
+figure:target { outline: 3px solid #3b82f6; }
+figure img { display: block; width: 100%; height: auto; }
+figcaption { font-size: 13px; overflow-wrap: anywhere; }
+@media print { nav { display: none; } main { grid-template-columns: 1fr 1fr; gap: 8px; } figure { break-inside: avoid; } }
+"""
+
+
+def write_index(title: str, names: Sequence[str], folder: Path) -> None:
+    """Write ``index.html`` beside the pictures of these names, in their order: a list of them, and all of them."""
+    told = [html.escape(name) for name in names]
+    links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name in told)
+    figures = "".join(
+        f'<figure id="{name}"><a href="{name}.png"><img src="{name}.png" alt="{name.replace("_", " ")}" loading="lazy"></a>'
+        f"<figcaption>{name}.png</figcaption></figure>\n"
+        for name in told
+    )
+    text = (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{html.escape(title)}: figures</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
+        f"<h1>{html.escape(title)}</h1>\n<nav>\n{links}</nav>\n<main>\n{figures}</main>\n</body>\n</html>\n"
+    )
+    (folder / NAME).write_text(text, encoding="utf-8")

@@ -1,0 +1,389 @@
+"""Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a result at all.
+
+Instants of a design are evaluated several at once, by SIMD, and reduced in C to what is kept. Between instants peaks are sought by
+evaluating the same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same
+bytes whatever stands beside it.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import codegen
+from ...base.arrays import Array
+from ...base.quantities import Output, compared
+from ...base.room import cores, require
+from ...codegen.stages import Stages
+from ...declare.scene import Scene
+from ...declare.times import Times, Timing
+from ...equations.derive import derive
+from ...equations.scene_graph import SceneGraph
+from ...errors import DeclarationError
+from ...instants.backends import begun, compiled, provenance
+from ...instants.cost import seconds
+from ...instants.determinacy import undetermined
+from ...instants.refusal import Status
+from ...instants.rung import Rung
+from ...instants.solution import Provenance
+from ...sensitivity.curvatures import Curvatures
+from ...sensitivity.peaks import PeakSlopes
+from ...sensitivity.slopes import Slopes
+from ...summits.sharpness import bent, with_watched
+from ..solving import checked_span, outputs_of
+from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
+from .interpreted import columns_of, outcome
+from .reduction import KeptOutputs, stages_of
+from .times import DesignTimes
+from .watch import Watch
+from .witness import failures
+
+_PIECE = 1 << 22
+"""How many instants of designs that have their own are held at once."""
+
+_LOOKS = 32
+"""At about so many more instants is the peak of a quantity sought."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
+
+    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
+    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
+    are whole histories, where they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
+    ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
+    """
+
+    status: npt.NDArray[np.int8]
+    value: Array
+    t: Array
+    xi: Array
+    mean: Array
+    rms: Array
+    series: Array | None
+    over: Array | None = None
+    times: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DesignEngine:
+    """A scene compiled for many designs.
+
+    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
+    gives; ``columns`` those of histories. What equilibrium leaves open for a design is NaN there.
+    """
+
+    scene: Scene
+    rung: Rung
+    times: DesignTimes
+    kept: KeptOutputs
+    graph: SceneGraph
+    stages: Stages
+    library: codegen.DesignsLibrary | None
+    provenance: Provenance
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        wanted: Sequence[str] | None = None,
+        t: Times | None = None,
+        rung: Rung | None = None,
+        *,
+        timing: Timing | None = None,
+    ) -> DesignEngine:
+        """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a ``timing`` in place of ``t``."""
+        rung = rung or Rung()
+        if rung.table is not None:
+            raise DeclarationError("designs are not read from a table: each would need a table of its own")
+        graph = derive(scene, wanted)
+        rung.check(graph)
+        times, values = DesignTimes(scene, timing or scene.timing(t)), scene.mechanism.values()
+        checked_span(scene, times.timing, values)
+        instants, even = times.default
+        p = np.array(list(values.values()))
+        kept = KeptOutputs.of(graph, rung)
+        require("the instants of a design", (kept.reduction.rows, instants.size))
+        watched = with_watched(graph, kept.sharpness)
+        stages = stages_of(watched, rung, even, alike=times.common)
+
+        def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
+            source = codegen.emit_designs(watched, stages, rung.newton, kept.reduction)
+            guess = begun(graph, float(even[0]), p) if times.timing.joint else graph.newton.guess if graph.newton else ()
+            return codegen.load_designs(
+                source, compiler, tuple(shlex.split(rung.flags)), kept.reduction, even.size, np.array(guess, float), rung.precision
+            )
+
+        found = compiled(rung, build)
+        if found is None:
+            return cls(scene, rung, times, kept, graph, stages, None, provenance("vm", "", "", rung))
+        compiler, library = found
+        backend = "lanes" if compiler.language == "c++" else "c"
+        made = provenance(backend, compiler.version, " ".join(library.flags), rung)
+        return cls(scene, rung, times, kept, graph, stages, library, made)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.scene.mechanism.parameters)
+
+    @cached_property
+    def quantities(self) -> tuple[str, ...]:
+        """The names of the quantities that have peaks."""
+        return tuple(map(str, self.kept.quantities))
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Their units."""
+        return self.kept.units
+
+    @cached_property
+    def _unit_numbers(self) -> npt.NDArray[np.intp]:
+        """The number of the unit of each of the quantities."""
+        return np.array(compared(self.units), np.intp)
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the efforts that have means."""
+        return tuple(map(str, self.kept.efforts))
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """The names of quantities, and outputs in histories, that equilibrium or friction at rest may leave open for designs."""
+        doubts = {quantity for _, quantity in self.kept.reduction.doubts}
+        quantities, outputs = tuple(self.kept.quantities[k] for k in sorted(doubts)), [*self.graph.doubtful]
+        if self.graph.checks("rest"):
+            quantities, outputs = self.kept.quantities, [*self.graph.outputs]
+        return tuple(dict.fromkeys(map(str, [*quantities, *outputs])))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the outputs that histories have."""
+        return tuple(map(str, self.outputs))
+
+    @cached_property
+    def outputs(self) -> tuple[Output, ...]:
+        """The outputs that histories have."""
+        return tuple(self.graph.outputs)
+
+    @property
+    def t(self) -> Array:
+        """The instants (t,) [s] of the parameters' defaults; those of all designs, where these have them in common."""
+        return self.times.default[0]
+
+    @property
+    def count(self) -> int:
+        """How many instants a design has."""
+        return self.times.timing.count
+
+    @property
+    def cost(self) -> float:
+        """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
+        return seconds(self.graph, self.count + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+
+    @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+        return 8 * self.kept.reduction.rows * self.count
+
+    def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+        """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
+
+        Values are not checked against the parameters' ranges. ``threads`` share the designs, by default one a core; no byte depends
+        on them. Raises :class:`DeclarationError` for another shape, :class:`SizeError` where the outcome does not fit into memory.
+        """
+        p = np.ascontiguousarray(p, float)
+        if p.ndim != 2 or p.shape[1] != len(self.parameters):
+            raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
+        n, q, e = p.shape[0], len(self.kept.quantities), len(self.efforts)
+        history, own = (n, len(self.graph.columns), self.count), histories and not self.shared
+        require("the peaks of the designs", (n, 3 * q + 2 * e))
+        if histories:
+            require("the histories of the designs", history)
+        columns, times = np.empty(history) if histories else None, np.empty((n, self.count)) if own else None
+        peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
+        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns, times=times)
+        # What all have in common is not cut: it is made once.
+        many = len(self.graph.columns) if self.watch.columns else 1
+        size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
+        for start in range(0, n, max(size, 1)):
+            self._fill(p[start : start + size], _rows(found, slice(start, start + size)), threads or cores())
+        if self.times.law is not None:
+            found = replace(found, over=self.times.at_drive(found.t, p))
+        if columns is None:
+            return found
+        for row, out in zip(p, columns, strict=True):
+            self._withhold(out, row)
+        with np.errstate(invalid="ignore"):
+            series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
+        return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
+
+    def histories(self, p: Array) -> Outcome:
+        """Columns of designs (n, columns, t) at the instants that are asked for: no peaks are sought, so none can be untold."""
+        (_, asked), nothing = self.times.of(p), np.empty((len(p), 0))
+        series = np.empty((len(p), len(self.graph.columns), self.count))
+        found = Outcome(np.zeros(len(p), np.int8), nothing, nothing, nothing, nothing, nothing, series)
+        self._series(p, asked, found.status, series, 1)
+        self._refuse_motions(p, asked, found, series)
+        return found
+
+    def told(self, out: Array, p: Array) -> dict[Output, Array]:
+        """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
+        self._withhold(out, p)
+        series = outputs_of(self.graph, out)
+        return {output: series[output] for output in self.outputs}
+
+    def _withhold(self, out: Array, p: Array) -> None:
+        """Take from the columns (columns, t) of a design what equilibrium leaves open."""
+        with np.errstate(invalid="ignore"):
+            out[[self.graph.outputs[output] for output in undetermined(self.graph, out, p, self.rung)]] = np.nan
+
+    @property
+    def plain(self) -> bool:
+        """Whether :meth:`told` changes nothing of the columns."""
+        return not self.graph.loop_angles and not self.graph.doubtful
+
+    @cached_property
+    def watch(self) -> Watch:
+        """What designs must hold to between their instants, if there is anything."""
+        return Watch(self.scene, self.graph)
+
+    @property
+    def shared(self) -> bool:
+        """Whether all designs have the same instants, asked for by times."""
+        return self.times.timing.shared
+
+    def _fill(self, p: Array, found: Outcome, threads: int) -> None:
+        """Evaluate designs: peaks between instants in equal steps of time; histories at the instants that were asked for."""
+        even, asked = self.times.of(p, asked=found.series is not None)
+        if found.times is not None:
+            found.times[:] = asked
+        together = found.series is not None and asked is even
+        self._evaluate(p, even, found if together else replace(found, series=None), threads)
+        self._refuse_motions(p, even, found, found.series if together else None)
+        if found.series is None or together:
+            return
+        others = np.zeros(len(p), np.int8)
+        self._series(p, asked, others, found.series, threads)
+        failed = (found.status == Status.OK) & (others != Status.OK)
+        found.status[failed] = others[failed]
+        for array in (found.value, found.t, found.xi, found.mean, found.rms):
+            array[failed] = np.nan
+        found.series[found.status != Status.OK] = np.nan
+
+    def _evaluate(self, p: Array, t: Array, found: Outcome, threads: int) -> None:
+        if self.library is None:
+            self._interpret(p, t, found)
+            return
+        peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
+        results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
+        self.library.evaluate(t, self.bent(p, t), p, results, threads)
+
+    def _series(self, p: Array, t: Array, status: npt.NDArray[np.int8], series: Array, threads: int) -> None:
+        """The columns of designs at any instants, without peaks."""
+        if self.library is not None:
+            results = {"status": status, **dict.fromkeys(("value", "peak_t", "xi", "mean", "rms")), "history": series}
+            self.library.evaluate(t, np.zeros((1, 0), bool), p, results, threads)
+            return
+        for i, row in enumerate(p):
+            status[i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
+            series[i] = np.nan if table is None else table.out
+
+    def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
+        """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
+        if len(t) == 1 or not self.kept.sharpness.knots:
+            # Of the defaults: a row of what is found must not depend on the designs beside it.
+            t, p = t[:1], np.array(list(self.scene.mechanism.values().values()))[None]
+        known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
+        return np.array(known) if known else np.zeros((1, 0), bool)
+
+    def _refuse_motions(self, p: Array, t: Array, found: Outcome, columns: Array | None) -> None:
+        """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if they are known."""
+        if not self.watch:
+            return
+        if columns is None and self.watch.columns:
+            columns = self._columns(p, t)
+        status = self.watch.statuses(p, t, found.status, columns)
+        some = status != found.status
+        found.status[some] = status[some]
+        for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
+            if array is not None:
+                array[some] = np.nan
+
+    def _columns(self, p: Array, t: Array) -> Array:
+        """The columns (n, columns, t) of designs at any instants."""
+        columns = np.empty((len(p), len(self.graph.columns), self.count))
+        self._series(p, t, np.zeros(len(p), np.int8), columns, 1)
+        return columns
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
+        return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
+
+    def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
+        """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
+        return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
+
+    @cached_property
+    def curvatures(self) -> Curvatures:
+        """Their second derivatives at points; they are derived and compiled when they are first asked for."""
+        return Curvatures.of(self.slopes, self.rung)
+
+    def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
+        """The second derivatives (q, parameters, parameters) of the peaks of a design, whose gradient is ``own``."""
+        return curvature(self.curvatures, self.times, self._unit_numbers, p, (value, t, xi), own)
+
+    def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
+        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+
+    def mean_slopes(self, p: Array) -> MeanSlopes:
+        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""
+        chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
+        return mean_slopes(self.slopes, self.times, p, chosen)
+
+    def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
+        """The same of designs, (n, 2, e, parameters), the means first; NaN without a result."""
+        slopes = np.full((len(p), 2, len(self.efforts), len(self.parameters)), np.nan)
+        for k in np.flatnonzero(found.status == Status.OK):
+            slopes[k] = np.where(np.isnan(found.mean[k])[:, None], np.nan, self.mean_slopes(p[k]))
+        return slopes
+
+    def slopes_at(self, p: Array, found: Outcome) -> Array:
+        """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""
+        slopes = np.full((*found.value.shape, len(self.parameters)), np.nan)
+        for k in np.flatnonzero(found.status == Status.OK):
+            slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
+        return slopes
+
+    def failures(self, p: Array) -> dict[str, float]:
+        """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return failures(self.scene, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
+
+    def _interpret(self, p: Array, t: Array, found: Outcome) -> None:
+        kept = (found.value, found.t, found.xi, found.mean, found.rms)
+        for i, row in enumerate(p):
+            found.status[i], design = outcome(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
+            for array, values in zip(kept, (*design.peaks, *design.means) if design else [np.nan] * 5, strict=True):
+                array[i] = values
+            if found.series is not None:
+                found.series[i] = design.columns if design else np.nan
+
+
+def _rows(found: Outcome, some: slice) -> Outcome:
+    """Some rows of an outcome, to be filled."""
+    arrays = {entry.name: getattr(found, entry.name) for entry in fields(found)}
+    rows: dict[str, Any] = {name: None if array is None else array[some] for name, array in arrays.items()}
+    return Outcome(**rows)

@@ -1,0 +1,116 @@
+"""How the peaks of a design change with all parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...base.tables import table_of
+from ...instants.signals import section_forces
+from ...instants.sizes import size_of
+from ...instants.statistics import counted, shares
+from ...sensitivity.curvatures import Curvatures
+from ...sensitivity.ends import end_bends, end_slopes
+from ...sensitivity.peak_curvatures import peak_bends
+from ...sensitivity.peaks import PeakSlopes, peak_slopes
+from ...sensitivity.slopes import Numbers, Slopes
+from ...sensitivity.ties import Curve, ties
+from ...summits.search import NOTHING
+from .times import DesignTimes
+
+
+def gradient(
+    slopes: Slopes, times: DesignTimes, units: npt.NDArray[np.intp], p: Array, value: Array, t: Array, xi: Array
+) -> PeakSlopes:
+    """That of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and ratios ``xi``.
+
+    ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with nothing.
+    """
+    instants = times.of(p[None], asked=False)[0][0]
+    chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
+    return peak_slopes(slopes, instants, p, chosen, (value, t, xi), ends, _nothing(units, value))
+
+
+class MeanSlopes(NamedTuple):
+    """The derivatives of means over time, and of roots of mean squares, by all parameters, (e, parameters); NaN of a root of 0."""
+
+    mean: Array
+    rms: Array
+
+
+def mean_slopes(slopes: Slopes, times: DesignTimes, p: Array, chosen: Numbers) -> MeanSlopes:
+    """Those of what is ``chosen`` (e,) of a design ``p`` (parameters,): of sums by trapezia, whose instants may move."""
+    instants = times.of(p[None], asked=False)[0][0]
+    first, last = _ends(slopes, times, instants, p)
+    share = np.linspace(0.0, 1.0, instants.size)[:, None]
+    moved = (1.0 - share) * first + share * last
+    z, nowhere = slopes.iterated(instants, p, instants), np.full(instants.size, np.nan)
+    mean, rms = np.empty((2, chosen.size, p.size))
+    for k, number in enumerate(chosen):
+        found = slopes.at(instants, z, p, np.full(instants.size, number, np.intc), nowhere)
+        counts = counted(found.value)
+        weights, value = shares(instants, counts), np.where(counts, found.value, 0.0)
+        whole = np.where(counts[:, None], found.slopes + found.rate[:, None] * moved, 0.0)
+        mean[k] = weights @ whole
+        with np.errstate(all="ignore"):
+            rms[k] = (weights * value) @ whole / np.sqrt(weights @ value**2)
+    return MeanSlopes(mean, rms)
+
+
+def curvature(
+    curvatures: Curvatures,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    peaks: tuple[Array, Array, Array],
+    own: PeakSlopes,
+) -> Array:
+    """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design, whose gradient is ``own``."""
+    instants = times.of(p[None], asked=False)[0][0]
+    chosen = np.arange(own.kinds.size, dtype=np.intc)
+    ends = end_bends(curvatures.slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p)
+    return peak_bends(curvatures, instants, p, chosen, peaks, own, ends, _nothing(units, peaks[0]))
+
+
+def tied(
+    slopes: Slopes,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    value: Array,
+    own: PeakSlopes,
+    outputs: Sequence[Output],
+    series: Array,
+) -> npt.NDArray[np.bool_]:
+    """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
+    instants, graph = times.of(p[None])[1][0], slopes.graph
+    description, table = graph.data.description(graph.data.values(p)), table_of(graph.data.space)
+    rows = {output: k for k, output in enumerate(outputs)}
+    nowhere = np.full(instants.size, np.nan)
+
+    def curves(k: int) -> Sequence[Curve]:
+        quantity = slopes.points.quantities[k]
+        if quantity.group != "section":
+            parts = [series[rows[part]] for part in quantity.components(table) if part in rows]
+            return [(nowhere, parts[0] if len(parts) == 1 else size_of(parts))]
+        force = section_forces(description, quantity.part, rows)[quantity.member]
+        return list(zip(*force.curves(series), strict=True))
+
+    chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
+    return ties(slopes, instants, p, chosen, value, own, ends, _nothing(units, value), curves)
+
+
+def _ends(slopes: Slopes, times: DesignTimes, instants: Array, p: Array) -> Array:
+    return end_slopes(slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p)
+
+
+def _nothing(units: npt.NDArray[np.intp], value: Array) -> npt.NDArray[np.bool_]:
+    """Which peaks are zero but for rounding, beside the largest of their unit."""
+    sizes, largest = np.abs(value), np.zeros(units.size)
+    np.maximum.at(largest, units, np.where(np.isfinite(sizes), sizes, 0.0))
+    return np.asarray(sizes <= NOTHING * largest[units])

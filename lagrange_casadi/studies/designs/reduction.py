@@ -1,0 +1,173 @@
+"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its instants to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ...base.arrays import Array
+from ...base.quantities import AVERAGED, Output, compared
+from ...base.symbolic import symbolic
+from ...base.tables import Table, table_of
+from ...base.vocabulary import Precision
+from ...codegen.designs import Reduction
+from ...codegen.link_curves import Along, matter_of
+from ...codegen.stages import Stages, compensated, plain, turns_many
+from ...declare.density import Density
+from ...declare.mechanism import Mechanism
+from ...declare.parts import LineLoad, Link
+from ...declare.scene import Scene
+from ...equations.dead_centres import NEAR
+from ...equations.gaps import extent
+from ...equations.mobility import stations_of
+from ...equations.scene_graph import SceneGraph
+from ...equations.spreads import spreads_of
+from ...errors import DeclarationError
+from ...instants.laws import made_of
+from ...instants.refusal import Status
+from ...instants.rules import rules
+from ...instants.rung import Rung
+from ...summits.sharpness import Sharpness
+
+
+@symbolic
+def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
+    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them.
+
+    ``alike`` tells that all designs have the instants ``t``.
+    """
+    if rung.precision == "single":
+        return compensated(graph, "single")
+    time, p = graph.laws.smooth.sx_in()
+    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p)):
+        try:
+            return compensated(graph, "double")
+        except DeclarationError:
+            return plain(graph)
+    many = turns_many(graph, t, graph.data.defaults)
+    return compensated(graph, "double") if many else plain(graph)
+
+
+@dataclass(frozen=True, eq=False)
+class KeptOutputs:
+    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``,
+    which are efforts and outputs of the user's own.
+
+    Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
+    ``links`` come last. Which of them equilibrium leaves open is decided for each design. ``reduction`` is the same in numbers of
+    columns, as C takes it.
+    """
+
+    quantities: tuple[Output, ...]
+    units: tuple[str, ...]
+    efforts: tuple[Output, ...]
+    links: tuple[str, ...]
+    reduction: Reduction
+    sharpness: Sharpness
+
+    @classmethod
+    def of(cls, graph: SceneGraph, rung: Rung) -> KeptOutputs:
+        """What is kept of a scene's designs on a rung."""
+        mechanism, at = graph.scene.mechanism, graph.outputs
+        table = table_of(mechanism.space)
+        chosen: dict[Output, tuple[int, ...]] = {}
+        for output, k in at.items():
+            if output.along or output in graph.loop_angles:
+                continue
+            for member in table.reactions if output.group == "reaction" else ():
+                size = Output("reaction", output.part, member)
+                parts = [other for other in size.components(table) if other in at]
+                if parts[:1] == [output] and len(parts) > 1:
+                    chosen[size] = tuple(at[other] for other in parts)
+            chosen[output] = (k,)
+        links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
+        names = [*chosen, *(Output("section", link.name, force) for link in links for force in table.forces)]
+        if not names:
+            raise DeclarationError("designs: nothing is wanted that has a peak")
+        units = tuple(output.unit(graph.data.kinds) for output in names)
+        efforts = tuple(name for name in names if name.group in AVERAGED)
+        along = tuple(_along(mechanism, link, at, table) for link in links)
+        matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
+        columns = {column for columns in chosen.values() for column in columns}
+        rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
+        columns |= {k for row in rows for k in row if k >= 0}
+        sharpness = Sharpness.of(graph, sorted(columns))
+        checks = _checks(graph, rung)
+        doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
+        made = {name: _made_of(graph, name, table) for name in names}
+        doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
+        reduction = Reduction(
+            quantities=tuple(chosen.values()),
+            links=along,
+            units=tuple(compared(units)),
+            efforts=tuple(names.index(name) for name in efforts),
+            checks=tuple(checks),
+            doubts=tuple(doubts),
+            matter=matter,
+            positive=positive,
+            margins=margins,
+            near=NEAR,
+            statuses={status.name: int(status) for status in Status},
+            watches=sharpness.watches,
+            knots=sharpness.knots,
+        )
+        return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
+
+
+def _along(mechanism: Mechanism, link: Link, at: dict[Output, int], table: Table) -> Along:
+    assert isinstance(link.mass, Density)
+    stations, spreads = stations_of(at, link.name), list[tuple[int, ...]]()
+    marks: list[tuple[int, ...] | float] = []
+    for name, powers in spreads_of(at, link.name).items():
+        load = mechanism.loads.get(name)
+        width, end = (at[Output("spread", link.name, member, name)] for member in ("width", "end"))
+        if isinstance(load, LineLoad) and not load.whole:
+            marks += [(end, width), (end,)]
+        directions = (*table.spread, *table.couples) if link.mass.slices else table.spread
+        terms = (at.get(Output("spread", link.name, member, name, power), -1) for member in directions for power in range(powers))
+        spreads.append((width, end, *terms))
+    if spreads:
+        marks += sorted({*link.mass.jumps, *(link.mass.slices.breaks[1:-1] if link.mass.slices else ())})
+    return Along(
+        tuple(at[Output("law", link.name, member)] for member in table.law),
+        tuple(tuple(at[Output("station", link.name, member, station)] for member in table.place_first) for station in stations),
+        link.mass.breaks,
+        max(len(cell) for cell in link.mass.cells),
+        tuple(spreads),
+        tuple(marks),
+        link.mass.slices is not None,
+    )
+
+
+def _made_of(graph: SceneGraph, quantity: Output, table: Table) -> list[Output]:
+    """The outputs that a quantity is made of."""
+    if quantity.group == "section":
+        return made_of(graph.outputs, quantity.part, quantity.member, table)
+    return list(quantity.components(table))
+
+
+def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
+    """The rules of a graph as the emitted C takes them: a row is followed by the column that is the size of its terms."""
+    found: list[tuple[int, str, float]] = []
+    for rule in rules(graph, rung.precision, rung.newton):
+        found.append((rule.column, rule.kind, rule.limit))
+        if rule.kind == "ROW":
+            found.append((rule.beside, "ROWSIZE", 0.0))
+    return found
+
+
+@symbolic
+def _matter(scene: Scene, links: list[Link], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
+    """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
+    mechanism = scene.mechanism
+    positive, others = scene.demands(precision).in_order(mechanism.symbols)
+    positive = [extent(mechanism), *positive]
+    rest: list[Any] = []
+    for link, part in zip(links, along, strict=True):
+        assert isinstance(link.mass, Density)
+        scale = link.length if link.mass.per_length else 1.0
+        rest += matter_of(part, link.length, [[c * scale for c in cell] for cell in link.mass.cells])
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
+    return ca.Function("matter_of", [mechanism.symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)

@@ -1,0 +1,91 @@
+"""The instants of many designs: the same for all, or those that each one's parameters give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...declare.even_points import are_even
+from ...declare.reaching import Reaching
+from ...declare.scene import Scene
+from ...declare.times import Timing, reaching
+
+_LOOKS = 65
+"""At so many times at least is a motion looked at, whether it turns back."""
+
+
+@dataclass(frozen=True, eq=False)
+class DesignTimes:
+    """How the instants of a scene's designs are asked for."""
+
+    scene: Scene
+    timing: Timing
+
+    @cached_property
+    def law(self) -> Reaching | None:
+        """The law of the drive that they go by, if any."""
+        joint = self.timing.joint
+        return reaching(self.scene.mechanism, self.scene.laws[joint]) if joint else None
+
+    @property
+    def common(self) -> bool:
+        """Whether all designs have the same."""
+        if self.law is None or not self.timing.fixed:
+            return self.timing.fixed
+        return not self.law.varies and (self.law.steady or not isinstance(self.timing.around, str))
+
+    @cached_property
+    def default(self) -> tuple[Array, Array]:
+        """Those of the parameters' defaults as they are asked for, and as many in equal steps of time, each (t,).
+
+        Raises :class:`.DeclarationError` where there are none.
+        """
+        asked = self.scene.instants(self.timing, self.scene.mechanism.values()).t
+        return asked, asked if are_even(asked) else np.linspace(asked[0], asked[-1], asked.size)
+
+    def of(self, p: Array, *, asked: bool = True) -> tuple[Array, Array]:
+        """The instants of designs ``p`` (n, parameters), (n, t), one row where all have the same; NaN of those that have none.
+
+        First as many as are asked for in equal steps of time, between which peaks are sought; then those that are asked for
+        themselves, the same array where they are no others, or are not wanted (``asked``).
+        """
+        if self.common:
+            instants, even = (row[None] for row in self.default)
+            return even, instants if asked and self.default[0] is not self.default[1] else even
+        start, stop, around = self.timing.bounds(p)
+        if self.law is None:
+            even = self._steps(*self._possible(start, stop))
+            return even, even
+        way = self.law.way(start, stop, p, around, looks=max(_LOOKS, self.timing.count))
+        even = self._steps(*self._possible(way.first, way.last))
+        if self.law.steady or not asked:
+            return even, even
+        found = self.law.times(way, self._steps(start, stop), p)
+        found[np.isnan(even[:, 0])] = np.nan
+        return even, found
+
+    def _possible(self, start: Array, stop: Array) -> tuple[Array, Array]:
+        """The first and last instants; NaN where they are none, or samples of a motion end before."""
+        with np.errstate(invalid="ignore"):
+            there = np.isfinite(stop - start) & ((stop == start) if self.timing.count == 1 else (stop > start))
+            for law in self.scene.laws.values():
+                there &= (start >= law.span[0]) & (stop <= law.span[1])
+        return np.where(there, start, np.nan), np.where(there, stop, np.nan)
+
+    def at_drive(self, t: Array, p: Array) -> Array:
+        """The drive's coordinates at times (n, q) of designs (n, parameters)."""
+        assert self.law is not None
+        if not self.law.steady:
+            return self.law.at(t, p)[0]
+        d, rate, _ = self.law.at(np.zeros((len(p), 1)), p)
+        return d + rate * t
+
+    def _steps(self, start: Array, stop: Array) -> Array:
+        numbers = np.arange(self.timing.count)
+        with np.errstate(invalid="ignore"):
+            found = numbers * ((stop - start) / max(numbers.size - 1, 1))[:, None] + start[:, None]
+        found[:, -1] = stop
+        return found

@@ -1,0 +1,77 @@
+"""Designs whose motion cannot be though all their instants have numbers: by what is beyond a curve's ends, and by kinks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.arrays import Array
+from ...declare.corners import Corners
+from ...declare.ends import BEYOND
+from ...declare.motion import ends_function
+from ...declare.scene import Scene
+from ...equations.scene_graph import SceneGraph
+from ...instants.refusal import Status
+
+_OK = int(Status.OK)
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """What motions and constraints of a scene must hold to for the values that parameters have in each design."""
+
+    scene: Scene
+    graph: SceneGraph
+
+    @cached_property
+    def _ends(self) -> Any | None:
+        return ends_function(self.scene.laws, self.scene.mechanism.symbols)
+
+    @cached_property
+    def _corners(self) -> Corners:
+        return Corners.of(self.scene)
+
+    @cached_property
+    def _seen(self) -> dict[str, list[int]]:
+        """The columns of what each constraint sees."""
+        return {name: self.graph.seen_columns(name) for name in self._corners.constraints}
+
+    def __bool__(self) -> bool:
+        """Whether there is anything to watch."""
+        return self._ends is not None or bool(self._corners.laws) or self.columns
+
+    @property
+    def columns(self) -> bool:
+        """Whether the columns of every design are needed, for what constraints see."""
+        return bool(self._corners.constraints)
+
+    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None) -> npt.NDArray[np.int8]:
+        """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1 or n, t).
+
+        ``columns`` (n, columns, t) are theirs at these instants, if :attr:`columns` are needed.
+        """
+        found: npt.NDArray[np.int8] = status.copy()
+        if self._ends is not None:
+            for k, row in enumerate(p):
+                share = float(self._ends(t[min(k, len(t) - 1)][None], row).full().max(initial=0.0))
+                if not share <= BEYOND["double"] and np.isfinite(row).all():
+                    found[k] = Status.BEYOND_ENDS
+        ok = found == _OK
+        if not ok.any():
+            return found
+        # All of them, as a rule, which are not copied then.
+        some: Any = slice(None) if ok.all() else ok
+        p, broken = p[some], np.zeros(np.count_nonzero(ok), bool)
+        if self._corners.laws:
+            start, stop = ((t[some, k] if len(t) > 1 else np.full(broken.size, t[0, k])) for k in (0, -1))
+            broken |= self._corners.broken_laws(start, stop, p)
+        if columns is not None and self.columns:
+            rows = columns[some]
+            broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)
+        if broken.any():
+            found[np.flatnonzero(ok)[broken]] = Status.CORNER
+        return found

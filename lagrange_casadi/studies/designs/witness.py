@@ -1,0 +1,84 @@
+"""One design of many, looked at as closely as a scene is: all its outputs at some instants, and their certificate.
+
+What a sweep keeps of its designs cannot balance a body. So a few of them are evaluated once more, with every output and by CasADi's
+virtual machine. The certificate judges that, and what the compiled code has made of the same design must agree with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...arithmetic.compensated import ROUNDING
+from ...base.arrays import Array
+from ...base.quantities import Output
+from ...declare.scene import Scene
+from ...equations.derive import derive
+from ...equations.described import described
+from ...instants.backends import run
+from ...instants.phases import phases
+from ...instants.rung import Rung
+from ...instants.solution import Solution
+from ...judge.accuracy import estimate
+from ...judge.certificate import LOOSE, tolerance
+from ..solving import outputs_of, residuals_of
+
+INSTANTS = 5
+_WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
+"""What is to be wanted for what ``all`` does not have."""
+
+_ROUNDINGS = 10.0
+_AGREES = 1e-6
+"""Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
+
+
+def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
+    """What fails of a design, and by how much: residuals of its certificate, and under ``agreement`` how far ``out`` is off.
+
+    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``.
+    """
+    strength = (f"{_WANTED[output.group]}:{output.part}" for output in outputs if output.group in _WANTED)
+    graph = derive(scene, ["all", *strength])
+    some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
+    followed = t if graph.newton is not None else t[some]
+    table, provenance = run(graph, followed, p, Rung("vm", newton=rung.newton))
+    rows = table.out[:, some] if graph.newton is not None else table.out
+    values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
+    within = phases(graph, rows, t[some], p)
+    found_there, description = outputs_of(graph, rows), described(graph.scene, values)
+    whole = Solution(scene.mechanism.name, t[some], np.zeros(0), found_there, description, provenance)
+    limit = tolerance(whole) if rung.newton is None else LOOSE
+    found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
+    failed = {name: gap for name, gap in found.items() if not gap <= limit}
+    allowed = max(_AGREES, limit) if rung.precision == "double" else LOOSE
+    compiled = dict(zip(outputs, out[:, some], strict=True))
+    agreement = _agreement(whole, compiled, {})
+    if not agreement <= allowed:
+        # What is nothing but rounding has no size of its own to be compared with.
+        looked_at = table
+        if graph.newton is not None:
+            looked_at = replace(table, out=rows, status=table.status[some], iterated=table.iterated[:, some])
+        rounded = estimate(graph, looked_at, whole, p)
+        coarser = ROUNDING[rung.precision] / ROUNDING["double"]
+        agreement = _agreement(whole, compiled, {output: _ROUNDINGS * coarser * error for output, error in rounded.items()})
+    return failed if agreement <= allowed else failed | {"agreement": agreement}
+
+
+def _agreement(whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]) -> float:
+    """How far outputs are from those of a solution, beyond what is ``rounded``, over the largest of their unit."""
+    largest: dict[str, float] = {}
+    for name, values in whole.outputs.items():
+        unit = whole.unit(name)
+        largest[unit] = max(largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0)))
+    worst = 0.0
+    for name, values in found.items():
+        there = ~np.isnan(values)  # no number is what equilibrium leaves open, or friction at rest does
+        gaps, unit = values[there] - whole.outputs[name][there], whole.unit(name)
+        if unit == "rad":
+            gaps = gaps - math.tau * np.rint(gaps / math.tau)
+        gap = max(float(np.max(np.abs(gaps), initial=0.0)) - rounded.get(name, 0.0), 0.0)
+        worst = max(worst, gap / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))
+    return worst

@@ -1,0 +1,96 @@
+"""The conditions of an optimum: of the first order by Karush, Kuhn and Tucker, and of the second order.
+
+Nocedal and Wright, Numerical Optimization, 2nd edition, theorems 12.1, 12.5 and 12.6.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...base.arrays import Array
+
+_ACTIVE, _COUNTS = 1e-7, 1e-6
+"""How near to zero a row is that is active; and of the largest term, or the objective, a multiplier that counts."""
+
+_STEP = 1e-5
+"""Of the bounds: the step of differences of slopes."""
+
+DOWN = -1e-6
+"""Of the objective, over the square of the bounds: a curvature that is negative, and not for rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """How good a solution is.
+
+    ``residual`` is what is left of the first-order conditions, over the largest of their terms, or the objective. ``curvature`` is
+    the least second derivative of the Lagrangian along what limits with a multiplier leave free: infinite where that is nothing,
+    NaN where it has none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum, which
+    is left along ``way``.
+    """
+
+    residual: float
+    curvature: float
+    least: float
+    way: Array
+
+    @property
+    def turns_down(self) -> bool:
+        """Whether the objective falls from here to the second order, within all limits: at a saddle, or a maximum."""
+        return self.least < DOWN
+
+
+def conditions(
+    slopes: Any, at: Array, objective: float, by_g: Array, by_x: Array, given: Array, chosen: int, *, formed: bool
+) -> Conditions:
+    """Those of a program's solution ``at``, with the multipliers of its rows, and of bounds, of which ``chosen`` has some.
+
+    Where nothing is active all terms of the first-order conditions are nearly zero: then the ``objective`` is what is large.
+
+    ``slopes(at, by_g, given)`` has the Lagrangian's gradient without bounds, its parts, the rows and their Jacobian, and the
+    Lagrangian's second derivatives where these are ``formed``; elsewhere they are differences of the gradient.
+    """
+    slope, parts, rows, jacobian, hessian = (part.full() for part in slopes(at, by_g, given))
+    size = max(float(np.abs(parts).max()), float(np.abs(by_x).max(initial=0.0)), abs(objective), np.finfo(float).tiny)
+    residual = float(np.abs(slope.ravel() + by_x).max()) / size
+    if not formed:
+        hessian = _differences(lambda x: slopes(x, by_g, given)[0].full().ravel(), at, chosen)
+    if not (np.isfinite(hessian).all() and np.isfinite(jacobian).all()):
+        return Conditions(residual, math.nan, math.nan, np.zeros(chosen))
+    bounded = np.zeros(at.size, bool)
+    bounded[:chosen] = np.minimum(at[:chosen], 1.0 - at[:chosen]) <= _ACTIVE
+    found = []
+    for active, bound in (
+        (np.abs(by_g) > _COUNTS * size, np.abs(by_x) > _COUNTS * size),
+        ((rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * size), bounded | (np.abs(by_x) > _COUNTS * size)),
+    ):
+        found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
+    (curvature, _), (least, way) = found
+    return Conditions(residual, curvature, least, way[:chosen])
+
+
+def _least(hessian: Array, active: Array) -> tuple[float, Array]:
+    """The least eigenvalue along what leaves active limits as they are, and its direction."""
+    free = np.eye(len(hessian))
+    if len(active):
+        _, sizes, rows = np.linalg.svd(active)
+        free = rows[int(np.sum(sizes > 1e-9 * sizes.max())) :].T
+    if not free.size:
+        return math.inf, np.zeros(len(hessian))
+    values, vectors = np.linalg.eigh(free.T @ hessian @ free)
+    return float(values[0]), free @ vectors[:, 0]
+
+
+def _differences(slope: Any, at: Array, chosen: int) -> Array:
+    """Second derivatives by differences of first ones, within the bounds; what is no parameter enters linearly."""
+    hessian = np.zeros((at.size, at.size))
+    for k in range(chosen):
+        ends = np.tile(at, (2, 1))
+        ends[:, k] = np.clip([at[k] - _STEP, at[k] + _STEP], 0.0, 1.0)
+        hessian[:, k] = (slope(ends[1]) - slope(ends[0])) / (ends[1, k] - ends[0, k])
+    hessian[chosen:] = hessian[:, chosen:].T
+    return np.asarray((hessian + hessian.T) / 2)

@@ -1,0 +1,233 @@
+"""The way from one design to the best near it, by programs whose points grow until no peak between them exceeds a limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...errors import AssemblyError
+from .fatigue import tired_link
+from .judge import Judge
+from .judged import Judged
+from .look import Point
+from .problem import Box, Problem
+from .program import Found, Held, Program
+from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
+
+_ROUNDS, _HALVINGS = 40, 12
+"""Programs that are solved at most; and how often a step is halved that leads to where loops do not close."""
+
+_CONDITIONS = 1e-6
+"""What may be left of the first-order conditions of an optimum."""
+
+_KEEP = 0.7
+"""Of the largest: local peaks that a program knows from the beginning."""
+
+_NEAR = 1e-3
+"""Of its scale: how near to its limit a local peak is that later programs know too."""
+
+_LITTLE = 0.02
+"""Of the largest: how much lower local peaks at instants are that are looked for between them."""
+
+_CLOSED = 12
+"""Instants at which a program watches how its loops close, from the beginning."""
+
+_STEPS = (0.1, 0.03, 0.01, 0.003)
+"""Of the bounds: how far from what seems to be no minimum a better design is looked for."""
+
+_SAME = 1e-6
+"""Of a step between instants: how near two points are that are one."""
+
+_SOLVED = "Solve_Succeeded"
+"""What IPOPT says of a program that it solved."""
+
+Told = Callable[[float, float], None]
+"""Hears the objective and the worst excess of each design on the way."""
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A design on the way, the program that led there, if any, and how the way would end here."""
+
+    judged: Judged
+    by: Found | None
+    ending: str
+
+
+@dataclass(eq=False)
+class Descent:
+    """A way from a start. Nothing of it depends on other ways, so that it is the same wherever it is gone."""
+
+    judge: Judge
+    program: Program
+    box: Box
+    problem: Problem
+    scales: tuple[float, ...]
+    told: Told
+    history: list[tuple[float, ...]] = field(default_factory=list)
+    seen: list[_Seen] = field(default_factory=list)
+
+    def go(self, first: Judged) -> Trail:
+        """Go from a design to the best near it; after an interrupt, as far as it went."""
+        before, stopped = self.judge.evaluations, False
+        try:
+            self._descend(first)
+        except KeyboardInterrupt:
+            stopped = True
+        except AssemblyError as error:
+            self.seen.append(_Seen(first, None, str(error)))
+        best = self._best() if self.seen else _Seen(first, None, "")
+        found = best.by
+        return Trail(
+            start=tuple(first.p.tolist()),
+            end=tuple(best.judged.p.tolist()),
+            objective=best.judged.value(self.problem.objective),
+            excess=self.problem.excess(best.judged),
+            scale=self.scales[0],
+            ending=STOPPED if stopped else best.ending,
+            history=tuple(self.history),
+            multipliers=found.multipliers if found else (),
+            bounds=tuple(found.bounds.tolist()) if found else (),
+            residual=found.conditions.residual if found else math.nan,
+            curvature=found.conditions.curvature if found else math.nan,
+            evaluations=self.judge.evaluations - before,
+        )
+
+    def _best(self) -> _Seen:
+        """The best design on the way; of those that are as good, as far as limits that hold tell, the one that converged."""
+        best = min(reversed(self.seen), key=lambda one: self._merit(one.judged))
+        excess, objective = self._merit(best.judged)
+        for one in reversed(self.seen):
+            if one.ending == CONVERGED and one.by is not None:
+                # Another one may seem better by a violation that passes as none.
+                gains = sum(abs(gain) * scale for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True))
+                if self._merit(one.judged) <= (excess, objective + HOLDS * (self.scales[0] + gains)):
+                    return one
+        return best
+
+    def _merit(self, judged: Judged) -> tuple[float, float]:
+        """A merit less its last digits, so that of designs as good the one that converged is taken."""
+        excess, objective = self.problem.merit(judged)
+        return excess, rounded(objective, self.scales[0])
+
+    def _note(self, judged: Judged) -> None:
+        """Keep a design in the history, and tell of it."""
+        objective, excess = judged.value(self.problem.objective), self.problem.excess(judged)
+        row = (objective, excess, float(judged.has_result), *judged.p[list(self.box.places)].tolist())
+        self.history.append(row)
+        self.told(objective, excess)
+
+    def _better(self, judged: Judged, by: Found | None, ending: str) -> None:
+        """Keep a design that is no worse than those before."""
+        converged = by is not None and ending == CONVERGED
+        if not self.seen or converged or self.problem.merit(judged) <= self.problem.merit(self.seen[-1].judged):
+            self.seen.append(_Seen(judged, by, ending))
+
+    def _descend(self, first: Judged) -> None:
+        self._note(first)
+        self._better(first, None, "start")
+        look, box = first.look, self.box
+        assert look is not None
+        held = [Held(self.problem.objective, None, self.scales[0])]
+        for constraint, scale in zip(self.problem.constraints, self.scales[1:], strict=True):
+            held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
+        numbers = np.unique(np.linspace(0, look.t.size - 1, _CLOSED).astype(int)).tolist()
+        closures = [look.instant(k) for k in numbers]
+        self._learn(held, closures, first, everything=True)
+        current, tried = first, 0
+        for _ in range(_ROUNDS):
+            every = current.look.instants if self.program.averaged and current.look is not None else []
+            found = self.program.solve(box.share(current.p), held, closures, every)
+            x = found.x
+            if not np.isfinite(x).all():
+                self._better(current, None, "the program has no solution: no derivative where it looked")
+                return
+            following = self.judge.look(box.all(x))
+            self._note(following)
+            back = 0
+            while following.look is None and back < _HALVINGS:
+                # Loops do not close somewhere between the points: go back until they do, and look there from then on.
+                back += 1
+                x = (x + box.share(current.p)) / 2
+                following = self.judge.look(box.all(x))
+            if following.look is None:
+                self._better(current, None, "loops close nowhere near")
+                return
+            added = self._learn(held, closures, following, everything=back > 0)
+            done = not back and self._settled(found, following)
+            moved = float(np.abs(box.share(following.p) - box.share(current.p)).max())
+            if done and found.conditions.turns_down and (lower := self._lower(found, following)):
+                self._note(lower)
+                self._better(lower, None, "beyond a saddle")
+                self._learn(held, closures, lower, everything=True)
+                current = lower
+                continue
+            self._better(following, found if not back else None, CONVERGED if done else _unsettled(found))
+            if done and found.status == _SOLVED:
+                return
+            tried = tried + 1 if moved <= 1e-9 and not added else 0
+            current = following
+            if tried >= 2:
+                return
+
+    def _lower(self, found: Found, judged: Judged) -> Judged | None:
+        """A better design beside one that seems to be no minimum, along the way that it is left; None where it is one after all.
+
+        A program holds some peaks where they are, so that its second derivatives may be less than those of the peaks.
+        """
+        way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
+        excess, objective = self._merit(judged)
+        for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
+            tried = self.judge.look(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
+            if self._merit(tried) < (excess, objective):
+                return tried
+        return None
+
+    def _settled(self, found: Found, judged: Judged) -> bool:
+        """Whether a program's solution is what it says, with all peaks that it did not know."""
+        value = judged.value(self.problem.objective)
+        gap = abs(value - found.objective) / (abs(value) or 1.0)
+        return self.problem.excess(judged) <= HOLDS and gap <= HOLDS and found.conditions.residual <= _CONDITIONS
+
+    def _learn(self, held: Sequence[Held], closures: list[Point], judged: Judged, *, everything: bool) -> bool:
+        """Hold terms at the peaks of a design that programs do not know; whether there were any."""
+        added, look = False, judged.look
+        assert look is not None
+        near = _SAME * look.step
+        for k, term in enumerate(held):
+            points = judged.points[term.term]
+            if not points:
+                continue
+            largest = points[0][1] * points[0][0].value
+            least = _KEEP * largest if largest > 0.0 else largest / _KEEP
+            if not everything:
+                # Only what may exceed what the program found.
+                level = largest if k == 0 else term.bound
+                least = max(least, level - _NEAR * term.scale)
+            # Between instants a peak is a little larger.
+            high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
+            exact = self.judge.exact(term.term, high or points[:1], look)
+            first, sign = exact[0]
+            if term.term.kind == "peak" and not tired_link(term.term.output) and not any(first.turn) and 0.0 < first.share < 1.0:
+                # Where it is, a kink has no derivative; along its way it has one.
+                exact[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
+            for point, sign in exact:
+                if sign * point.value >= least:
+                    added |= term.add(point, sign, near)
+            if not term.points:
+                added |= term.add(*exact[0], near)
+        for row in look.closures():
+            k = int(np.argmin(row))
+            point = look.instant(k)
+            if row[k] < 4 * self.program.least_closure and all(abs(point.share - other.share) > near for other in closures):
+                closures.append(point)
+                added = True
+        return added
+
+
+def _unsettled(found: Found) -> str:
+    """Why a program's solution is none of the problem."""
+    return "the peaks of its last design are not those of the program" if found.status == _SOLVED else f"IPOPT: {found.status}"

@@ -1,0 +1,154 @@
+"""What a search has done so far: a file beside its result, a line for every way that was gone, each whole or not there.
+
+The first line tells what they are of. Every line begins with the CRC-32 of the rest.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from ...base.publish import check_writable, settled, telling
+from ...errors import BusyError, PathError, StoreError
+from ...store.untrusted import check_shape
+from ..sweep.plan import difference
+from .finder import Errand
+from .trail import WORDS, Trail
+
+try:
+    import fcntl
+except ImportError:  # where there is none, nothing keeps two searches apart
+    fcntl = None  # type: ignore[assignment]
+
+
+_FIRST = b' {"identity": '
+"""How the first line goes on after its checksum."""
+
+
+def journal_of(target: Path) -> Path:
+    """Where the journal of a search into ``target`` is."""
+    place = settled(target)
+    return place.with_name(f"{place.name}.journal")
+
+
+@dataclass(eq=False)
+class Journal:
+    """The ways that were gone, by what they are of. One without a ``file`` keeps them in memory alone."""
+
+    target: Path | None = None
+    file: IO[bytes] | None = None
+    known: dict[str, Trail] = field(default_factory=dict)
+
+    def get(self, errand: Errand) -> Trail | None:
+        """The way of an errand, where it was gone."""
+        return self.known.get(_key(errand))
+
+    def put(self, errand: Errand, trail: Trail) -> None:
+        """Keep a way: on return it outlives a kill. Raises :class:`StoreError` where it cannot be written."""
+        key = _key(errand)
+        self.known[key] = trail
+        if self.file is not None and self.target is not None:
+            with telling(journal_of(self.target)):
+                self.file.write(_line({"of": key, "trail": trail.words}))
+                self.file.flush()
+                os.fsync(self.file.fileno())
+
+    def remove(self) -> None:
+        """Remove it: what it is of is done."""
+        self.known.clear()
+
+
+@contextmanager
+def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, force: bool) -> Iterator[Journal]:
+    """The journal of a search into ``target``, locked; nothing is kept on disk where that is None.
+
+    It is removed where nothing is in it. One whose first line a kill cut short holds nothing, and a new one takes its place. Raises
+    :class:`PathError` where one is there and neither ``resume`` nor ``force`` is
+    asked for, :class:`StoreError` where it is of another search, :class:`BusyError` where another process writes it.
+    """
+    if target is None:
+        yield Journal()
+        return
+    check_writable(target, hdf5=True)
+    path = journal_of(target)
+    with telling(path):
+        begun = path.exists() and not (path.is_file() and _holds_nothing(path.read_bytes()))
+    if begun and not (resume or force):
+        raise PathError(f"{path} is of an unfinished search: go on with resume=True, or start anew with force=True")
+    journal, own = Journal(target), False
+    try:
+        with telling(path), path.open("a+b") as file:
+            if fcntl is not None:
+                try:
+                    fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
+            journal.file = file
+            file.seek(0)
+            own = force or _holds_nothing(file.read())
+            if force or not _read(journal, path, identity):
+                file.truncate(0)
+                file.write(_line({"identity": identity}))
+                file.flush()
+            own = True
+            yield journal
+    finally:
+        if own and not journal.known:
+            path.unlink(missing_ok=True)
+
+
+def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
+    """Read what is there; whether it is of anything. Raises :class:`StoreError` where it is of another search."""
+    assert journal.file is not None
+    journal.file.seek(0)
+    content = journal.file.read()
+    lines = [words for line in content.splitlines() if (words := _words(line)) is not None]
+    if content and not content.endswith(b"\n"):
+        journal.file.write(b"\n")  # a line that a kill cut short is none
+    if not lines or "identity" not in lines[0]:
+        if not _holds_nothing(content):
+            raise StoreError(f"{path} holds what no search wrote, or is damaged: force=True starts anew")
+        return False
+    for words in lines:
+        if "trail" in words:
+            journal.known[words["of"]] = Trail.read(words["trail"])
+        elif found := difference(words["identity"], identity):
+            raise StoreError(f"{path} is of another search: {found}; start anew with force=True, or write another file")
+    return True
+
+
+def _holds_nothing(content: bytes) -> bool:
+    """Whether a journal is empty, or has the beginning of its first line alone, which a kill cut short."""
+    checksum, said = content[:8], content[8:]
+    cut = said.startswith(_FIRST) or _FIRST.startswith(said)
+    return b"\n" not in content and cut and all(digit in b"0123456789abcdef" for digit in checksum)
+
+
+def _line(words: Mapping[str, Any]) -> bytes:
+    text = json.dumps(words).encode()
+    return f"{zlib.crc32(text):08x} ".encode() + text + b"\n"
+
+
+def _words(line: bytes) -> Any:
+    """What a line says; None where it is not whole."""
+    checksum, _, text = line.partition(b" ")
+    if checksum != f"{zlib.crc32(text):08x}".encode():
+        return None
+    try:
+        words = json.loads(text)
+        check_shape(words, {"identity": {}} if "identity" in words else {"of": str, "trail": WORDS}, "line")
+    except (ValueError, RecursionError, TypeError):
+        return None
+    return words
+
+
+def _key(errand: Errand) -> str:
+    problem = errand.problem
+    told = [str(problem.objective), [c.words for c in problem.constraints], errand.start, errand.scales]
+    return json.dumps(told)

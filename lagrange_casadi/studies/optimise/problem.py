@@ -1,0 +1,203 @@
+"""What is asked of a search: terms, limits, the parameters to choose, and how designs are evaluated."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.vocabulary import Backend
+from ...declare.scene import Scene, Wanted
+from ...declare.times import Times, Timing
+from ...equations.described import described
+from ...equations.fingerprint import fingerprint, sources
+from ...errors import DeclarationError, UnknownNameError, check_kind
+from ...instants.rung import Rung
+from ..designs.engine import DesignEngine
+from ..peaks import wanted_for
+from .fatigue import tired_link
+from .judged import Judged
+from .strength_limits import constraints_of
+from .terms import Constraint, Term
+from .trail import HOLDS
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """The parameters that are chosen: their ``places`` among all, bounds, and the values ``p`` of all others."""
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+    low: Array
+    high: Array
+    p: Array
+
+    @classmethod
+    def of(cls, scene: Scene, over: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, float] | None) -> Box:
+        """Bounds by parameter. Raises :class:`DeclarationError` for what is no pair of bounds, or out of a parameter's range."""
+        declared = scene.mechanism.parameters
+        if not isinstance(over, Mapping) or not over:
+            raise DeclarationError(f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}")
+        check_kind("parameters", parameters or {}, "values by name, as {'l': 0.25}", Mapping)
+        names, low, high = tuple(over), [], []
+        for name, bounds in over.items():
+            if name not in declared:
+                raise UnknownNameError("parameter", name, declared)
+            if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
+                raise DeclarationError(f"over: expected (least, largest) for '{name}', got {bounds!r}")
+            for bound in bounds:
+                declared[name].check(bound)
+            a, b = (declared[name].number(bound) for bound in bounds)
+            if not a < b:
+                raise DeclarationError(f"over: of '{name}' the least value {a:g} must be below the largest, {b:g}")
+            low.append(a)
+            high.append(b)
+            if name in (parameters or {}):
+                raise DeclarationError(f"over: parameter '{name}' is chosen, and set to a value as well")
+        values = scene.mechanism.values(parameters)
+        places = tuple(list(declared).index(name) for name in names)
+        return cls(names, places, np.array(low), np.array(high), np.array(list(values.values())))
+
+    def all(self, x: Array) -> Array:
+        """The values of all parameters, for shares ``x`` (n,) of the way from the low bounds to the high ones."""
+        p: Array = self.p.copy()
+        p[list(self.places)] = np.clip(self.low + x * (self.high - self.low), self.low, self.high)
+        return p
+
+    def holds(self, name: str, value: float) -> bool:
+        """Whether a value of a parameter that is chosen is within its bounds."""
+        k = self.names.index(name)
+        return bool(self.low[k] <= value <= self.high[k])
+
+    def share(self, p: Array) -> Array:
+        """The shares for values of all parameters."""
+        return np.asarray((p[list(self.places)] - self.low) / (self.high - self.low))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One objective, and what holds."""
+
+    objective: Term
+    constraints: tuple[Constraint, ...] = ()
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """All terms, objective first."""
+        return (self.objective, *(c.term for c in self.constraints))
+
+    def excess(self, judged: Judged) -> float:
+        """By how much the worst limit is exceeded, over its scale; NaN without a result."""
+        excess = judged.closing
+        for constraint in self.constraints:
+            value = judged.value(constraint.term)
+            excess = max(excess, constraint.excess(value) / constraint.scale(value))
+        return excess if judged.has_result else math.nan
+
+    def merit(self, judged: Judged) -> tuple[float, float]:
+        """What a better design has less of."""
+        if not judged.has_result:
+            return math.inf, math.inf
+        excess = self.excess(judged)
+        return (excess if excess > HOLDS else 0.0), judged.value(self.objective)
+
+    def scales(self, judged: Judged) -> tuple[float, ...]:
+        """How large the terms are about, objective first."""
+        objective = abs(judged.value(self.objective)) or 1.0
+        return (objective, *(c.scale(judged.value(c.term)) for c in self.constraints))
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """A search before it begins. All that its result follows from, but the scene and the starts, is in it; it can be sent."""
+
+    objectives: tuple[Term, ...]
+    constraints: tuple[Constraint, ...]
+    box: Box
+    timing: Timing
+    rung: Rung
+    transmission: float
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        minimise: str | Sequence[str],
+        over: Mapping[str, tuple[Any, Any]],
+        subject_to: Sequence[str],
+        *,
+        transmission: float,
+        t: Times | None,
+        parameters: Mapping[str, float] | None,
+        backend: Backend,
+    ) -> Question:
+        """Read what a user says. Raises what :func:`.optimise` does for mistakes."""
+        declared = scene.mechanism.parameters
+        texts = [minimise] if isinstance(minimise, str) else minimise
+        if not isinstance(texts, (list, tuple)) or not texts:
+            raise DeclarationError(f"minimise: expected a text such as 'peak:effort:O', or several, got {minimise!r}")
+        objectives = tuple(Term.parse(text, declared) for text in texts)
+        for objective in objectives:
+            if objective.kind == "min":
+                raise DeclarationError(f"minimise: a smallest value has no least one that could be told; use max:{objective.name}")
+        if len(set(objectives)) < len(objectives):
+            raise DeclarationError(f"minimise: a term is there twice: {', '.join(map(str, objectives))}")
+        if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
+            raise DeclarationError(f"subject_to: expected a list of constraints, got {subject_to!r}")
+        constraints = tuple(found for text in subject_to for found in constraints_of(text, scene.mechanism))
+        box = Box.of(scene, over, parameters)
+        if not isinstance(transmission, float) or not 0.0 < transmission < 1.0:
+            raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
+        return cls(objectives, constraints, box, scene.timing(t), Rung(backend), transmission)
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """All terms, each once."""
+        return tuple(dict.fromkeys((*self.objectives, *(c.term for c in self.constraints))))
+
+    @property
+    def wanted(self) -> list[str]:
+        """The outputs that the terms are of."""
+        outputs = [term.output for term in self.terms if term.output is not None]
+        wants = [f"section:{link}" if (link := tired_link(output)) else wanted_for(output) for output in outputs]
+        return list(dict.fromkeys(wants)) or ["motion"]
+
+    def engine(self, scene: Scene) -> DesignEngine:
+        """What evaluates designs. Raises :class:`UnknownNameError` for a term of what has none."""
+        engine = DesignEngine.of(scene, self.wanted, rung=self.rung, timing=self.timing)
+        for term in self.terms:
+            if term.output is None:
+                term.of_parameters(scene.mechanism)
+            if term.kind == "peak" and (link := tired_link(term.output)):
+                Wanted.of(scene.mechanism, [f"safety:{link}"])
+                continue
+            there = engine.efforts if term.averaged else engine.quantities
+            if term.output is not None and term.name not in there:
+                raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
+        return engine
+
+    def words(self, scene: Scene, engine: DesignEngine) -> dict[str, Any]:
+        """What every number of a search follows from beside its starts, for JSON: no clock, no path."""
+        made, wanted = engine.provenance, Wanted.of(scene.mechanism, self.wanted)
+        box = self.box
+        told = {
+            "case": scene.mechanism.name,
+            "versions": made.versions,
+            "sources": sources(),
+            "compiler": f"{made.backend} {made.compiler} {made.flags} {made.rung}",
+            "scene": fingerprint(scene, wanted) or "cannot be told",
+            "mechanism": described(scene, scene.mechanism.values()),
+            "t": self.timing.words(scene.mechanism.symbols),
+            "minimise": list(map(str, self.objectives)),
+            "subject_to": [c.words for c in self.constraints],
+            "over": {name: [float(a), float(b)] for name, a, b in zip(box.names, box.low, box.high, strict=True)},
+            "parameters": {name: float(x) for name, x in zip(engine.parameters, box.p, strict=True) if name not in box.names},
+            "transmission": self.transmission,
+        }
+        plain: dict[str, Any] = json.loads(json.dumps(told))
+        return plain

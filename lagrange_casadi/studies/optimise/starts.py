@@ -1,0 +1,82 @@
+"""Designs to start from: the best of many, evenly spread, that are apart from each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, TypeAlias
+
+import numpy as np
+
+from ...base.units import Within
+from ...errors import DeclarationError, NoDesignError, UnknownNameError
+from ...instants.refusal import Status
+from .finder import Finder
+from .judged import Judged
+from .problem import Problem
+from .sobol import sobol
+
+_APART = 0.15
+"""Of the bounds: how far starts are from each other."""
+
+MOST = 1 << 24
+"""Designs that are screened, or started from, at most."""
+
+Starts: TypeAlias = Annotated[int, Within(1, MOST)] | Sequence[Mapping[str, float]]
+"""How many designs to start from, or the values of parameters for each."""
+
+
+def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:
+    """Starts by their values; parameters that a start lacks have their own.
+
+    Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not within bounds, and
+    :class:`NoDesignError` where none has a result.
+    """
+    box, declared = finder.question.box, finder.engine.parameters
+    rows = []
+    for values in starts:
+        p = box.p.copy()
+        for name, value in values.items():
+            if name not in box.names:
+                raise UnknownNameError("parameter that is chosen", name, box.names)
+            if not box.holds(name, value):
+                raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
+            p[declared.index(name)] = value
+        rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
+    return _with_results(finder, found := [finder.judge.look(p) for p in rows], found)
+
+
+def screen(finder: Finder, count: int) -> list[Judged]:
+    """Designs spread evenly over the bounds, after the parameters' own values."""
+    box = finder.question.box
+    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], sobol(count, len(box.names))])
+    return finder.judge.screen(np.array([box.all(x) for x in shares]))
+
+
+def chosen(finder: Finder, problem: Problem, screened: Sequence[Judged], count: int) -> list[Judged]:
+    """The best of screened designs for a problem that are apart from each other, looked at closely.
+
+    Raises :class:`NoDesignError` where none has a result.
+    """
+    box = finder.question.box
+    found: list[Judged] = []
+    for one in sorted((one for one in screened if one.has_result), key=problem.merit):
+        share = box.share(one.p)
+        if len(found) == count:
+            break
+        if all(np.abs(share - box.share(other.p)).max() >= _APART for other in found):
+            closely = finder.judge.look(one.p)
+            if closely.has_result:
+                found.append(closely)
+    return _with_results(finder, found, screened)
+
+
+def _with_results(finder: Finder, judged: Sequence[Judged], screened: Sequence[Judged]) -> list[Judged]:
+    found = [one for one in judged if one.has_result]
+    if not found:
+        outcome = finder.engine.evaluate(np.array([one.p for one in screened]))
+        values = outcome.value[outcome.status == Status.OK]
+        open_ = np.isnan(values).all(axis=0) & bool(len(values))
+        names = ", ".join(name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open)
+        why = f": {names} is open for all of them" if names else "; evaluate one to see why"
+        raise NoDesignError(f"optimise: no design within the bounds has a result{why}")
+    return found

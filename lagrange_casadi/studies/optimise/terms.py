@@ -1,0 +1,144 @@
+"""What is made small, and what is held within limits: a peak, a largest or smallest value, a mean, or a parameter."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import casadi as ca
+
+from ...arguments import public
+from ...base.numerals import real
+from ...base.quantities import AVERAGED, Output
+from ...declare.kinds import kinds_of
+from ...declare.masses import mass_of
+from ...declare.mechanism import Mechanism
+from ...errors import DeclarationError
+from .fatigue import tired_link
+
+Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
+
+KINDS: Mapping[Kind, str] = {
+    "peak": "the largest size of a quantity over the motion",
+    "max": "its largest value",
+    "min": "its smallest value",
+    "mean": "the mean of an effort or an output",
+    "rms": "the root of its mean square",
+}
+"""What a term may begin with."""
+
+MASS: Literal["mass"] = "mass"
+"""The mass of a part, or of ``all``."""
+
+_AVERAGES: tuple[Kind, ...] = ("mean", "rms")
+_UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
+_CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
+_EXAMPLE = "peak:section:rod:bending <= 12"
+
+
+@public
+@dataclass(frozen=True)
+class Term:
+    """A number that a design has: a ``kind``, and the quantity it is of by full name, or the parameter."""
+
+    kind: Kind
+    name: str
+
+    @classmethod
+    def parse(cls, text: str, parameters: Mapping[str, object]) -> Term:
+        """Read ``peak:effort:O``, ``rms:effort:O`` or the like, or a parameter's name. Raises :class:`DeclarationError`."""
+        if not isinstance(text, str):
+            raise DeclarationError(f"expected a text such as 'peak:effort:O', got {text!r}")
+        word, _, name = text.strip().partition(":")
+        for kind in KINDS:
+            if word == kind and name:
+                try:
+                    output = Output.of(name)
+                except KeyError:
+                    break
+                if kind in _AVERAGES and output.group not in AVERAGED:
+                    raise DeclarationError(f"'{text}': means are of {', '.join(AVERAGED)} alone; of '{name}' there is peak:{name}")
+                return cls(kind, str(output))
+        if text.strip() in parameters:
+            return cls("parameter", text.strip())
+        if word == MASS and name:
+            return cls(MASS, name)
+        raise DeclarationError(
+            f"'{text}' is neither a parameter nor {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
+        )
+
+    @property
+    def averaged(self) -> bool:
+        """Whether it is made of all instants."""
+        return self.kind in _AVERAGES
+
+    @property
+    def output(self) -> Output | None:
+        """The quantity, None of a parameter and of a mass."""
+        return None if self.kind in ("parameter", MASS) else Output.of(self.name)
+
+    def of_parameters(self, mechanism: Mechanism) -> Any:
+        """A parameter or a mass as a function of all parameters. Raises :class:`.UnknownNameError` for what is none."""
+        found = (
+            mass_of(mechanism, self.name) if self.kind == MASS else mechanism.symbols[list(mechanism.parameters).index(self.name)]
+        )
+        return ca.Function("of_parameters", [mechanism.symbols], [found])
+
+    def unit(self, mechanism: Mechanism) -> str:
+        """Its unit."""
+        if self.kind == MASS:
+            return "kg"
+        if tired_link(self.output):
+            return "1"
+        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(kinds_of(mechanism))
+
+    def __str__(self) -> str:
+        return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"
+
+
+@public
+@dataclass(frozen=True)
+class Constraint:
+    """A term that is at most, or with ``least`` at least, a ``limit``."""
+
+    term: Term
+    limit: float
+    least: bool = False
+
+    @classmethod
+    def parse(cls, text: str, parameters: Mapping[str, object]) -> Constraint:
+        """Read ``TERM <= NUMBER`` or ``TERM >= NUMBER``. Raises :class:`DeclarationError`."""
+        found = _CONSTRAINT.fullmatch(text) if isinstance(text, str) else None
+        try:
+            if found is None or not math.isfinite(limit := real(found[3])):
+                raise ValueError
+        except ValueError:
+            raise DeclarationError(f"expected a constraint such as '{_EXAMPLE}', got {text!r}") from None
+        term, least = Term.parse(found[1], parameters), found[2].startswith(">")
+        if least and term.kind in _UPPER:
+            advice = f"use min:{term.name}" if term.kind == "max" else "it can be limited from above only"
+            raise DeclarationError(f"'{text}': {advice}")
+        if not least and term.kind == "min":
+            raise DeclarationError(f"'{text}': use max:{term.name}, for a smallest value can be limited from below only")
+        if term.kind == "peak" and limit < 0.0:
+            raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")
+        return cls(term, limit, least)
+
+    def excess(self, value: float) -> float:
+        """By how much a value is beyond the limit; below zero where it is within."""
+        return self.limit - value if self.least else value - self.limit
+
+    def scale(self, value: float) -> float:
+        """How large the term is about, beside which its excess is large or small."""
+        return abs(self.limit) or abs(value) or 1.0
+
+    @property
+    def words(self) -> str:
+        """The constraint with all digits of its limit."""
+        return f"{self.term} {'>=' if self.least else '<='} {self.limit!r}"
+
+    def __str__(self) -> str:
+        return f"{self.term} {'>=' if self.least else '<='} {self.limit:g}"

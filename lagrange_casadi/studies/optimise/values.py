@@ -1,0 +1,192 @@
+"""Quantities of a graph at a point as CasADi functions of the parameters, with derivatives of any order.
+
+A moment is told by its share of the time from the first instant to the last, so that instants may go with the parameters.
+
+Iterated coordinates are the solution of the loops there, by ``casadi.rootfinder``: its derivatives are those of the implicit
+function theorem.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+
+from ...base.quantities import Output
+from ...base.symbolic import symbolic
+from ...base.tables import table_of
+from ...equations.checks import Column
+from ...equations.reciprocals import differentiable
+from ...equations.scene_graph import SceneGraph
+from ...errors import DeclarationError
+from ...sensitivity.along import Along, Place
+from ...sensitivity.points import resultant
+from ..designs.times import DesignTimes
+from .fatigue import Tired, tired_link
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A quantity at a point, which may follow its peak as parameters change.
+
+    ``value(share, guess, p, xi, place)``; ``slopes`` of the same are its derivatives by share and xi (2,); ``moved`` is the value
+    where one step of Newton's method leads, which takes ``turn`` and ``reach`` too: less the inverse of the second derivatives,
+    three numbers, and how far to go in share and in xi at most. ``place`` has ``size`` numbers.
+
+    A peak of F(s, p) is at F_s = 0. With F_ss of the parameters that are known, s - F_s(s, p)/F_ss is there but for the square of
+    what the parameters change, and F is the peak's value but for the fourth power.
+    """
+
+    value: Any
+    slopes: Any
+    moved: Any
+    size: int
+
+    @cached_property
+    def depends(self) -> list[bool]:
+        """Whether it depends on each parameter."""
+        found = self.value.jac_sparsity(0, 2)
+        return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
+
+    @classmethod
+    def of(cls, value: Any, size: int) -> Followed:
+        """That of a function."""
+        smooth = value.is_a("SXFunction")
+        kind, names = (ca.SX if smooth else ca.MX), ["share", "guess", "p", "xi", "place"]
+        given: list[Any] = [kind.sym(name, value.size1_in(k)) for k, name in enumerate(names)]
+        share, guess, p, xi, place = given
+        turn, reach = (kind.sym(name, n) for name, n in (("turn", 3), ("reach", 2)))
+        further: list[Any] = [turn, reach]
+        at = ca.densify(ca.gradient(value(*given), ca.vertcat(share, xi))) if smooth else None
+        if at is None:
+            at = ca.vertcat(*(ca.densify(ca.gradient(value(*given), x)) for x in (share, xi)))
+        away: list[Any] = [turn[0] * at[0] + turn[1] * at[1], turn[1] * at[0] + turn[2] * at[1]]
+        limits: list[Any] = [reach[0], reach[1]]
+        there = [x + ca.fmin(ca.fmax(far, -most), most) for x, far, most in zip((share, xi), away, limits, strict=True)]
+        options = {"cse": True} if smooth else {}
+        slopes = ca.Function("slopes", given, [at], options)
+        moved = value(there[0], guess, p, there[1], place)
+        return cls(value, slopes, ca.Function("moved", [*given, *further], [moved], options), size)
+
+
+@dataclass(frozen=True, eq=False)
+class PointValues:
+    """The functions of a graph's quantities at points."""
+
+    graph: SceneGraph
+    times: DesignTimes
+    known: dict[Output, Followed] = field(default_factory=dict)
+    links: dict[str, Tired] = field(default_factory=dict)
+
+    @symbolic
+    def of(self, quantity: Output) -> Followed:
+        """A quantity at a point; it is made once.
+
+        ``place`` has a 1 where a section force is meant, and 0 elsewhere: first at ``xi``, then at each side of each station.
+        """
+        if quantity not in self.known:
+            self.known[quantity] = self._made(quantity)
+        return self.known[quantity]
+
+    def _made(self, quantity: Output) -> Followed:
+        t, d, rate, acceleration, z, p = inputs = self._instant.sx_in()
+        xi = ca.SX.sym("xi")
+        out = self._instant(*inputs)
+        if name := tired_link(quantity):
+            tired = self.tired(name)
+            value = tired.swing(self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p)))
+            return Followed.of(value, value.numel_in(4))
+        table = table_of(self.graph.data.space)
+        columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
+        if quantity.group == "section":
+            link = Along(self.graph.data, quantity.part, columns, p)
+            places = [Place(xi), *(mark for mark in link.marks if mark.station)]
+            names = table.parts("section", quantity.member)
+            sizes = [resultant([link.force(name, place) for name in names]) for place in places]
+        else:
+            sizes = [resultant([columns[part] for part in quantity.components(table) if part in columns])]
+        place = ca.SX.sym("place", len(sizes))
+        # What is not meant may have no value, as a size at zero has no slope.
+        value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
+        return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(value)), len(sizes))
+
+    def tired(self, link: str) -> Tired:
+        """A link whose utilisation against fatigue is a term; it is made once."""
+        if link not in self.links:
+            self.links[link] = Tired(self.graph, link)
+        return self.links[link]
+
+    @symbolic
+    def closures(self) -> Any | None:
+        """``value(share, guess, p, xi, place)``: the squares of the sines of all loops' transmission angles, None without loops.
+
+        Of an iterated loop it is the square of its volume.
+        """
+        names = self.graph.checks("closure")
+        if not names:
+            return None
+        inputs = self._instant.sx_in()
+        out = self._instant(*inputs)
+        found = [out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k] for name, k in names.items()]
+        return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
+
+    @cached_property
+    def _instant(self) -> Any:
+        return differentiable(self.graph.instant)
+
+    def _at_time(self, inputs: list[Any], value: Any) -> Any:
+        """The function with its drives and loops inside."""
+        graph = self.graph
+        at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})
+        smooth = graph.newton is None
+        kind = ca.SX if smooth else ca.MX
+        sizes = [1, graph.instant.size1_in("z"), graph.instant.size1_in("p"), 1, inputs[-1].numel()]
+        given: list[Any] = [kind.sym(name, n) for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)]
+        share, guess, p, xi, place = given
+        first, last = self._span(p)
+        t = first + share * (last - first)
+        d, rate, acceleration = self._motion.call([t, p])
+        z = guess
+        if graph.newton is not None:
+            z = self._loops(guess, ca.vertcat(t, d, p))
+        found = at_drives.call([t, d, rate, acceleration, z, p, xi, place])
+        return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
+
+    @cached_property
+    def _span(self) -> Any:
+        """The first and the last instant as functions of the parameters.
+
+        Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be inverted for numbers alone.
+        """
+        times, symbols = self.times, ca.SX.sym("p", len(self.graph.data.parameters))
+        if times.common:
+            even = times.default[1]
+            return ca.Function("span", [symbols], [ca.DM(float(even[0])), ca.DM(float(even[-1]))])
+        ends: Any = times.timing.ends(symbols)
+        if times.law is not None:
+            if not times.law.steady:
+                raise DeclarationError(
+                    f"optimise: the motion of joint '{times.timing.joint}', which says when the instants are, goes with parameters "
+                    "and is not steady; give t as expressions of the parameters"
+                )
+            d, rate, _ = times.law.law(0.0, symbols)
+            ends = [(bound - d) / rate for bound in ends]
+        return ca.Function("span", [symbols], [ca.densify(ca.SX(end)) for end in ends])
+
+    @cached_property
+    def _motion(self) -> Any:
+        """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often."""
+        return self.graph.laws.in_scalars().motion
+
+    @cached_property
+    def _loops(self) -> Any:
+        """The loops' solution near a guess."""
+        assert self.graph.newton is not None
+        step = self.graph.newton.step
+        z, t, d, p = step.sx_in()
+        correction = step(z, t, d, p)[0]
+        residual = ca.Function("residual", [z, ca.vertcat(t, d, p)], [correction])
+        options = {"abstol": 1e-13, "max_iter": 50, "error_on_fail": False}
+        return ca.rootfinder("loops", "newton", residual, options)

@@ -1,0 +1,350 @@
+"""Peaks between instants: where a quantity is largest over all times of a solution's span.
+
+A peak of sampled values falls short of the true one by a part that goes with the square of the step. :mod:`.summits` searches
+between them; here the time derivatives that automatic differentiation gives then say at which time a smooth peak is.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..arguments import Count, public
+from ..base.arrays import Array
+from ..base.quantities import Output, compared
+from ..base.symbolic import symbolic
+from ..base.tables import LARGEST
+from ..codegen.stages import Stages, compensated, plain, turns_many
+from ..declare.even_points import are_even
+from ..declare.scene import Scene
+from ..declare.times import Over, Times, span_of
+from ..equations.derive import assembled, derive
+from ..equations.reciprocals import differentiable
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..instants.backends import follow
+from ..instants.section_law import SectionLaw, Side
+from ..instants.signals import Quantity, SectionForce, Signals
+from ..instants.sizes import size_of
+from ..instants.solution import Peak, Solution
+from ..summits.search import Peaks
+from ..summits.sharpness import Sharpness
+from .evaluate import evaluate
+
+_SAME = 1e-6
+"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+
+_NOTHING = 1e-12
+"""What is zero but for rounding, over what is largest."""
+
+_NEAR, _LESS = 1e-4, 1e-13
+"""How near to where it was found a smooth peak is, in steps between instants, and how much lower rounding may put it, of itself."""
+
+_TRIALS = 5
+
+
+@public
+def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
+    """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
+
+    A smooth peak is exact to rounding, and its time to 1e-12 of the step or to the derivative's rounding. So is a peak at a kink,
+    and one at a jump, where the higher side counts. Where a quantity grows without bound, the peak is infinite. No peak is below
+    that of the instants. Of several peaks that differ by rounding only, the first one in time is returned.
+
+    Where the search would take too long, because much may hide between the instants, a peak cannot be told: its value is NaN, and
+    ``least`` the largest size that was found. More instants may help. What equilibrium does not determine is NaN too, without a
+    ``least``; what elasticity tells of it has the peak of the instants.
+
+    Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
+    """
+    sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
+    found = ContinuousSolution.of(scene, solution.by_equilibrium)
+    peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
+    return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
+
+
+@dataclass(frozen=True)
+class Shortfall:
+    """How far the peaks over ``count`` instants fall short of the true ones, over the true ones: the worst and the median force.
+
+    ``sampled`` is at the instants, ``refined`` between them by :func:`refine`.
+    """
+
+    count: int
+    sampled_worst: float
+    sampled_median: float
+    refined_worst: float
+    refined_median: float
+
+
+@public
+def shortfall(
+    scene: Scene,
+    counts: Sequence[Count],
+    names: Iterable[str] | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+) -> list[Shortfall]:
+    """How far peaks fall short where a span of time is cut into so many instants, a row for each of ``counts``.
+
+    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`.
+    ``names`` are full names of quantities; by default all efforts, reactions and section forces that are wanted and determined.
+    Those that are zero but for rounding, grow without bound or are not told are left out. The true peaks are the largest refined
+    ones, of all counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left,
+    and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    """
+    timing = scene.timing(t, over)
+    start, stop = span_of(scene.guided, scene.laws, timing, scene.mechanism.values(parameters))
+    if not counts:
+        raise DeclarationError("shortfall: expected at least one number of instants")
+    solutions = [
+        evaluate(scene, t=(start, stop, count), parameters=parameters, backend="vm", certificate=False)
+        for count in (*counts, 2 * max(*counts, timing.count))
+    ]
+    last = solutions[-1]
+    chosen = [name for name in (forces(last) if names is None else names) if last.determined(name)]
+    refined = np.array([[abs(peak.value) for peak in refine(scene, solution, chosen)] for solution in solutions])
+    sampled = np.array([[abs(solution.peak(name).value) for name in chosen] for solution in solutions])
+    true = refined.max(axis=0, initial=0.0)
+    finite = np.where(np.isfinite(true), true, 0.0)
+    units = np.array([last.unit(name) for name in chosen])
+    there = np.array([x > _NOTHING * finite[units == unit].max() for x, unit in zip(finite, units, strict=True)], dtype=bool)
+    if not there.any():
+        raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
+    missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
+    columns = [spread(rows, axis=1) for rows in missing for spread in (np.max, np.median)]
+    return [Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)]
+
+
+def resultants(solution: Solution) -> list[str]:
+    """The full names of the resultants of a solution's reactions that equilibrium determines."""
+    joints = dict.fromkeys(output.part for output in solution.outputs if output.group == "reaction")
+    found = (Output("reaction", joint, member) for joint in joints for member in solution.table.reactions)
+    there = (output for output in found if solution.made_of(output)[0] in solution.outputs)
+    return [str(output) for output in there if solution.determined(output)]
+
+
+@public
+def forces(solution: Solution) -> list[str]:
+    """The full names of a solution's efforts, reactions, section forces, what is largest along links, and own outputs: those that
+    equilibrium determines.
+    """
+    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section", *LARGEST, "output"))
+    return [str(output) for output in wanted if solution.determined(output)]
+
+
+@symbolic
+@functools.lru_cache(maxsize=32)
+def rates(graph: SceneGraph) -> ca.Function:
+    """The columns of a graph and, where loops are closed, their time derivatives along the motion.
+
+    ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
+    """
+    instant, newton = differentiable(graph.instant), graph.newton
+    tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
+    t, z = tz[0], tz[1:]
+    still = ca.DM.zeros(p.numel())
+    d, d_rate, d_acceleration = graph.motion(t, p)
+    d_jerk = graph.laws.jerk()(t, p)
+    z_rate = ca.MX(0, 1)
+    if newton is not None:
+        # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
+        closed = (z, t, d, p)
+        z_rate = newton.step.forward(1)(*closed, *newton.step(*closed), ca.DM.zeros(z.numel()), 1, d_rate, still)[0]
+    place = (t, d, d_rate, d_acceleration, z, p)
+    out = instant(*place)
+    out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
+    both = ca.Function("rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"])
+    return both if graph.laws.sampled is not None else both.expand("rates", {"cse": True})
+
+
+@dataclass(frozen=True, eq=False)
+class ContinuousSolution:
+    """A solution, and what its quantities and their time derivatives are at any time of its span."""
+
+    graph: SceneGraph
+    stages: Stages
+    solution: Solution
+    p: Array
+    z: Array
+    rows: Mapping[Output, int]
+
+    @classmethod
+    def of(cls, scene: Scene, solution: Solution) -> ContinuousSolution:
+        """That of a solution. Raises :class:`.DeclarationError` where it is not one of this scene."""
+        mechanism = scene.mechanism
+        told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
+        wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
+        graph = derive(assembled(scene, told, wanted), wanted)
+        p = np.array(list(told.values()))
+        stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
+        z, _ = follow(graph, solution.t, p, stages=stages)
+        found = cls(graph, stages, solution, p, z, graph.outputs)
+        if not found.agrees():
+            raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
+        return found
+
+    def agrees(self) -> bool:
+        """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""
+        solution = self.solution
+        outputs = [output for output in solution.outputs if output not in solution.left_open]
+        if not all(output in self.rows for output in outputs):
+            return False
+        outputs = [output for output in outputs if output not in self.graph.loop_angles]
+        moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
+        some = moving[[0, moving.size // 2, -1]]
+        out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
+        units = [solution.unit(output) for output in outputs]
+        sizes = dict.fromkeys(units, 0.0)
+        for output, unit in zip(outputs, units, strict=True):
+            sizes[unit] = max(sizes[unit], float(np.fmax.reduce(np.abs(solution.outputs[output]))))
+        rounding = _NOTHING * max(sizes.values(), default=0.0)
+        gaps = [np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs]
+        limits = [_SAME * sizes[unit] + rounding for unit in units]
+        return bool(np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
+
+    def in_equal_steps(self, *wanted: str) -> ContinuousSolution:
+        """The same, or what is ``wanted``, from as many instants in equal steps of time, between which peaks are sought."""
+        scene, solution, t = self.graph.scene, self.solution, self.solution.t
+        told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
+        even = (float(t[0]), float(t[-1]), t.size)
+        words: dict[str, Any] = {
+            "parameters": told,
+            "t": even,
+            "wanted": list(wanted) or list(dict.fromkeys(map(wanted_for, solution.outputs))),
+            "backend": "vm",
+            "certificate": False,
+            "elastic": False,
+        }
+        return ContinuousSolution.of(scene, evaluate(scene, **words))
+
+    def at_the_drive(self, peak: Peak, joint: str) -> Peak:
+        """A peak with the coordinate of a drive at its time."""
+        d = self.graph.motion(peak.t, self.p)[0]
+        return replace(peak, over=float(d[self.graph.driven.index(joint)]))
+
+    def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
+        """The peaks over all times, of quantities whose peaks over some instants are known."""
+        solution = self.solution
+        found = {Output.of(peak.name): peak for peak in sampled}
+        sought = [output for output in found if solution.determined(output)]
+        if not sought or solution.t.size == 1:
+            return list(sampled)
+        turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
+        signals = self.signals([self.quantity(name) for name in sought], turned)
+        units, scales = self.scales(sought)
+        searched = signals.peaks(units, scales)
+        value, t, xi = self.timed(signals, sought, searched)
+        for k, output in enumerate(sought):
+            peak = found[output]
+            along = None if peak.xi is None else float(xi[k])
+            if not searched.told[k]:
+                least = max(abs(peak.value), float(abs(value[k])))
+                found[output] = Peak(peak.name, math.nan, peak.unit, float(t[k]), along, least)
+            elif abs(value[k]) > abs(peak.value):
+                found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
+        return [found[Output.of(peak.name)] for peak in sampled]
+
+    def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
+        """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
+        columns = {k for quantity in quantities for k in _columns(quantity)}
+        sharpness = Sharpness.of(self.graph, sorted(columns))
+        return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+
+    def quantity(self, output: Output) -> Quantity:
+        """Where a quantity is among the columns."""
+        if output.group != "section":
+            return tuple(self.rows[component] for component in self.solution.made_of(output))
+        link, law = output.part, self.solution.section(output.part).law
+        own = {column: k for column, k in self.rows.items() if column.along and column.part == link}
+        return SectionForce(output.member, link, own, law.length, law.density)
+
+    def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
+        """The units of quantities, by number, and the largest size of anything that has each."""
+        solution = self.solution
+        others = [output for output in solution.quantities() if output in solution.outputs and solution.determined(output)]
+        units = compared([solution.unit(output) for output in (*names, *others)])
+        scales = [0.0] * (max(units[: len(names)]) + 1)
+        for output, k in zip(others, units[len(names) :], strict=True):
+            if k < len(scales):
+                scales[k] = max(scales[k], float(np.fmax.reduce(np.abs(solution.outputs[output]), initial=0.0)))
+        return units[: len(names)], scales
+
+    def timed(self, signals: Signals, names: Sequence[Output], peaks: Peaks) -> tuple[Array, Array, Array]:
+        """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
+        value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
+        reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
+        some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
+        if not some or not self.graph.laws.known:
+            return value, t, xi
+        chosen, first = [names[k] for k in some], t[some]
+        before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])
+        _, _, slope_first = self.slopes(signals, chosen, first)
+        slope_before = slope_first
+        for _ in range(_TRIALS):
+            _, _, slope = self.slopes(signals, chosen, now)
+            with np.errstate(all="ignore"):
+                ahead = now - slope * ((now - before) / (slope - slope_before))
+            going = np.abs(ahead - first) < reach
+            before, slope_before = np.where(going, now, before), np.where(going, slope, slope_before)
+            now = np.where(going, ahead, now)
+        sizes, places, slope = self.slopes(signals, chosen, now)
+        better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (np.abs(slope) < np.abs(slope_first))
+        t[some], xi[some] = np.where(better, now, first), np.where(better, places, xi[some])
+        value[some] = np.where(better & (np.abs(sizes) > np.abs(value[some])), sizes, value[some])
+        return value, t, xi
+
+    def slopes(self, signals: Signals, names: Sequence[Output], t: Array) -> tuple[Array, Array, Array]:
+        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its size.
+
+        Where along a link a force is largest moves, but for the rate of its size only at a station does that count.
+        """
+        near = signals.near(t)
+        z, _ = signals.closed(t, near)
+        out, out_rate = (x.full() for x in rates(self.graph)(np.vstack([t, z]), self.p))
+        found = np.full((3, len(names)), np.nan)
+        for k, name in enumerate(names):
+            columns, changes = out[:, [k]], out_rate[:, [k]]
+            if name.group == "section":
+                force = name.member
+                law, law_rate = self.law(name.part, columns), self.law(name.part, changes)
+                place, value = law.extreme(force)
+                sides: tuple[Side, Side] = ("tip", "base")
+                sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
+                rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
+                found[:, k] = value[0], place[0], np.sign(value[0]) * rate
+            elif len(parts := self.solution.made_of(name)) > 1:
+                rows = [self.rows[component] for component in parts]
+                value = size_of(columns[rows, 0])
+                found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
+            else:
+                value = columns[self.rows[name], 0]
+                if name in self.graph.loop_angles:
+                    value += math.tau * np.round((self.solution.outputs[name][near[k]] - value) / math.tau)
+                found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
+        return found[0], found[1], found[2]
+
+    def law(self, link: str, columns: Array) -> SectionLaw:
+        """A link's law with columns of the graph, or of their rates, for its coefficients, loads and stations."""
+        own = {output: columns[k] for output, k in self.rows.items() if output.along and output.part == link}
+        return self.solution.section(link).law.of(link, own)
+
+
+def _columns(quantity: Quantity) -> set[int]:
+    """The columns that a quantity is made of."""
+    return set(quantity if isinstance(quantity, tuple) else quantity.columns.values())
+
+
+def wanted_for(output: Output) -> str:
+    """What is to be wanted for an output."""
+    kinds = {"effort": "effort", "motion": "motion", "pose": "motion", "utilisation": f"safety:{output.part}"}
+    kind = "section" if output.along else output.group
+    return kinds.get(output.group, f"{kind}:{output.part}" if output.part else kind)

@@ -1,0 +1,251 @@
+"""How the outputs of a solution change with the parameters: series over time, section forces over time and xi/l, means, peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arguments import public
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.vocabulary import Backend
+from ..declare.scene import Scene
+from ..equations.derive import assembled, derive
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.rung import Rung
+from ..instants.solution import Solution
+from ..instants.statistics import shares
+from ..sensitivity.curvatures import Curvatures
+from ..sensitivity.peaks import PeakKind, peak_slopes
+from ..sensitivity.slopes import Numbers, Slopes
+from ..sensitivity.ties import Curve, ties
+from ..summits.search import NOTHING
+from ..summits.sharpness import Sharpness
+from .peaks import refine, resultants, wanted_for
+
+_SAME = 1e-6
+"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+
+_BLOCK = 1 << 16
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
+
+    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the quantity is as large and changes
+    otherwise: the largest of both has no derivative.
+    """
+
+    value: float
+    slopes: dict[str, float]
+    kind: PeakKind | None = None
+    tied: bool = False
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """The derivatives of a ``solution`` by the parameters of its ``scene``, each made when it is asked for.
+
+    They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
+    :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
+    equilibrium leaves open.
+    """
+
+    scene: Scene
+    solution: Solution
+    slopes: Slopes
+    p: Array
+    rung: Rung
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.scene.mechanism.parameters)
+
+    def array(self, name: str, parameter: str) -> Array:
+        """The derivative of a quantity by a parameter over the instants, (t,), of a section force (t, xi).
+
+        Its unit is the quantity's over the parameter's. At a station, a section force is that on its tip's side.
+        """
+        return self._all(name)[1][..., self._number(parameter)]
+
+    def curvature(self, name: str, parameter: str, other: str) -> Array:
+        """The second derivative of a quantity by two parameters over the instants, (t,), of a section force (t, xi).
+
+        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for a motion by samples that does
+        not tell its knots.
+        """
+        row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
+        way[0, 2 + self._number(other)] = 1.0
+        nowhere = np.full(_BLOCK, np.nan)
+
+        def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
+            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[:, 0, 2 + row]
+
+        return self._made(name, second, ())
+
+    def mean(self, name: str) -> Changes:
+        """How the mean of a quantity over the instants changes; it is no section force."""
+        values, slopes = self._over_time(name)
+        weights = shares(self.solution.t)
+        return Changes(float(values @ weights), self._named(weights @ slopes))
+
+    def rms(self, name: str) -> Changes:
+        """How the root of its mean square changes; NaN where that is zero."""
+        values, slopes = self._over_time(name)
+        weights = shares(self.solution.t)
+        rms = float(np.sqrt(values**2 @ weights))
+        with np.errstate(all="ignore"):
+            return Changes(rms, self._named((weights * values) @ slopes / rms))
+
+    def peak(self, name: str) -> Changes:
+        """How the peak of a quantity over all times of the solution's span changes, between the instants too: see :func:`.refine`.
+
+        Its slopes are NaN where it has no derivative.
+        """
+        return self.peaks([name])[0]
+
+    def peaks(self, names: Sequence[str]) -> list[Changes]:
+        """How the peaks of several quantities change."""
+        outputs = [self._known(name) for name in names]
+        found = refine(self.scene, self.solution, names)
+        values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
+        xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
+        chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
+        nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
+        ends = np.zeros((2, self.p.size))
+        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
+        tied = ties(
+            self.slopes, self.solution.t, self.p, chosen, values, changes, ends, nothing, lambda k: self._curves(outputs[k])
+        )
+        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
+        return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
+
+    def _curves(self, output: Output) -> Sequence[Curve]:
+        """A quantity over the instants; a section force where it may be largest along the link."""
+        if output.group != "section":
+            return [(np.full(self.solution.t.size, np.nan), self.solution.array(output))]
+        places, values = self.solution.section(output.part).law.curves(output.member)
+        return list(zip(places.T, values.T, strict=True))
+
+    def _largest(self, unit: str) -> float:
+        """The largest size over the instants among the series of a unit."""
+        solution = self.solution
+        same = (o for o in solution.quantities() if o.group != "section" and solution.determined(o) and solution.unit(o) == unit)
+        return max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
+
+    @cached_property
+    def _iterated(self) -> Array:
+        return self.slopes.iterated(self.solution.t, self.p, self.solution.t)
+
+    def _named(self, slopes: Array) -> dict[str, float]:
+        return dict(zip(self.parameters, slopes.tolist(), strict=True))
+
+    def _known(self, name: str) -> Output:
+        unit = self.solution.unit(name)  # it refuses what is none
+        output = Output.of(name)
+        if not self.solution.determined(output):
+            raise DeclarationError(f"'{name}' [{unit}]: equilibrium leaves it open")
+        return output
+
+    def _over_time(self, name: str) -> tuple[Array, Array]:
+        if self._known(name).group == "section":
+            raise DeclarationError(f"'{name}': a section force has a mean at every ratio; take that of array(...)")
+        return self._all(name)
+
+    def _all(self, name: str) -> tuple[Array, Array]:
+        """A quantity and its derivatives by all parameters, (t, parameters) or (t, xi, parameters)."""
+
+        def first(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
+            found = self.slopes.at(t, z, self.p, chosen, xi)
+            return np.column_stack([found.value, found.slopes])
+
+        both = self._made(name, first, (1 + self.p.size,))
+        return both[..., 0], both[..., 1:]
+
+    def _made(self, name: str, at: Callable[[Array, Array, Numbers, Array], Array], size: tuple[int, ...]) -> Array:
+        """What is of a ``size`` at points, over the instants, of a section force over (t, xi)."""
+        output, solution = self._known(name), self.solution
+        along = solution.xi if output.group == "section" else np.full(1, np.nan)
+        rows, xi = np.repeat(np.arange(solution.t.size), along.size), np.tile(along, solution.t.size)
+        found = np.empty((rows.size, *size))
+        for start in range(0, rows.size, _BLOCK):
+            some = slice(start, start + _BLOCK)
+            chosen = np.full(rows[some].size, self.slopes.numbers[output], np.intc)
+            found[some] = at(solution.t[rows[some]], self._iterated[rows[some]], chosen, xi[some])
+        return found if output.group != "section" else found.reshape(solution.t.size, along.size, *size)
+
+    @cached_property
+    def _curvatures(self) -> Curvatures:
+        return Curvatures.of(self.slopes, self.rung)
+
+    def _number(self, parameter: str) -> int:
+        if parameter not in self.parameters:
+            raise UnknownNameError("parameter", parameter, self.parameters)
+        return self.parameters.index(parameter)
+
+
+@public
+def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
+    """How a solution of a scene changes with its parameters.
+
+        changes = sensitivities(scene, solution)
+        changes.array("effort:O", "l")  # (t,) [N m/m]
+        changes.peak("section:rod:bending").slopes["r"]
+
+    What elasticity tells has no derivatives here: it counts as open.
+
+    Raises :class:`.DeclarationError` where the solution is not one of this scene.
+    """
+    if not isinstance(scene, Scene) or not isinstance(solution, Solution):
+        raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
+    mechanism, solution = scene.mechanism, solution.by_equilibrium
+    if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
+        raise _other(scene, solution)
+    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
+    values = mechanism.values(told)
+    graph = derive(assembled(scene, values, wanted), wanted)
+    quantities = [o for o in solution.quantities() if solution.determined(o)]
+    quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
+    made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
+    if not made <= graph.outputs.keys():
+        raise _other(scene, solution)
+    columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
+    slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), rung := Rung(backend))
+    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())), rung)
+    _refuse_other(found, quantities)
+    return found
+
+
+def _refuse_other(found: Sensitivities, quantities: Sequence[Output]) -> None:
+    """Raise :class:`.DeclarationError` where a solution has other values than its scene, at one of three instants."""
+    solution = found.solution
+    plain = [o for o in quantities if o.group != "section" and o not in found.slopes.graph.loop_angles]
+    sizes: dict[str, float] = {}
+    for output in plain:
+        unit = solution.unit(output)
+        sizes[unit] = max(sizes.get(unit, 0.0), float(np.fmax.reduce(np.abs(solution.array(output)), initial=0.0)))
+    # Where a friction rests there are no numbers.
+    moving = np.flatnonzero(~solution.resting)
+    if not moving.size:
+        return
+    some = moving[[0, moving.size // 2, -1]]
+    z = found.slopes.iterated(solution.t, found.p, solution.t[some])
+    agrees = np.ones(some.size, bool)
+    for output in plain:
+        chosen = np.full(some.size, found.slopes.numbers[output], np.intc)
+        there = found.slopes.at(solution.t[some], z, found.p, chosen, np.full(some.size, np.nan)).value
+        limit = _SAME * sizes[solution.unit(output)] + NOTHING * max(sizes.values())
+        agrees &= np.abs(there - solution.array(output)[some]) <= limit
+    if plain and not agrees.any():
+        raise _other(found.scene, solution)
+
+
+def _other(scene: Scene, solution: Solution) -> DeclarationError:
+    return DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{scene.mechanism.name}'")

@@ -1,0 +1,319 @@
+"""Sizing: of a table of profiles the lightest for each link that is safe, with the loads that its own mass brings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+
+from ..arguments import Positive, public
+from ..beams.profiles import Profile
+from ..declare.density import Density
+from ..declare.held import ends_of
+from ..declare.parts import Link
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..elastic.compliance import Compliance
+from ..elastic.deflection import Against, Deflection
+from ..equations.bars import bars_of, unaimed
+from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
+from ..instants.solution import Solution
+from ..strength.member import Member
+from ..strength.safety import Safety, Verdict, as_column, judged
+from .evaluate import evaluate
+
+_TURNS = 100
+"""How often loads are evaluated at most before what is found is taken for not to be found."""
+
+
+@dataclass(frozen=True)
+class StiffSafety(Safety):
+    """The factors of safety of a link, and against ``deflection``: what is allowed over the largest. Of that 1 is enough, of the
+    others ``enough``.
+    """
+
+    enough: float = 1.0
+
+    @property
+    def governs(self) -> Verdict:
+        """The one that is nearest to what is enough of it."""
+        return min(self.verdicts, key=self._share)
+
+    @property
+    def suffices(self) -> bool:
+        """Whether all are enough."""
+        return self._share(self.governs) >= 1.0
+
+    def _share(self, verdict: Verdict) -> float:
+        return verdict.factor / (1.0 if verdict.against == _BENT else self.enough)
+
+
+_BENT = "deflection"
+
+
+@dataclass(frozen=True)
+class Sized:
+    """The profile chosen for a link: its mass [kg], its factors of safety, and the next lighter one, which is not safe, with its
+    factors where the rest is as chosen; None where it is the lightest.
+    """
+
+    link: str
+    profile: Profile
+    mass: float
+    safety: Safety
+    lighter: tuple[Profile, Safety] | None
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """What was chosen: a :class:`Sized` for each link, the parameters that they come to, and how often loads were evaluated.
+
+    ``left`` are links with a beam that the profiles do not fit, with why. ``solution`` is that of what was chosen.
+    """
+
+    links: tuple[Sized, ...]
+    parameters: Mapping[str, float]
+    evaluations: int
+    left: Mapping[str, str]
+    solution: Solution
+
+    @property
+    def mass(self) -> float:
+        """The mass of the links that were sized [kg]."""
+        return sum(sized.mass for sized in self.links)
+
+
+@public
+def size(
+    scene: Scene,
+    profiles: Sequence[Profile],
+    *,
+    safety: Positive = 2.0,
+    links: Sequence[str] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+    criterion: str = "goodman",
+    yielding: str = "von_mises",
+    deflection: Positive | None = None,
+) -> Sizing:
+    """Choose for each link the lightest of some profiles with a factor of safety, against yielding, buckling and fatigue.
+
+    Where a ``deflection`` is given, the largest deflection across a link over its length is at most that too, as 1/500; the factors
+    of safety are :class:`StiffSafety` then.
+
+    Dimensions of a link's cross-section that are parameters take a profile's values. Links begin with their lightest profile. As
+    long as one is not safe it takes the next that is under the loads as they are, and loads are evaluated anew. Then each link is
+    tried lighter, the others as they are, until none can be: no link alone can be lighter. The result is evaluated with its
+    certificate.
+
+    Raises :class:`DeclarationError` where profiles fit no link, or not those that are named; :class:`NoDesignError` where no
+    profile is safe; and what :func:`.evaluate` and :func:`.strength.safety` do.
+    """
+    search = _Search.of(scene, profiles, links, parameters or {}, float(safety), t, over, criterion, yielding, deflection)
+    choice = search.lightened(search.safe())
+    return search.told(choice)
+
+
+@dataclass(frozen=True)
+class _Slot:
+    """A link whose dimensions profiles may set: the parameter of each dimension, and the profiles, lightest first."""
+
+    link: Link
+    parameters: Mapping[str, str]
+    profiles: tuple[Profile, ...]
+
+    def values(self, profile: Profile) -> dict[str, float]:
+        """What a profile makes of the parameters."""
+        return {self.parameters[name]: value for name, value in profile.dimensions.items()}
+
+
+@dataclass(eq=False)
+class _Search:
+    scene: Scene
+    slots: dict[str, _Slot]
+    fixed: dict[str, float]
+    wanted: float
+    left: Mapping[str, str]
+    asked: dict[str, Any]
+    judging: dict[str, Any]
+    bent: float | None = None
+    evaluations: int = 0
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        profiles: Sequence[Profile],
+        links: Sequence[str] | None,
+        parameters: Mapping[str, float],
+        wanted: float,
+        t: Times | None,
+        over: Over | None,
+        criterion: str,
+        yielding: str,
+        bent: float | None,
+    ) -> _Search:
+        if not profiles:
+            raise DeclarationError("size: expected at least one profile")
+        mechanism = scene.mechanism
+        having = {name: link for name, link in mechanism.links.items() if link.beam and isinstance(link.mass, Density)}
+        if unknown := [name for name in links or () if name not in having]:
+            raise UnknownNameError("link with a beam", unknown, having)
+        slots: dict[str, _Slot] = {}
+        left: dict[str, str] = {}
+        spinning = [bar.link.name for bar in bars_of(scene.guided, scene.laws) if not bar.aimed]
+        for name, link in having.items():
+            if links is not None and name not in links:
+                continue
+            try:
+                if name in spinning and link.beam and not link.beam.round:
+                    raise _UnfitError(unaimed(name).replace(f"link '{name}'", "it", 1))
+                slots[name] = _slot(scene, link, profiles, parameters)
+            except _UnfitError as error:
+                if links is not None:
+                    raise DeclarationError(f"link '{name}': {error}") from None
+                left[name] = str(error)
+        if not slots:
+            why = "; ".join(f"{name}: {reason}" for name, reason in left.items())
+            raise DeclarationError(f"size: the profiles fit no link; {why or 'no link has a beam'}")
+        taken: dict[str, str] = {}
+        for name, slot in slots.items():
+            for parameter in dict.fromkeys(slot.parameters.values()):
+                if (other := taken.setdefault(parameter, name)) != name:
+                    raise DeclarationError(f"size: links '{other}' and '{name}' share parameter '{parameter}'; give each its own")
+        wants = [f"section:{name}" for name in having]
+        asked: dict[str, Any] = {"t": t, "over": over, "wanted": wants, "certificate": False}
+        return cls(scene, slots, dict(parameters), wanted, left, asked, {"criterion": criterion, "yielding": yielding}, bent)
+
+    def solve(self, choice: Mapping[str, int]) -> Solution:
+        """The loads with profiles by their numbers."""
+        self.evaluations += 1
+        return evaluate(self.scene, parameters=self.values(choice), **self.asked)
+
+    def values(self, choice: Mapping[str, int]) -> dict[str, float]:
+        found = dict(self.fixed)
+        for name, k in choice.items():
+            found |= self.slots[name].values(self.slots[name].profiles[k])
+        return found
+
+    def judge(self, solution: Solution, name: str, k: int, *, whole: bool = False) -> Safety:
+        """How safe a link is with a profile, under the loads of a solution; ``whole`` against all, else until it is not safe."""
+        member = Member.of(solution, name)
+        slot, mechanism = self.slots[name], self.scene.mechanism
+        values = mechanism.values({n: p["value"] for n, p in solution.description["parameters"].items()})
+        values |= slot.values(slot.profiles[k])
+        assert slot.link.beam is not None
+        numeric = slot.link.beam.mapped(lambda _, x: mechanism.number(x, values))
+        other = replace(member, beam=numeric)
+        enough = 0.0 if whole else self.wanted
+        found = judged(other, as_column(solution.description, other), **self.judging, enough=enough)
+        if self.bent is None or found.factor < enough:
+            return found
+        against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
+        peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
+        allowed = self.bent * member.law.length
+        where = f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}"
+        verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
+        return StiffSafety(found.link, (*found.verdicts, verdict), found.is_open, self.wanted)
+
+    def suffices(self, found: Safety) -> bool:
+        """Whether a link is safe, and stiff where that is asked for."""
+        return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.wanted
+
+    def safe(self) -> dict[str, int]:
+        """Numbers of profiles that are safe under the loads that they bring, each the first that is from the lightest upward."""
+        choice = dict.fromkeys(self.slots, 0)
+        for _ in range(_TURNS):
+            solution, changed = self.solve(choice), False
+            for name, slot in self.slots.items():
+                tried = {k: self.judge(solution, name, k) for k in (choice[name],)}
+                while not self.suffices(tried[choice[name]]):
+                    changed = True
+                    if choice[name] + 1 == len(slot.profiles):
+                        raise NoDesignError(self._told_none(solution, name, tried))
+                    choice[name] += 1
+                    tried[choice[name]] = self.judge(solution, name, choice[name])
+            if not changed:
+                return choice
+        raise NoDesignError(f"size: loads and profiles do not settle within {_TURNS} evaluations")
+
+    def _told_none(self, solution: Solution, name: str, tried: Iterable[int]) -> str:
+        whole = {k: self.judge(solution, name, k, whole=True) for k in tried}
+        best = max(whole, key=lambda k: whole[k].factor)
+        profile, found = self.slots[name].profiles[best].name, whole[best]
+        most = f"the most, '{profile}', has {found.factor:.4g} against {found.governs.against}"
+        stiff = "" if self.bent is None else f", and a deflection of {self.bent:g} of its length at most"
+        return f"size: link '{name}': no profile has a factor of {self.wanted:g}{stiff}; {most}"
+
+    def lightened(self, choice: dict[str, int]) -> dict[str, int]:
+        """The same, each link as light as the others allow."""
+        changed = True
+        while changed:
+            changed = False
+            for name in self.slots:
+                for k in range(choice[name]):
+                    lighter = {**choice, name: k}
+                    solution = self.solve(lighter)
+                    if all(self.suffices(self.judge(solution, other, n)) for other, n in lighter.items()):
+                        choice, changed = lighter, True
+                        break
+        return choice
+
+    def told(self, choice: Mapping[str, int]) -> Sizing:
+        """What was chosen, evaluated anew with its certificate."""
+        asked = {**self.asked, "wanted": [*self.scene.wanted, *self.asked["wanted"]], "certificate": True}
+        solution = evaluate(self.scene, parameters=self.values(choice), **asked)
+        links = []
+        for name, k in choice.items():
+            slot, mass = self.slots[name], solution.description["bodies"][name]["mass"]
+            before = None
+            if k:
+                before = slot.profiles[k - 1], self.judge(self.solve({**choice, name: k - 1}), name, k - 1, whole=True)
+            links.append(Sized(name, slot.profiles[k], mass, self.judge(solution, name, k, whole=True), before))
+        chosen = {n: v for n, v in self.values(choice).items() if n not in self.fixed or self.fixed[n] != v}
+        return Sizing(tuple(links), chosen, self.evaluations, self.left, solution)
+
+
+def _area(scene: Scene, link: Link, values: Mapping[str, float]) -> float:
+    """What profiles are put in order by: the mean area of the cross-sections of a link."""
+    assert link.beam is not None
+    shapes = link.beam.mapped(lambda _, x: scene.mechanism.number(x, values)).course.shapes()
+    areas = [float(shape.area) for shape in shapes]
+    return sum(areas) / len(areas)
+
+
+class _UnfitError(LagrangeCasadiError):
+    """Profiles do not fit a link."""
+
+
+def _slot(scene: Scene, link: Link, profiles: Sequence[Profile], parameters: Mapping[str, float]) -> _Slot:
+    """A link with the profiles that may be its own. Raises :class:`_UnfitError`."""
+    assert link.beam is not None
+    mechanism = scene.mechanism
+    own: dict[str, str] = {}
+    for name in profiles[0].dimensions:
+        shapes = list(link.beam.course.shapes())
+        if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:
+            raise _UnfitError(f"{name} is no dimension of its {lacking[0]}")
+        symbols = [shape.dimensions[name] for shape in shapes]
+        found = {str(s) for s in symbols if isinstance(s, ca.SX) and s.is_symbolic()}
+        if len(found) != 1:
+            raise _UnfitError(f"its {name} is no parameter, so no profile can set it")
+        own[name] = found.pop()
+    slot = _Slot(link, own, ())
+    defaults = mechanism.values(dict(parameters))
+    weights = []
+    for profile in profiles:
+        values = slot.values(profile)
+        for name, value in profile.dimensions.items():
+            if values[own[name]] != value:
+                raise _UnfitError(f"profile '{profile.name}' gives parameter '{own[name]}' two values")
+            if fault := mechanism.parameters[own[name]].fault(value):
+                raise _UnfitError(f"profile '{profile.name}': {fault}")
+        weights.append(_area(scene, link, defaults | values))
+    order = sorted(range(len(profiles)), key=lambda k: weights[k])
+    return _Slot(link, own, tuple(profiles[k] for k in order))

@@ -1,0 +1,252 @@
+"""A scene over its instants: derive, compile, evaluate, and refuse what is not a result."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arguments import Outputs, ThreadCount
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..base.room import cores, in_words, require
+from ..declare.corners import Corners
+from ..declare.ends import BEYOND
+from ..declare.even_points import EvenPoints, points
+from ..declare.giving import Elastic, felt, giving
+from ..declare.motion import ends_function
+from ..declare.scene import Scene, Wanted, checked_ratios
+from ..declare.times import Over, Times, Timing, span_of
+from ..declare.wanted_slopes import by_parameters
+from ..elastic.completing import told_errors, wanted_alone
+from ..elastic.least_energy import Completed, complete
+from ..equations.checks import Check
+from ..equations.derive import assembled, derive
+from ..equations.scene_graph import SceneGraph
+from ..errors import CertificateWarning, DeclarationError, warn
+from ..instants.backends import Evaluated
+from ..instants.cost import seconds
+from ..instants.derivatives import Derivatives
+from ..instants.determinacy import determinate, undetermined
+from ..instants.elasticity import Elasticity
+from ..instants.from_table import columns
+from ..instants.holding import holding
+from ..instants.ordering import in_order
+from ..instants.phases import phases
+from ..instants.refusal import refuse
+from ..instants.rung import Rung
+from ..instants.solution import Solution
+from ..judge.accuracy import estimate, explained
+from ..judge.certificate import certify, failure, tolerance
+from ..judge.written import written
+from ..sensitivity.series import series_slopes
+
+_BESIDE, _CHECKED = 8, 2
+"""Rows beside the outputs, and how many times both are in memory while they are checked."""
+
+_LOOKED_AT = 4001
+_LONG = 60.0
+"""Seconds of which nothing need be said."""
+
+
+def solve(
+    scene: Scene,
+    rung: Rung,
+    *,
+    parameters: Mapping[str, float] | None,
+    t: Times | None,
+    over: Over | None,
+    xi: EvenPoints | None,
+    wanted: Outputs | None,
+    threads: ThreadCount | None,
+    certificate: bool,
+    elastic: Elastic | None,
+) -> Solution:
+    """Evaluate a scene by one method: see :func:`.evaluate`."""
+    values = scene.mechanism.values(parameters)
+    timing = scene.timing(t, over)
+    span = checked_span(scene, timing, values)
+    checked_laws(scene, span, tuple(values.values()))
+    ratios = checked_ratios(scene.xi if xi is None else xi)
+    gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
+    scene = scene if gives == scene.elastic else _giving(scene, gives)
+    if gives and rung.table is not None:
+        raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
+    names = scene.wanted if wanted is None else wanted
+    asked = [*names, *felt(scene.mechanism)] if gives else wanted
+    graph = derive(assembled(scene, values, asked, elastic=bool(gives)), asked, elastic=bool(gives))
+    rung.check(graph)
+    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
+    _announce(graph, timing.count, rung, threads or cores())
+    instants, places = scene.instants(timing, values), points(ratios)
+    times = instants.t
+    p = np.array(list(values.values()))
+    left_open: tuple[Output, ...] = ()
+    if rung.table is not None:
+        graph, left_open = determinate(graph, times, p)
+    found, provenance = columns(graph, times, p, rung, threads)
+    refuse(graph, found, times, p, rung)
+    out = np.asarray(found.out, float)
+    Corners.of(scene).refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
+    left_open += undetermined(graph, out, p, rung)
+    description = graph.data.description(values)
+    done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
+    if done is not None:
+        out, left_open = done.out, done.left_open
+    within = phases(graph, out, times, p) if certificate else {}
+    outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
+    ordered = in_order(outputs, description)
+    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
+    by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
+    slopes = Derivatives(_slopes(graph, solution, p, by, rung, None if done is None else asked) if by else {})
+    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
+    if done is not None:
+        solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
+    if solution.resting.any():
+        open_ = {name: held for name, held in holding(scene, solution).items() if np.isnan(solution.effort(name)).any()}
+        solution = replace(solution, held=open_)
+    if certificate:
+        solution = _certified(graph, found, solution, out, p, within, done)
+        if solution.failed:
+            warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
+    return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
+
+
+def _certified(
+    graph: SceneGraph,
+    found: Evaluated,
+    solution: Solution,
+    out: Array,
+    p: Array,
+    within: Mapping[Output, Array],
+    done: Completed | None,
+) -> Solution:
+    """The solution with its certificate and its errors; it was made of the columns ``out``, which ``done`` has completed."""
+    residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
+    errors = estimate(graph, found, solution, p)
+    if done is not None and done.told:
+        before = np.asarray(found.out, float)
+        residuals["elasticity"] = done.residual
+        errors = told_errors(errors, solution, {output: before[k] for output, k in graph.outputs.items()}, done)
+    named = {str(output): error for output, error in explained(solution, residuals, errors).items()}
+    return replace(solution, certificate=residuals | _condition(graph, found), errors=named)
+
+
+def _slopes(
+    graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung, asked: Sequence[str] | None
+) -> dict[str, dict[Output, Array]]:
+    """Derivatives by parameters; of a solution that elasticity completed by the graph of what was ``asked`` that tells it too."""
+    if asked is None:
+        return series_slopes(graph, solution, p, by, rung)
+    telling = derive(graph.scene, asked)
+    _, left_open = determinate(telling, solution.t, p)
+    nothing = {output: np.full(solution.t.size, np.nan) for output in left_open}
+    known = replace(solution, outputs={**solution.outputs, **nothing}, left_open=(*solution.left_open, *left_open))
+    return series_slopes(telling, known, p, by, rung)
+
+
+@functools.lru_cache(maxsize=32)
+def _giving(scene: Scene, elastic: Elastic) -> Scene:
+    return replace(scene, elastic=elastic)
+
+
+def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
+    """Warn of what takes long."""
+    if rung.table is not None:
+        return
+    # Iterated loops are followed by one thread.
+    shared = 1 if graph.newton is not None or rung.backend == "vm" else threads
+    takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
+    if takes > _LONG:
+        many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
+        warn(f"{many} instants{each} take about {in_words(takes)}")
+
+
+def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+    """The first and the last of instants [s]. Raises :class:`DeclarationError` where there are none, or samples of a motion end."""
+    scene.checked(values)
+    start, stop = span_of(scene.mechanism, scene.laws, timing, values)
+    for joint, law in scene.laws.items():
+        low, high = law.span
+        if start < low or stop > high:
+            raise DeclarationError(
+                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
+                f"{start:g} to {stop:g} s is asked for"
+            )
+    return start, stop
+
+
+@functools.lru_cache(maxsize=64)
+def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters.
+
+    Also where it puts into a curve what is beyond the curve's ends.
+    """
+    Corners.of(scene).refuse_laws(span, p)
+    ends = ends_function(scene.laws, scene.mechanism.symbols)
+    if ends is None:
+        return
+    t = np.linspace(*span, _LOOKED_AT)
+    beyond = np.argwhere(~(ends(t[None], list(p)).full() <= BEYOND["double"]).T)
+    if beyond.size:
+        at, joint = beyond[0]
+        raise DeclarationError(
+            f"the motion of joint '{list(scene.laws)[joint]}': what is put into its curve is beyond the curve's ends at "
+            f"t = {t[at]:.6g} s"
+        )
+
+
+def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they would jump by a turn.
+
+    They are those columns, not copies: in ``out`` too angles go on after this.
+    """
+    found = {output: out[k] for output, k in graph.outputs.items()}
+    parts = {part: out[graph.columns.index(part)] for signs in graph.loop_angles.values() for part in signs}
+    turns = {
+        part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row for part, row in parts.items()
+    }
+    for angle, signs in graph.loop_angles.items():
+        for part, sign in signs.items():
+            found[angle] += sign * turns[part]
+        found[angle] -= math.tau * np.ceil(found[angle][..., :1] / math.tau - 0.5)
+    return found
+
+
+def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, within: Mapping[Output, Array]) -> dict[str, Array]:
+    """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t) of a graph, for parameters ``p``.
+
+    ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
+    """
+    mechanism = graph.scene.mechanism
+    equations = written(mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
+    return certify(solution, equations, _hidden(graph, out, solution.left_open), within)
+
+
+def _hidden(graph: SceneGraph, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
+    """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
+    unwanted = {Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()}
+    return unwanted | {output: out[graph.outputs[output]] for output in left_open if output in graph.outputs}
+
+
+def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
+    """What is left of the loops' equations, over the mechanism's extent."""
+    gaps = [np.abs(out[k]) / graph.extent(p) for k in graph.checks("gap").values()]
+    gaps += [np.abs(out[k]) for k in graph.checks("misfit").values()]
+    return {"closure": np.max(gaps, axis=0)} if gaps else {}
+
+
+def _condition(graph: SceneGraph, found: Evaluated) -> dict[str, Array]:
+    """How much an error in a loop's lengths or drives grows in its solution: the worst 1/sin(transmission angle) of all loops.
+
+    For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.
+
+    2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer, Edelman, Johnson 1995).
+    """
+    worst: list[Array] = []
+    for name, k in graph.checks("closure").items():
+        worst.append(2.0 / found.out[k] if graph.iterates(name) else 1.0 / np.sqrt(found.out[k]))
+    return {"condition": np.max(worst, axis=0)} if worst else {}

@@ -1,0 +1,156 @@
+"""Stresses and factors of safety over all times of a solution's span: as :mod:`.peaks`, of what is largest along a whole link.
+
+At a time the largest stress along a link is exact (:mod:`..strength.stress`). Over time it is the upper edge of smooth curves, one
+for each fibre and summit: where two cross it has a kink that points downward, beside which the search looks more closely.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arguments import public
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..declare.even_points import are_even
+from ..declare.scene import Scene
+from ..instants.solution import Solution
+from ..strength.buckling import Column
+from ..strength.member import Member
+from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
+from ..strength.stress import Stress, StressPeak
+from .peaks import ContinuousSolution, refine
+
+
+@public
+def refine_stress(scene: Scene, solution: Solution, link: str, kind: str = "von_mises", *, notches: bool = False) -> StressPeak:
+    """The peak of a stress in a link of a solution, as :meth:`.Stress.peak`, but over all times of its span.
+
+    It is exact to rounding, and not below that of the instants. Where the search would take too long its value is NaN, and
+    ``least`` the largest size that was found. What elasticity tells has the peak of the instants.
+
+    Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none, and :class:`.DeclarationError`
+    where the solution is not of this scene.
+    """
+    stress = solution.stress(link)
+    peak = stress.peak(kind, notches=notches)
+    found = _Searched.of(scene, solution, link)
+    return peak if found is None else found.stress(kind, peak)
+
+
+@public
+def refine_safety(
+    scene: Scene, solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+) -> Safety:
+    """The factors of safety of a link, as :func:`.strength.safety`, against yielding and buckling over all times of its span.
+
+    Against fatigue it is that of the instants. What could not be searched is open. Raises what :func:`refine_stress` does.
+    """
+    told = safety(solution, link, criterion=criterion, yielding=yielding)
+    found = _Searched.of(scene, solution, link)
+    if found is None:
+        return told
+    verdicts, left = [], list(told.is_open)
+    for verdict in told.verdicts:
+        refined: Verdict | None = verdict
+        if verdict.against == "yield":
+            peak = found.stress(yielding, Stress(found.member).peak(yielding))
+            refined = None if math.isnan(peak.value) else yielded(found.member, peak)
+        elif verdict.against == "buckling":
+            refined = found.buckled(scene, verdict, as_column(solution.description, found.member))
+        if refined is None:
+            left.append(f"{verdict.against}: less than {verdict.factor:.4g}, that of the instants, may hide between them")
+        else:
+            verdicts.append(refined)
+    return Safety(link, tuple(verdicts), tuple(left))
+
+
+_BESIDE = 1e-4
+"""Of itself: how far a factor may be from that of the link at the time that is told; where it is further, it jumps there."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Along:
+    """What a link in numbers has at every instant (t,), as a curve over time."""
+
+    member: Member
+    columns: Mapping[Output, int]
+    size: Callable[[Member], Array]
+
+    def at(self, columns: Array) -> Member:
+        """The link at the times of some columns."""
+        outputs = {output: columns[k] for output, k in self.columns.items()}
+        return replace(self.member, law=self.member.law.of(self.member.link, outputs), t=np.zeros(columns.shape[1]))
+
+    def curves(self, columns: Array) -> tuple[Array, Array]:
+        """Ratios, which are not told, and sizes, each (1, t)."""
+        found = np.full((1, columns.shape[1]), np.nan)
+        whole = np.isfinite(columns[list(self.columns.values())]).all(axis=0)
+        if whole.any():
+            found[0, whole] = self.size(self.at(columns[:, whole]))
+        return np.full_like(found, np.nan), found
+
+
+@dataclass(frozen=True, eq=False)
+class _Searched:
+    """A link of a solution, and what it is at any time of its span."""
+
+    member: Member
+    over_time: ContinuousSolution
+
+    @classmethod
+    def of(cls, scene: Scene, solution: Solution, link: str) -> _Searched | None:
+        """That of a link; None where nothing is between the instants, or equilibrium alone does not tell its forces."""
+        told = solution.by_equilibrium
+        member = Member.of(solution, link)
+        if solution.t.size == 1 or any(not told.determined(f"section:{link}:{force}") for force in member.forces):
+            return None
+        found = ContinuousSolution.of(scene, told)
+        return cls(member, found if are_even(solution.t) else found.in_equal_steps())
+
+    def stress(self, kind: str, sampled: StressPeak) -> StressPeak:
+        """The peak of a stress whose peak at the instants is known."""
+
+        def size(member: Member) -> Array:
+            stress = Stress(member)
+            return stress.largest_at_notches(kind) if sampled.notch else np.abs(stress.largest(kind).value)
+
+        found = self.over_time.signals([self._along(size)], {}).peaks([0])
+        peak = Stress(self.at(float(found.t[0]))).peak(kind, notches=sampled.notch)
+        best = max(sampled, peak, key=lambda one: abs(one.value))
+        return best if found.told[0] else replace(best, value=math.nan, least=abs(best.value))
+
+    def buckled(self, scene: Scene, sampled: Verdict, of: Column) -> Verdict | None:
+        """The factor against buckling, of which that at the instants is known; None where it cannot be told.
+
+        It jumps where compression begins: the graph knows when that is.
+        """
+        solution, name = (
+            self.over_time.in_equal_steps(f"safety:{self.member.link}").solution,
+            f"utilisation:{self.member.link}:buckling",
+        )
+        (peak,) = refine(scene, solution, [name])
+        if math.isnan(peak.value):
+            return None
+        factor = 1.0 / peak.value if peak.value else math.inf
+        if factor >= sampled.factor:
+            return sampled
+        there = buckling(self.at(peak.t), of)
+        if there.factor <= factor * (1.0 + _BESIDE):
+            return there
+        return Verdict("buckling", factor, f"where compression begins, at t = {peak.t:.5g} s")
+
+    def at(self, t: float) -> Member:
+        """The link at a time."""
+        along = self._along(lambda member: np.zeros_like(member.t))
+        signals, times = self.over_time.signals([along], {}), np.array([t])
+        z, _ = signals.closed(times, signals.near(times))
+        return replace(along.at(signals.columns(times, z)), t=times)
+
+    def _along(self, size: Callable[[Member], Array]) -> _Along:
+        link = self.member.link
+        own = {output: k for output, k in self.over_time.rows.items() if output.along and output.part == link}
+        return _Along(self.member, own, size)

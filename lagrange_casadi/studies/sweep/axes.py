@@ -1,0 +1,378 @@
+"""What is swept: axes of parameter values, their product as a grid, or a list of designs; a design is a number."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from ...arguments import public
+from ...base.arrays import Array
+from ...base.units import number, typed
+from ...declare.even_points import points
+from ...declare.limits import parameter_faults
+from ...declare.mechanism import Mechanism
+from ...errors import DeclarationError, NumberError, ParameterError, UnknownNameError, check_kind, shown
+
+Numbers = npt.NDArray[np.int64]
+
+DESIGN = "design"
+"""The axis of a list."""
+
+RESULTS = (DESIGN, "status", "t", "xi")
+"""Heads of a table's columns that are no parameters, beside those with a colon."""
+
+_SHOWN = 20
+
+
+@public
+@dataclass(frozen=True)
+class Range:
+    """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
+
+    Ends may be texts, as ``"30 deg"`` or ``"100 mm"``; ``unit`` is then what they are in.
+
+    Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
+    """
+
+    start: Annotated[float, "may be a text"]
+    stop: Annotated[float, "may be a text"]
+    count: int
+    log: bool = False
+    unit: str = field(default="", init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        (start, one), (stop, other) = typed(self.start), typed(self.stop)
+        if one or other:
+            for name, value in (("start", start), ("stop", stop), ("unit", _one_unit(one, other))):
+                object.__setattr__(self, name, value)
+        try:
+            for end in (self.start, self.stop):
+                number(end, finite=False)
+            if type(self.count) is not int:
+                raise TypeError
+        except (TypeError, NumberError):
+            told = ":".join(shown(part) if not isinstance(part, str) else part for part in (self.start, self.stop, self.count))
+            raise DeclarationError(f"expected numbers for START and STOP and a whole COUNT, got {told}") from None
+        if type(self.log) is not bool:
+            raise DeclarationError(
+                f"expected True or False after (start, stop, count), for equal ratios or not, got {shown(self.log)}"
+            )
+        if not (math.isfinite(self.start) and math.isfinite(self.stop)):
+            raise DeclarationError(f"START and STOP must be finite, got {self}")
+        if self.count < 1:
+            raise DeclarationError(f"COUNT must be at least 1, got {self}: the range is empty")
+        if self.stop < self.start:
+            raise DeclarationError(f"STOP must be after START, got {self}: the range is reversed")
+        if (self.stop == self.start) != (self.count == 1):
+            raise DeclarationError(f"START and STOP must differ, and COUNT be 2 or more, got {self}; one value is written alone")
+        if self.log and self.start <= 0.0:
+            raise DeclarationError(f"a log range must begin above 0, got {self}")
+
+    def __str__(self) -> str:
+        return f"{float(self.start)!r}:{float(self.stop)!r}:{self.count}" + (":log" if self.log else "")
+
+    def at(self, numbers: Numbers) -> Array:
+        """Values by number: those of :func:`.points`, or start (stop/start)^(i/(count - 1))."""
+        if not self.log:
+            return points((self.start, self.stop, self.count), numbers)
+        values = self.start * (self.stop / self.start) ** (numbers / max(self.count - 1, 1))
+        return np.asarray(np.where(numbers == self.count - 1, float(self.stop), values), float)
+
+    def outside(self, low: float, high: float) -> str:
+        """What of it leaves a range, in words; nothing where none does."""
+        return "" if low <= self.start and self.stop <= high else f"{self.start:.10g} to {self.stop:.10g}"
+
+
+@public
+@dataclass(frozen=True)
+class Values:
+    """Values one by one; some may be texts, as ``"30 deg"`` or ``"100 mm"``, and ``unit`` is then what they are in.
+
+    Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
+    """
+
+    values: Annotated[tuple[float, ...], "may be texts"]
+    unit: str = field(default="", init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        try:
+            told = [typed(value) for value in self.values]
+            numbers = tuple(number(value, finite=False) for value, _ in told)
+        except (TypeError, ValueError):
+            raise DeclarationError(f"expected numbers, got {shown(self.values)}") from None
+        object.__setattr__(self, "values", numbers)
+        object.__setattr__(self, "unit", _one_unit(*(unit for _, unit in told)))
+        if not numbers:
+            raise DeclarationError("expected at least one value, got none")
+        for value in numbers:
+            if not math.isfinite(value):
+                raise DeclarationError(f"values must be finite, got {value}")
+        if len(set(numbers)) < len(numbers):
+            twice = next(value for value in numbers if numbers.count(value) > 1)
+            raise DeclarationError(f"the value {twice:g} is given twice")
+
+    def __str__(self) -> str:
+        # Values that are those of a range are told as it is, for they make the same sweep.
+        if self.count > 1 and self.values[0] < self.values[-1]:
+            same = Range(self.values[0], self.values[-1], self.count)
+            if np.array_equal(same.at(np.arange(self.count)), self._array):
+                return str(same)
+        if len(self.values) <= _SHOWN:
+            return ",".join(map(repr, self.values))
+        return f"{len(self.values)} values, SHA-256 {hashlib.sha256(self._array.tobytes()).hexdigest()}"
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return len(self.values)
+
+    def at(self, numbers: Numbers) -> Array:
+        """Values by number."""
+        return self._array[numbers]
+
+    def outside(self, low: float, high: float) -> str:
+        """The values that leave a range, in words."""
+        return _named([f"{value:.10g}" for value in self.values if not low <= value <= high])
+
+    @cached_property
+    def _array(self) -> Array:
+        return np.array(self.values)
+
+
+Axis = Range | Values
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """The product of axes by the names of parameters; the last axis runs fastest. Raises :class:`DeclarationError` for none."""
+
+    axes: Mapping[str, Axis]
+    source: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.axes, Mapping) or not self.axes:
+            raise DeclarationError(f"grid: expected at least one axis, as in l=0.1:0.2:11, got {shown(self.axes)}")
+        object.__setattr__(self, "axes", MappingProxyType({name: _axis(name, axis) for name, axis in self.axes.items()}))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that are swept."""
+        return tuple(self.axes)
+
+    @property
+    def dimensions(self) -> dict[str, int]:
+        """The axes of what is kept, and their lengths."""
+        return {name: axis.count for name, axis in self.axes.items()}
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return math.prod(axis.count for axis in self.axes.values())
+
+    def block(self, start: int, stop: int) -> Array:
+        """The designs from ``start`` to before ``stop``, of shape (designs, names)."""
+        rest = np.arange(start, stop, dtype=np.int64)
+        columns = []
+        for axis in list(self.axes.values())[::-1]:
+            rest, numbers = np.divmod(rest, axis.count)
+            columns.append(axis.at(numbers))
+        return np.stack(columns[::-1], axis=1)
+
+    def scale(self, name: str, start: int, stop: int) -> Array:
+        """Values along one parameter's own dimension."""
+        return self.axes[name].at(np.arange(start, stop, dtype=np.int64))
+
+    def describe(self) -> dict[str, str]:
+        """The axes in words, which tell one grid from another."""
+        return {name: str(axis) for name, axis in self.axes.items()}
+
+    def outside(self, name: str, low: float, high: float) -> str:
+        """The values of a parameter that leave a range, in words."""
+        return self.axes[name].outside(low, high)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units in which values are told, of parameters that have some told so."""
+        return {name: axis.unit for name, axis in self.axes.items() if axis.unit}
+
+
+@public
+@dataclass(frozen=True, eq=False)
+class Listed:
+    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.
+
+    ``units`` are those of parameters that have some values told in one, as 30 deg in rad.
+
+    Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
+    """
+
+    names: tuple[str, ...]
+    rows: Array
+    lines: Numbers | None = None
+    source: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        rows = np.ascontiguousarray(self.rows, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != len(self.names) or not rows.size:
+            raise DeclarationError(f"designs: expected values of shape (designs, {len(self.names)}), got {rows.shape}")
+        if len(set(self.names)) < len(self.names):
+            raise DeclarationError(f"designs: a parameter is named twice in {', '.join(self.names)}")
+        if not np.isfinite(rows).all():
+            row, column = (int(i) for i in np.argwhere(~np.isfinite(rows))[0])
+            raise DeclarationError(f"designs: {self._where(row)}: {self.names[column]} must be finite, got {rows[row, column]}")
+        object.__setattr__(self, "rows", rows)
+
+    @property
+    def dimensions(self) -> dict[str, int]:
+        """The one axis of what is kept, and its length."""
+        return {DESIGN: self.size}
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return int(self.rows.shape[0])
+
+    def block(self, start: int, stop: int) -> Array:
+        """The designs from ``start`` to before ``stop``, of shape (designs, names)."""
+        return self.rows[start:stop]
+
+    def scale(self, name: str, start: int, stop: int) -> Array:
+        """Values of one parameter, design by design."""
+        return self.rows[start:stop, self.names.index(name)]
+
+    def describe(self) -> dict[str, str]:
+        """The list in words, which tell one from another."""
+        digest = hashlib.sha256(self.rows.tobytes()).hexdigest()
+        return {DESIGN: f"{counted(self.size)} of {', '.join(self.names)}, SHA-256 {digest}"}
+
+    def outside(self, name: str, low: float, high: float) -> str:
+        """The values of a parameter that leave a range, in words, each with its place."""
+        values = self.rows[:, self.names.index(name)]
+        rows = np.flatnonzero(~((values >= low) & (values <= high)))
+        return _named([f"{values[row]:.10g} in {self._where(int(row))}" for row in rows])
+
+    def _where(self, row: int) -> str:
+        return f"design {row}" if self.lines is None else f"line {self.lines[row]}"
+
+
+Designs = Grid | Listed
+
+
+def designs_of(given: Any) -> Designs:
+    """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as tuples, or values."""
+    return given if isinstance(given, (Grid, Listed)) else Grid(given)
+
+
+def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
+    """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
+    parameters = mechanism.parameters
+    check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
+    if designs.source:
+        check_known(designs.names, parameters, f"{designs.source}, head")
+    check_known([*designs.names, *fixed], parameters)
+    for name in designs.names:
+        if name in fixed:
+            raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
+    for name, told in designs.units.items():
+        if (unit := parameters[name].unit) != told:
+            where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
+            raise DeclarationError(f"{where}: expected numbers [{unit}], not {'angles' if told == 'rad' else f'numbers [{told}]'}")
+    wrong = []
+    for name in designs.names:
+        parameter = parameters[name]
+        if found := designs.outside(name, parameter.low, parameter.high):
+            wrong.append(f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]")
+    if wrong and designs.source:
+        wrong[0] = f"{designs.source}: {wrong[0]}"
+    wrong += parameter_faults(parameters, fixed)
+    if wrong:
+        raise ParameterError("; ".join(wrong))
+
+
+def check_known(names: Sequence[str], parameters: Collection[str], head_of: str = "") -> None:
+    """Raise :class:`DeclarationError` for names that are no parameters', all of them at once.
+
+    Names that are the first line of a file, ``head_of``, are told with their columns.
+    """
+    unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
+
+    def place(columns: Collection[int]) -> str:
+        return f"{head_of}, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}" if head_of else ""
+
+    for column, name in unknown.items():
+        if _is_result(name):
+            raise DeclarationError(": ".join(filter(None, (place([column]), not_parameter(name)))))
+    if unknown:
+        raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place(unknown))
+
+
+def size_of(described: Mapping[str, str]) -> int:
+    """How many designs there are, from what ``describe`` said of them. Raises ``ValueError`` for other words."""
+    return math.prod(_length(words) for words in described.values())
+
+
+def counted(count: int, what: str = "design") -> str:
+    """A count in words: 1 design, 12 000 designs."""
+    return f"{grouped(count)} {what}{'s' if count != 1 else ''}"
+
+
+def grouped(count: int) -> str:
+    """A count in groups of three digits."""
+    return f"{count:,}".replace(",", " ")
+
+
+def not_parameter(name: str) -> str:
+    """Say of a column's name that it is no parameter's."""
+    return f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi table` writes what it is told"
+
+
+def _is_result(name: str) -> bool:
+    return isinstance(name, str) and (name in RESULTS or ":" in name)
+
+
+def _length(words: str) -> int:
+    if found := re.match(r"([\d ]+) (designs?|values)\b", words):
+        return int(found[1].replace(" ", ""))
+    return int(words.split(":")[2]) if ":" in words else words.count(",") + 1
+
+
+def _named(words: Sequence[str]) -> str:
+    more = f" and {len(words) - _SHOWN} more" if len(words) > _SHOWN else ""
+    return ", ".join(words[:_SHOWN]) + more
+
+
+def _one_unit(*units: str) -> str:
+    """The unit that texts tell. Raises :class:`DeclarationError` for several."""
+    found = dict.fromkeys(unit for unit in units if unit)
+    if len(found) > 1:
+        raise DeclarationError(f"expected values of one unit, got some in {' and some in '.join(found)}")
+    return next(iter(found), "")
+
+
+def _axis(name: str, given: Any) -> Axis:
+    """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values; errors name the parameter."""
+    try:
+        if isinstance(given, (Range, Values)):
+            return given
+        if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
+            return Range(*given)
+        if isinstance(given, (tuple, list)):
+            return Values(tuple(value if typed(value)[1] else number(value, finite=False) for value in given))
+        if isinstance(given, np.ndarray) and given.dtype.kind in "iuf":
+            return Values(tuple(np.atleast_1d(given).astype(float).tolist()))
+        return Values((number(given),) if not isinstance(given, Iterable) or isinstance(given, str) else tuple(given))
+    except (TypeError, NumberError):
+        raise DeclarationError(f"grid of {name}: expected (start, stop, count) or numbers, got {shown(given)}") from None
+    except DeclarationError as error:
+        raise DeclarationError(f"grid of {name}: {error}") from None

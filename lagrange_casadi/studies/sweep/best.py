@@ -1,0 +1,181 @@
+"""The best designs of a sweep: least or largest in one column, or the front of two, among those that meet conditions."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...arguments import public
+from ...base.arrays import Array
+from ...base.numerals import real
+from ...base.units import typed
+from ...errors import DeclarationError, check_kind
+from .columns import STATUS
+from .reading import Sweep, names_in
+from .selection import absent, near
+
+_RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
+    "<=": lambda values, number, same: (values < number) | same,
+    ">=": lambda values, number, same: (values > number) | same,
+    "!=": lambda values, number, same: ~same,
+    "==": lambda values, number, same: same,
+    "<": lambda values, number, same: (values < number) & ~same,
+    ">": lambda values, number, same: (values > number) & ~same,
+    "=": lambda values, number, same: same,
+}
+_CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
+
+
+@public
+@dataclass(frozen=True)
+class Condition:
+    """A parameter or a column against a number; peaks by their size, whatever their sign.
+
+    What differs from the number by a billionth of it is equal to it, for what is computed is rounded. ``unit`` is that of a text.
+    """
+
+    name: str
+    relation: str
+    value: float
+    unit: str = ""
+
+    @classmethod
+    def parse(cls, text: str) -> Condition:
+        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; a number may have a unit, as ``30deg``.
+
+        Raises :class:`DeclarationError`.
+        """
+        found = _CONDITION.fullmatch(text)
+        try:
+            if not found:
+                raise ValueError
+            with suppress(ValueError):
+                if not math.isnan(value := real(found[3])):
+                    return cls(found[1], found[2], value)
+            value, unit = typed(found[3])
+            if not unit:
+                raise ValueError
+            return cls(found[1], found[2], value, unit)
+        except ValueError:
+            raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
+
+    def holds(self, values: Array) -> npt.NDArray[np.bool_]:
+        """Where it holds; nowhere where there is no number."""
+        sized = size(self.name, values)
+        return np.asarray(_RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized))
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design by its number, and values of parameters and columns by name."""
+
+    number: int
+    values: dict[str, float]
+
+
+def size(name: str, values: Array) -> Array:
+    """What a column is compared by: peaks by their size."""
+    return np.abs(values) if name.startswith(("peak:", "peak_at:")) else np.asarray(values, float)
+
+
+@public
+def best(
+    sweep: Sweep,
+    *,
+    minimise: str | Sequence[str] = (),
+    maximise: str | Sequence[str] = (),
+    where: str | Condition | Sequence[str | Condition] = (),
+    count: int | None = None,
+    columns: str | Sequence[str] = (),
+) -> list[Design]:
+    """The ``count`` best designs that have a result and meet all conditions, the best first; by default one.
+
+    With two objectives it is their front, in the order of the first one, by default all of it: a design is on the front where no
+    other is at least as good in both and better in one. Each :class:`Design` comes with its number, its parameters, the objectives
+    and ``columns``, in the columns' units. Peaks are compared by size. A single name or condition may stand without a list.
+
+    Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
+    """
+    objectives = [*((name, 1.0) for name in names_in(minimise)), *((name, -1.0) for name in names_in(maximise))]
+    if len(objectives) not in (1, 2):
+        raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
+    if count is not None and (not isinstance(count, int) or count < 1):
+        raise DeclarationError(f"count: expected a whole number of at least 1, got {count!r}")
+    names = tuple(dict.fromkeys(name for name, _ in objectives))
+    sweep.check_columns([*names, *names_in(columns), *(condition.name for condition in conditions_in(where))])
+    kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
+    costs = np.zeros((len(objectives), 0))
+    for numbers, values in chosen(sweep, (*names, STATUS), where):
+        cost = np.stack([sign * size(name, values[name]) for name, sign in objectives])
+        there = ~np.isnan(cost).any(axis=0) & (values[STATUS] == 0)
+        kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
+        order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
+        kept, costs = kept[order], costs[:, order]
+    asked = tuple(dict.fromkeys([*sweep.parameters, *names, *names_in(columns)]))
+    return [row(sweep, int(number), asked) for number in kept[:count]]
+
+
+@public
+def chosen(
+    sweep: Sweep, names: str | Sequence[str], where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
+) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:
+    """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
+    names, conditions = names_in(names), conditions_in(where)
+    asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
+    for condition in conditions:
+        if condition.unit and (unit := sweep.unit(condition.name)) != condition.unit:
+            raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
+
+    def met(numbers: npt.NDArray[np.int64], values: dict[str, Any]) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
+        there = np.ones(numbers.size, bool)
+        for condition in conditions:
+            there &= condition.holds(values[condition.name])
+        return numbers[there], {name: values[name][there] for name in names}
+
+    return (met(*block) for block in sweep.blocks(asked, along))
+
+
+def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:
+    """Conditions, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
+    check_kind("where", where, "a condition as 'l<0.3', or a list of them", str, Condition, list, tuple)
+    given = [where] if isinstance(where, (str, Condition)) else where
+    for one in given:
+        check_kind("where", one, "a condition as 'l<0.3'", str, Condition)
+    return [Condition.parse(text) if isinstance(text, str) else text for text in given]
+
+
+def tally(sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()) -> tuple[int, int]:
+    """How many designs, or rows ``along`` axes, meet all conditions, and how many of these have a result."""
+    met = with_result = 0
+    for numbers, values in chosen(sweep, [STATUS], where, along):
+        met += numbers.size
+        with_result += int(np.sum(values[STATUS] == 0))
+    return met, with_result
+
+
+def missed(sweep: Sweep, where: str | Condition | Sequence[str | Condition], along: Sequence[str] = ()) -> str:
+    """Of conditions that nothing meets, which ask a parameter or an axis for a value that it never has, with the nearest it has."""
+    asked = [c for c in conditions_in(where) if c.relation in ("==", "=") and c.name in (*sweep.parameters, *along)]
+    return "".join(f"; {absent(c.name, sweep[c.name], c.value)}" for c in asked if not near(sweep[c.name], c.value).any())
+
+
+def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:
+    """A design with values of parameters and columns."""
+    values = sweep.design(number)
+    columns = [name for name in names if name not in values]
+    return Design(number, {name: values[name] for name in names if name in values} | sweep.values(number, columns))
+
+
+def _front(costs: Array) -> npt.NDArray[np.intp]:
+    """Those of pairs that nothing beats, by the first cost."""
+    order = np.lexsort((costs[1], costs[0]))
+    second = costs[1, order]
+    before = np.concatenate([[np.inf], np.minimum.accumulate(second)[:-1]])
+    return np.asarray(order[second < before])

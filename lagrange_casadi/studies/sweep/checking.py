@@ -1,0 +1,100 @@
+"""Is a sweep's file whole and consistent?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ...errors import one_line
+from ...instants.refusal import Status
+from ...store.untrusted import check_chunks, told_as
+from .axes import counted, grouped, size_of
+from .blocks import slabs
+from .columns import STATUS
+from .contents import KeptColumn
+from .parts import Folder
+from .reading import Sweep
+
+
+def check_sweep(path: str | Path) -> list[str]:
+    """What is wrong with a file, one line each; nothing where it is whole and consistent.
+
+    Every dataset is read, so every checksum is verified; every axis must have its scale, and where a design has a result, and only
+    there, its columns must have numbers, but for what equilibrium leaves open; and no design may fail its certificate.
+
+    Raises :class:`StoreError` for what is not a whole file of a sweep, :class:`PathError` for none.
+    """
+    sweep = Sweep.open(path)
+    found: list[str] = []
+    with sweep.opened() as file:
+        found += _check_scales(file, sweep)
+        for kept in sweep.columns.values():
+            try:
+                found += _check_column(file, sweep, kept)
+            except Exception as error:
+                found.append(f"{kept.name}: damaged: {one_line(error)}")
+    return found
+
+
+def unfinished(path: Path) -> Folder | None:
+    """The folder of an unfinished sweep, by its own path, or by that of the file that is not there yet; else None."""
+    folder = Folder.of(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
+    return folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
+
+
+def progress(folder: Folder) -> str:
+    """How far an unfinished sweep is, and how it goes on; it may be at work meanwhile, for nothing is touched.
+
+    Raises :class:`StoreError` where its plan cannot be read.
+    """
+    with told_as("damaged", folder.path):
+        size = size_of(folder.identity["grid"])
+    return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
+
+
+def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
+    """What is wrong with axes: each is read, and its numbers are finite."""
+    found: list[str] = []
+
+    def visit(place: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and place.replace("/", ":") not in sweep.columns:
+            try:
+                check_chunks(item)
+                if not np.isfinite(item[()]).all():
+                    found.append(f"{place}: holds values that are not finite")
+            except Exception as error:
+                found.append(f"{place}: damaged: {one_line(error)}")
+
+    file.visititems(visit)
+    return found
+
+
+def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:
+    dataset, status = file[kept.name.replace(":", "/")], file[STATUS]
+    names = (*sweep.dimensions, *kept.axes)
+    for axis, name in enumerate(names):
+        if file[name] not in dataset.dims[axis].values():
+            yield f"{kept.name}: axis {axis} has no scale {name}"
+    check_chunks(dataset)
+    dims = tuple(sweep.dimensions.values())
+    missing = surplus = unknown = wrong = 0
+    for _, _, where in slabs(dims, dataset.chunks[: len(dims)]):
+        values, states = np.asarray(dataset[where]), np.asarray(status[where])
+        if kept.name == STATUS:
+            unknown += int(np.sum(~np.isin(states, list(sweep.statuses))))
+            wrong += int(np.sum(states == Status.UNCERTIFIED))
+            continue
+        there = ~np.isnan(values).any(axis=tuple(range(states.ndim, values.ndim)))
+        missing += int(np.sum(~there & (states == 0)))
+        surplus += int(np.sum(there & (states != Status.OK)))
+    if unknown:
+        yield f"{kept.name}: {unknown} of the designs have a status that is none"
+    if wrong:
+        yield f"{counted(wrong)}, of those that were checked in full, without a certificate: others may be wrong as well"
+    if missing and "missing" not in dataset.attrs:
+        yield f"{kept.name}: {missing} of the designs that have a result lack it"
+    if surplus:
+        yield f"{kept.name}: {surplus} of the designs that have no result have a number"

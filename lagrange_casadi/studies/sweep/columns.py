@@ -1,0 +1,298 @@
+"""What a sweep keeps of each design: columns, their names, units and axes, and how they are taken from an engine's outcome.
+
+A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``, ``rms:effort:O``), the quantity named
+as everywhere; the same with slashes is its place in the file.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.quantities import Output, quotient
+from ...base.tables import Table, table_of
+from ...base.vocabulary import KEEPS, Keep
+from ...declare.kinds import kinds_of
+from ...declare.mechanism import Mechanism
+from ...declare.wanted_slopes import SENSITIVITY
+from ...errors import DeclarationError, UnknownNameError
+from ...instants.refusal import Status
+from ...instants.statistics import of_counted
+from ..designs.engine import Outcome
+from .chunks import encoded
+from .column import MISSING, Column
+from .engine import STATUSES, Engine
+from .instant_axis import InstantAxis
+from .matter import Matter
+from .strength import LEAST, LIFE, MASS, Kept
+
+STATUS = "status"
+"""The one column whose name stands alone: why a design has no result, 0 where it has one."""
+
+TIMES = "history:t"
+"""The times of a design's instants, where these are over anything else."""
+
+KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSITIVITY, "peak_at", "history", LEAST, LIFE, MASS)
+"""What columns are of, in the order in which they are listed."""
+
+
+NO_SLOPE = "NaN for designs of which it has no derivative"
+
+_MEANS = ("mean", "rms")
+SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
+"""What derivatives are kept of, in words."""
+
+_MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
+_AT_HAND = 1 << 22
+_GRID_COST = 5e-10
+"""Seconds of a section force at an instant and a ratio."""
+
+_SLOPES_COST = 3e-4
+"""Seconds of the derivatives of a design's peaks."""
+
+
+def check_keep(keep: str) -> None:
+    """Raise :class:`UnknownNameError` for what cannot be kept."""
+    if keep not in KEEPS:
+        raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
+
+
+@dataclass(frozen=True, eq=False)
+class Harvest:
+    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty.
+
+    ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the derivatives of peaks are kept too.
+    """
+
+    engine: Engine
+    mechanism: Mechanism
+    keep: Keep
+    axis: InstantAxis
+    xi: Array
+    safety: tuple[str, ...] = ()
+    life: tuple[str, ...] = ()
+    by: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_keep(self.keep)
+        if self.xi.size and not self._links:
+            raise DeclarationError("xi: ratios are kept of section forces, and none is wanted")
+        if self.keep == "laws" and not self._links:
+            raise DeclarationError("keep laws: the laws are those of section forces, and none is wanted")
+
+    @cached_property
+    def columns(self) -> tuple[Column, ...]:
+        """All columns, in the order of :meth:`evaluate`."""
+        engine, over = self.engine, (self.axis.name,)
+        found = [self._status()]
+        for name in engine.quantities:
+            found += self._peak(name)
+        for name in engine.efforts:
+            output = Output.of(name)
+            unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
+            mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
+            found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
+            found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
+        for parameter in self.by:
+            found += [self._slope(parameter, "peak", name) for name in engine.quantities]
+            found += [self._slope(parameter, kind, name) for kind in _MEANS for name in engine.efforts]
+        found += [
+            self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
+            for link in self._links
+            for force in self._table.forces
+            if self.xi.size
+        ]
+        for name in self._series:
+            output = Output.of(name)
+            words = output.meant(self._table).attributes | self._open(name)
+            found.append(Column(f"history:{name}", output.unit(kinds_of(self.mechanism)), words, over, (self.axis.values.size,)))
+        if self._own_times:
+            found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
+        if self.keep == "histories" and self.xi.size:
+            found += [
+                self._along(f"history:section:{link}:{force}", "", (*over, "xi"))
+                for link in self._links
+                for force in self._table.forces
+            ]
+        return (*found, *self.strength.columns)
+
+    @property
+    def block(self) -> int:
+        """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
+        grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
+        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
+        return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
+
+    def chunks(self, p: Array, room: int) -> list[bytes]:
+        """The columns of designs ``p`` (designs, parameters) as chunks of the file that have room for so many."""
+        whole = [np.zeros((room, *column.lengths), column.dtype) for column in self.columns]
+        for start in range(0, len(p), self._piece):
+            some = slice(start, min(start + self._piece, len(p)))
+            for into, values in zip(whole, self.evaluate(p[some]), strict=True):
+                into[some] = values
+        self._look_closely(p, whole)
+        return [encoded(values) for values in whole]
+
+    def _look_closely(self, p: Array, whole: Sequence[Any]) -> None:
+        """Take one of the designs that have a result, and mark it where it fails its certificate."""
+        there = np.flatnonzero(whole[0][: len(p)] == Status.OK)
+        if not there.size:
+            return
+        chosen = int(there[there.size // 2])
+        if self.engine.failures(p[chosen]):
+            whole[0][chosen] = Status.UNCERTIFIED
+            for column in whole[1:]:
+                column[chosen] = np.nan
+
+    def evaluate(self, p: Array) -> list[Any]:
+        """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
+        outcome = self.engine.evaluate(p, threads=1, histories=self._histories)
+        found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
+        for k, output in enumerate(self._quantities):
+            found += [outcome.value[:, k], outcome.t[:, k]]
+            if self.axis.joint:
+                assert outcome.over is not None
+                found.append(outcome.over[:, k])
+            if output.group == "section":
+                found.append(outcome.xi[:, k])
+        for k in range(len(self.engine.efforts)):
+            found += [outcome.mean[:, k], outcome.rms[:, k]]
+        if self.by:
+            peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
+            for number in map(list(self.mechanism.parameters).index, self.by):
+                found += [*np.moveaxis(peaks[:, :, number], 1, 0)]
+                found += [means[:, k, e, number] for k in range(len(_MEANS)) for e in range(len(self.engine.efforts))]
+        largest, whole = self._along_links(outcome, p)
+        found += largest
+        if self._series:
+            assert outcome.series is not None
+            rows = {name: k for k, name in enumerate(self.engine.columns)}
+            found += [outcome.series[:, rows[name]] for name in self._series]
+        if self._own_times:
+            assert outcome.times is not None
+            found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
+        if self.strength.columns:
+            times = outcome.times if outcome.times is not None else self.axis.values[None]
+            found_there = (outcome.status, outcome.value, outcome.series, times, p)
+            return found + whole + self.strength.evaluate(*found_there)
+        return found + whole
+
+    @property
+    def _table(self) -> Table:
+        """What its quantities mean."""
+        return table_of(self.mechanism.space)
+
+    @cached_property
+    def strength(self) -> Kept:
+        """What is kept of the strength of links."""
+        engine = self.engine
+        doubtful = {output.part for output in map(Output.of, engine.doubtful) if output.group == "section"}
+        made = (engine.quantities, engine.columns, engine.provenance.precision)
+        return Kept(self.mechanism, self.safety, self.life, *made, doubtful)
+
+    @property
+    def _histories(self) -> bool:
+        """Whether whole histories must be evaluated."""
+        return self.keep != "peaks" or bool(self.xi.size) or self.strength.histories
+
+    @property
+    def _piece(self) -> int:
+        """How many designs are evaluated at once: so few that their outcome is still at hand when it is taken apart."""
+        series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
+        room = _BYTES if self._histories else _AT_HAND
+        return max(1, room // (series + sum(column.width for column in self.columns)))
+
+    @property
+    def _own_times(self) -> bool:
+        """Whether the times of each design's instants are kept."""
+        return self.keep != "peaks" and self.axis.name != "t"
+
+    @cached_property
+    def _quantities(self) -> tuple[Output, ...]:
+        return tuple(map(Output.of, self.engine.quantities))
+
+    @cached_property
+    def _links(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(output.part for output in self._quantities if output.group == "section"))
+
+    @cached_property
+    def _series(self) -> tuple[str, ...]:
+        """The engine's columns that are kept whole."""
+        if self.keep == "peaks":
+            return ()
+        return tuple(name for name in self.engine.columns if self.keep == "histories" or Output.of(name).along)
+
+    def _status(self) -> Column:
+        told = {number: words for number, words in STATUSES.items() if self.axis.name != "t" or number != Status.NO_INSTANTS}
+        words = {
+            "long_name": "whether a design has a result, or why it has none",
+            "flag_meanings": " ".join(word for word, _ in told.values()),
+            "sentences": json.dumps({number: sentence for number, (_, sentence) in told.items()}),
+        }
+        return Column(STATUS, "1", words, dtype="|i1")
+
+    def _peak(self, name: str) -> list[Column]:
+        """The columns of one quantity of the engine's."""
+        output, open_ = Output.of(name), self._open(name)
+        unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
+        what = words["long_name"]
+        found = [
+            Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
+            Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
+        ]
+        if self.axis.joint:
+            where = f"coordinate of joint '{self.axis.joint}' at the peak: {what}"
+            found.append(Column(f"peak_over:{name}", self.axis.drive_unit, {"long_name": where} | open_))
+        if output.group == "section":
+            found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
+        return found
+
+    def _slope(self, parameter: str, kind: str, name: str) -> Column:
+        """The column of the derivative of a peak, or of a mean."""
+        output = Output.of(name)
+        unit = quotient(output.unit(kinds_of(self.mechanism)), self.mechanism.parameters[parameter].unit)
+        what = f"derivative by {parameter} of the {SLOPES_OF[kind]}: {output.meant(self._table).long_name}"
+        return Column(f"{SENSITIVITY}:{parameter}:{kind}:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
+
+    def _open(self, name: str) -> dict[str, str]:
+        """What a file says of a quantity that is not determined for every design."""
+        return {"missing": MISSING} if name in self.engine.doubtful else {}
+
+    def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
+        quantity = Output.of(name.partition(":")[2]).meant(self._table)
+        words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
+        lengths = tuple({self.axis.name: self.axis.values.size, "xi": self.xi.size}[axis] for axis in axes)
+        return Column(name, quantity.unit, words, axes, lengths)
+
+    def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
+        """Of each link and force what is largest over the instants, (designs, xi), and, where it is kept, all, (designs, t, xi)."""
+        if not self.xi.size:
+            return [], []
+        series = outcome.series
+        assert series is not None
+        largest, whole = [], []
+        for link in self._links:
+            matter = Matter.of(self.mechanism, link, self.engine.provenance.precision)
+            every = enumerate(map(Output.of, self.engine.columns))
+            rows = {output: k for k, output in every if output.along and output.part == link}
+            with np.errstate(all="ignore"):  # of designs that have no result
+                moving = of_counted(series[:, list(rows.values())])
+                laws = matter.law({output: moving[:, k] for k, output in enumerate(rows)}, p)
+                basis = laws.basis(self.xi)
+                found = (laws.largest(force, basis) for force in self._table.forces)
+                largest += [np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found]
+            if self.keep == "histories":
+                grids = np.full((len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan)
+                for i in np.flatnonzero(outcome.status == Status.OK):
+                    law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
+                    basis = law.basis(self.xi)
+                    for force, grid in zip(self._table.forces, grids, strict=True):
+                        law.on_grid(force, basis, grid[i], threads=1)
+                whole += list(grids)
+        return largest, whole

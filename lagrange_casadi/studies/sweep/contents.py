@@ -1,0 +1,76 @@
+"""What a sweep's file says of itself, looked at before it is believed: what it is of, its axes, its columns, its statuses."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ...store.untrusted import check_dataset, check_links, check_shape, parsed, shown
+from .axes import DESIGN
+from .columns import KINDS, STATUS
+from .file import WORDS
+from .plan import IDENTITY
+
+_NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
+
+
+@dataclass(frozen=True)
+class KeptColumn:
+    """What a file says of a column: unit, meaning, and its axes beyond those of the designs."""
+
+    name: str
+    unit: str
+    long_name: str
+    axes: tuple[str, ...]
+
+
+def contents(file: h5py.File) -> dict[str, Any]:
+    """The fields of a :class:`.Sweep` that its file tells.
+
+    Raises ``ValueError``, ``KeyError`` and others where it is not what a sweep writes.
+    """
+    check_links(file)
+    attributes = file.attrs
+    identity = {key: json.loads(attributes[key]) for key in WORDS} | {key: _plain(attributes[key]) for key in _NAMED}
+    check_shape(identity, IDENTITY, "attributes")
+    columns: dict[str, KeptColumn] = {}
+    status = file[STATUS]
+    names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
+    dimensions = dict(zip(names, status.shape, strict=True))
+
+    def length(name: str) -> int:
+        return dimensions[name] if name in dimensions else int(file[name].size)
+
+    def visit(place: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset):
+            folder, _, own = place.rpartition("/")
+            if item.is_scale or folder == "grid":
+                check_dataset(item, [length(own if item.is_scale else DESIGN)])
+            else:
+                axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
+                check_dataset(item, [*status.shape, *map(length, axes)])
+                name = place.replace("/", ":")
+                columns[name] = KeptColumn(name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes)
+
+    file.visititems(visit)
+    if list(dimensions) not in ([DESIGN], list(file["grid"])):
+        raise ValueError(f"it is over {', '.join(dimensions)}, and has values of {', '.join(file['grid'])}")
+    if len(columns) != attributes["columns"]:
+        raise ValueError(f"it has {len(columns)} columns of {attributes['columns']}")
+    sentences = parsed(status.attrs["sentences"], {str: str}, "sentences")
+    words = zip(sentences.items(), shown(status.attrs["flag_meanings"]).split(), strict=True)
+    return {
+        "identity": identity,
+        "dimensions": dimensions,
+        "parameters": {name: shown(file["grid"][name].attrs["units"]) for name in file["grid"]},
+        "columns": {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
+        "statuses": {int(number): (word, sentence) for (number, sentence), word in words},
+    }
+
+
+def _plain(value: Any) -> Any:
+    return int(value) if isinstance(value, np.integer) else shown(value)

@@ -1,0 +1,58 @@
+"""What a sweep asks of an engine: many designs in, the peaks of each out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from ...base.arrays import Array
+from ...instants.refusal import Status
+from ...instants.solution import Provenance
+from ..designs.engine import Outcome
+
+STATUSES: Mapping[int, tuple[str, str]] = {int(status): (status.name.lower(), status.meaning) for status in Status}
+"""A word and a sentence for each status."""
+
+
+class Engine(Protocol):
+    """A scene compiled once, for any designs."""
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Full names of what peaks are found of."""
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """Full names of the efforts."""
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """Full names of quantities, and of what histories hold, that equilibrium may leave open for some designs: NaN there."""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Full names of what histories hold."""
+
+    @property
+    def cost(self) -> float:
+        """Seconds that a core takes for a design, about: counted, not measured, so that it is the same everywhere."""
+
+    @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+
+    @property
+    def provenance(self) -> Provenance:
+        """How the numbers are made."""
+
+    def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
+        """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""
+
+    def slopes_at(self, p: Array, outcome: Outcome) -> Array:
+        """The derivatives of the peaks of the outcome of designs ``p`` by all parameters, (designs, quantities, parameters)."""
+
+    def mean_slopes_at(self, p: Array, outcome: Outcome) -> Array:
+        """Those of means over time, and of roots of mean squares, (designs, 2, efforts, parameters)."""
+
+    def failures(self, p: Array) -> Mapping[str, float]:
+        """What fails of one design that has a result, (parameters,), when it is checked in full; nothing where all is well."""

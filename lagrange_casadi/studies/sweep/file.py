@@ -1,0 +1,148 @@
+"""The file of a sweep: parts joined, in chunks that the plan alone sets; ``docs/sweeps.md`` is its schema.
+
+Every dimension's scale is in the root, where netCDF looks for it, and those of parameters are under ``grid`` as well.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ...base.publish import PatientFile
+from ...base.tables import CF, table_of
+from ...declare.wanted_slopes import SENSITIVITY
+from ...errors import DeclarationError
+from ...store.scales import LARGE, Scales
+from .axes import DESIGN, Designs, Grid
+from .blocks import chunk_of, slabs
+from .chunks import FILTERS
+from .column import Column
+from .columns import KINDS
+from .instant_axis import InstantAxis
+from .plan import SCHEMA, Plan
+from .strength import LEAST, LIFE, MASS
+
+WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
+"""Attributes that are JSON; the others of a plan's identity are as they stand."""
+
+_CHUNK = 1 << 15
+_SOME = ("peak_over", SENSITIVITY, LEAST, LIFE, MASS)
+"""Kinds of columns that not every file has."""
+
+_XI = ("1", "place along a link, ratio xi/l")
+_TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")
+
+
+def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] = ()) -> None:
+    """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own.
+
+    ``axis`` is that of the instants, ``columns`` are what is kept.
+    """
+    kinds = {column.name.partition(":")[0] for column in columns}
+    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()), *(kind for kind in _SOME if kind in kinds))
+    for name in designs.dimensions:
+        if name in taken and isinstance(designs, Grid):
+            raise DeclarationError(
+                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep a list of designs instead"
+            )
+
+
+@contextmanager
+def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Callable[[Sequence[bytes]], None]]:
+    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order; removed on any failure.
+
+    ``breathe`` lets an interrupt through, while long axes are written. Raises ``OSError`` where the file cannot be written.
+    """
+    try:
+        with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+            scales = Scales(file)
+            _begin(file, plan, scales, breathe)
+            if bytes_.failure:
+                raise bytes_.failure
+            datasets = [(_created(file, plan, column, scales), (0,) * len(column.axes)) for column in plan.columns]
+            scales.finish()
+            slabs = plan.slabs()
+
+            def append(contents: Sequence[bytes]) -> None:
+                _, _, where = next(slabs)
+                corner = tuple(place.start or 0 if isinstance(place, slice) else place for place in where)
+                for (dataset, rest), content in zip(datasets, contents, strict=True):
+                    dataset.id.write_direct_chunk((*corner, *rest), content)
+                if bytes_.failure:
+                    raise bytes_.failure
+                os.fsync(bytes_.fileno())  # else all of it waits for the disk in the end
+
+            yield append
+            file.flush()
+            file.attrs["complete"] = True
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
+
+
+def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], None]) -> None:
+    """Scales and attributes."""
+    grid = file.create_group("grid", track_order=True)
+    parameters = plan.scene.mechanism.parameters
+    designs = plan.designs
+    if not isinstance(designs, Grid):
+        scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64, breathe)
+        scale.make_scale(DESIGN)
+        scale.attrs["units"], scale.attrs["long_name"] = "1", "number of the design"
+    for name in designs.names:
+        length = designs.dimensions.get(name, designs.size)
+        scale = _stream(grid, name, (length,), lambda start, stop, name=name: designs.scale(name, start, stop), np.float64, breathe)
+        scale.attrs["units"], scale.attrs["long_name"] = parameters[name].unit, f"parameter {name}"
+        if isinstance(designs, Grid):
+            file[name] = scale
+            scale.make_scale(name)
+        else:
+            scales.attach(scale, [DESIGN])
+    instants = plan.harvest.axis
+    axes = {instants.name: (instants.values, instants.unit, instants.long_name), "xi": (plan.harvest.xi, *_XI)}
+    for axis, (values, unit, meaning) in axes.items():
+        if any(axis in column.axes for column in plan.columns):
+            scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
+            scale.attrs["units"], scale.attrs["long_name"] = unit, meaning
+            scale.make_scale(axis)
+    file.attrs["schema"] = SCHEMA
+    for key, value in plan.identity.items():
+        file.attrs[key] = json.dumps(value) if key in WORDS else value
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.scene.mechanism.space).conventions
+    file.attrs["parameters"] = json.dumps(dict(plan.values))
+    file.attrs["columns"] = len(plan.columns)
+
+
+def _stream(
+    group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any, breathe: Callable[[], None]
+) -> Any:
+    """A dataset over one axis, filled in pieces."""
+    chunk = chunk_of(shape, _CHUNK)
+    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, fillvalue=_nothing(dtype), **FILTERS, **LARGE)
+    for start, stop, where in slabs(shape, chunk):
+        dataset[where] = values(start, stop)
+        breathe()
+    return dataset
+
+
+def _nothing(dtype: Any) -> Any:
+    """What is read where nothing was written: no number, or one that means nothing."""
+    return np.nan if np.dtype(dtype).kind == "f" else np.iinfo(dtype).min
+
+
+def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> Any:
+    """The dataset of a column, empty."""
+    shape, chunk = (*plan.dims, *column.lengths), (*plan.chunk, *column.lengths)
+    dataset = file.create_dataset(column.place, shape, column.dtype, chunks=chunk, fillvalue=_nothing(column.dtype), **FILTERS)
+    dataset.attrs["units"] = column.unit
+    for key, text in column.attributes.items():
+        dataset.attrs[key] = text
+    scales.attach(dataset, (*plan.designs.dimensions, *column.axes))
+    return dataset

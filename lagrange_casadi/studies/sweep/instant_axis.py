@@ -1,0 +1,50 @@
+"""What a sweep's histories are over: time, a drive's coordinate, or the place in the cycle of each design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.tables import ANGLE, LENGTH
+from ...declare.even_points import points
+from ...declare.scene import Scene
+from ...declare.times import Timing
+
+OVER, CYCLE = "over", "cycle"
+"""Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""
+
+_WORDS = {OVER: "the drive's coordinate", CYCLE: "the cycle"}
+
+
+def in_words(axes: Sequence[str]) -> str:
+    """Axes of columns in words."""
+    return " and ".join(_WORDS.get(axis, axis) for axis in axes)
+
+
+@dataclass(frozen=True, eq=False)
+class InstantAxis:
+    """An axis: its name in the file, unit and meaning, and values (t,); ``joint`` is the drive by which instants are asked for."""
+
+    name: str
+    unit: str
+    long_name: str
+    values: Array
+    joint: str = ""
+    drive_unit: str = ""
+
+    @classmethod
+    def of(cls, scene: Scene, timing: Timing) -> InstantAxis:
+        """That of a scene's designs."""
+        if timing.shared:
+            return cls("t", "s", "time", scene.instants(timing, scene.mechanism.values()).t)
+        joint = timing.joint
+        unit = "" if not joint else LENGTH if scene.guided.coordinates[joint][1].kind == "slide" else ANGLE
+        if joint and timing.fixed:
+            start, stop, _ = timing.bounds(np.zeros((1, 0)))
+            coordinates = points((float(start[0]), float(stop[0]), timing.count))
+            return cls(OVER, unit, f"coordinate of joint '{joint}'", coordinates, joint, unit)
+        places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
+        return cls(CYCLE, "1", "place in the cycle, from the first instant of a design to its last", places, joint, unit)

@@ -1,0 +1,319 @@
+"""A sweep before it runs: which designs, what is kept of them, and the words that tell it from any other sweep."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...base.arrays import Array
+from ...base.room import in_words, require
+from ...base.vocabulary import Keep
+from ...declare.description import Description, shape_of
+from ...declare.even_points import EvenPoints, points
+from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
+from ...declare.times import Over, Times, Timing
+from ...declare.wanted_slopes import SENSITIVITY, by_parameters
+from ...equations.derive import derive
+from ...equations.described import described
+from ...equations.fingerprint import fingerprint, sources
+from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
+from ...instants.rung import Rung
+from ...instants.solution import Provenance
+from ..designs.engine import DesignEngine
+from .axes import Designs, check_designs, counted
+from .blocks import Slab, chunk_of, slabs
+from .column import Column
+from .columns import Harvest, check_keep
+from .engine import Engine
+from .instant_axis import InstantAxis
+
+SCHEMA = "lagrange-casadi-sweep"
+SCHEMA_VERSION = 5
+"""Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those of 3 are of planar mechanisms
+alone, and those of 4 have no sensitivities; all three are still written."""
+
+_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
+READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
+
+_BOUND = (float, str)
+"""Where instants start and stop: a number, or an expression of parameters in words."""
+
+IDENTITY = {
+    "schema_version": int,
+    "case": str,
+    "versions": {str: str},
+    **dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str),
+    "wanted": {},
+    "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
+    "xi": (None, [float, float, int]),
+    "mechanism": shape_of,
+    "grid": {str: str},
+}
+"""The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
+
+MANY, MOST = 10**9, 10**12
+"""Designs beyond which a sweep must be meant, and beyond which it cannot be."""
+
+_LONG, _LARGE = 600.0, 10**10
+"""Seconds of a core, and bytes, of which nothing need be said."""
+
+_FEW, _SHARES = 1 << 11, 12
+_TRIED = 64
+"""Designs that are tried where the defaults cannot be assembled."""
+
+_LARGEST = 1 << 31
+"""Bytes of a chunk of the file."""
+
+_TIMES = 4
+"""How many times what is kept of a design is in memory before it is written."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves.
+
+    ``assembly`` are parameters with which it is assembled, where its defaults cannot be.
+    """
+
+    wanted: tuple[str, ...]
+    timing: Timing
+    xi: EvenPoints | None
+    keep: Keep
+    rung: Rung
+    assembly: tuple[tuple[str, float], ...] = ()
+
+    def scene(self, scene: Scene) -> Scene:
+        """The scene, assembled with the task's own parameters where it has some."""
+        return dataclasses.replace(scene, assembly=dict(self.assembly)) if self.assembly else scene
+
+    def harvest(self, scene: Scene) -> Harvest:
+        """The scene compiled, and what is kept of its outcomes."""
+        xi = np.zeros(0) if self.xi is None else points(self.xi)
+        engine = compiled(scene, self.wanted, self.timing, self.rung)
+        named = [name for name in self.wanted if name != "all"]
+        safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
+        by = by_parameters(scene.mechanism, self.wanted)
+        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi, safety, life, by)
+
+
+def compiled(scene: Scene, wanted: Sequence[str], timing: Timing, rung: Rung) -> Engine:
+    """The engine of a scene."""
+    return DesignEngine.of(scene, wanted, rung=rung, timing=timing)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their defaults."""
+
+    scene: Scene
+    designs: Designs
+    values: Mapping[str, float]
+    task: Task
+    harvest: Harvest
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        designs: Designs,
+        *,
+        fixed: Mapping[str, float] | None = None,
+        t: Times | None = None,
+        over: Over | None = None,
+        xi: EvenPoints | None = None,
+        wanted: Sequence[str] | None = None,
+        keep: Keep = "peaks",
+        rung: Rung | None = None,
+        many: bool = False,
+    ) -> Plan:
+        """Check everything that can be before anything is evaluated. Raises what :func:`.sweep` does."""
+        fixed, rung = fixed or {}, rung or Rung()
+        if rung.table is not None:
+            raise DeclarationError("a sweep reads no tables: every design would need one of its own")
+        check_keep(keep)
+        check_designs(designs, scene.mechanism, fixed)
+        values = scene.mechanism.values(fixed)
+        if designs.size > MOST:
+            raise DeclarationError(f"the grid has {counted(designs.size)}, and a sweep at most 10^12")
+        if designs.size > MANY and not many:
+            raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
+        names = _wanted(scene, wanted)
+        ratios = None if xi is None else checked_ratios(xi)
+        task = Task(names, scene.timing(t, over), ratios, keep, rung, _assembly(scene, designs, values, names))
+        scene = task.scene(scene)
+        harvest = task.harvest(scene)
+        largest = max(harvest.columns, key=lambda column: column.width)
+        if largest.width > _LARGEST:
+            size = f"{largest.width / 2**30:.3g} GiB"
+            raise SizeError(f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer instants or ratios")
+        require("a design and what it is made from", (_TIMES, sum(column.width for column in harvest.columns) // 8))
+        return cls(scene, designs, values, task, harvest)
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return self.designs.size
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """What is kept of each."""
+        return self.harvest.columns
+
+    @property
+    def axes_size(self) -> int:
+        """Bytes of the values along the designs' axes."""
+        return 8 * sum(self.designs.dimensions.values())
+
+    @property
+    def most(self) -> int:
+        """Bytes of the file, at most; columns are smaller where they deflate."""
+        return self.axes_size + self.size * sum(column.width for column in self.columns)
+
+    def takes(self, done: int) -> str:
+        """What is still to be done after so many designs, in words; nothing where that is little."""
+        time = (self.size - done) * self.harvest.engine.cost
+        if time < _LONG and self.most < _LARGE:
+            return ""
+        return f"{counted(self.size - done)} take about {in_words(time)} of a core and a file of up to {self.most / 1e9:.3g} GB"
+
+    @property
+    def dims(self) -> tuple[int, ...]:
+        """The lengths of the designs' axes."""
+        return tuple(self.designs.dimensions.values())
+
+    @cached_property
+    def chunk(self) -> tuple[int, ...]:
+        """The lengths of a chunk of the file along these axes: a block."""
+        # Some blocks more, where there are few, let workers end together.
+        return chunk_of(self.dims, min(self.harvest.block, max(_FEW, self.size // _SHARES)))
+
+    @property
+    def room(self) -> int:
+        """How many designs a chunk has room for."""
+        return math.prod(self.chunk)
+
+    def slabs(self) -> Iterator[Slab]:
+        """All blocks, in order."""
+        return slabs(self.dims, self.chunk)
+
+    def block(self, start: int, stop: int) -> Array:
+        """Designs by number, of shape (designs, parameters): all parameters in the order of declaration."""
+        names = list(self.values)
+        p = np.tile(np.array(list(self.values.values())), (stop - start, 1))
+        p[:, [names.index(name) for name in self.designs.names]] = self.designs.block(start, stop)
+        return p
+
+    @property
+    def _version(self) -> int:
+        """The first version of the schema that has all of it."""
+        if self.harvest.by:
+            return SCHEMA_VERSION
+        if self.scene.mechanism.space:
+            return _WITHOUT_SLOPES
+        return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
+
+    @property
+    def description(self) -> Description:
+        """The mechanism, the swept parameters at their defaults."""
+        return described(self.scene, self.values)
+
+    @cached_property
+    def identity(self) -> dict[str, Any]:
+        """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
+        words = {
+            "schema_version": self._version,
+            "case": self.scene.mechanism.name,
+            **signature(self.scene, self.task, self.harvest.engine.provenance),
+            "mechanism": self.description,
+            "grid": self.designs.describe(),
+        }
+        told: dict[str, Any] = json.loads(json.dumps(words))
+        return told
+
+
+def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> tuple[tuple[str, float], ...]:
+    """Parameters to assemble a scene with: none where its own serve, else those of the first of some designs that can be assembled.
+
+    Raises what :func:`.derive` does for the scene's own where there is none.
+    """
+    try:
+        derive(scene, wanted)
+    except (AssemblyError, MobilityError):
+        for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
+            row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
+            try:
+                tried = dataclasses.replace(scene, assembly={**values, **row})
+                derive(tried, wanted)
+            except (AssemblyError, DeclarationError, ParameterError):
+                continue
+            return tuple(tried.assembly.items())
+        raise
+    return ()
+
+
+def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
+    wanted = scene.wanted if wanted is None else wanted
+    Wanted.of(scene.mechanism, wanted)
+    names = tuple(wanted)
+    without_fitted(scene.mechanism, names, "sweeps")
+    if "all" not in names or "motion" in names:
+        return names
+    own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
+    strength = (name for name in names if name.partition(":")[0] in STRENGTH)
+    slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.mechanism, names))
+    return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
+
+
+def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:
+    """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
+    wanted, by = Wanted.of(scene.mechanism, task.wanted), by_parameters(scene.mechanism, task.wanted)
+    words = {
+        "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
+        "sources": sources(),
+        "backend": provenance.backend,
+        "precision": provenance.precision,
+        "compiler": provenance.compiler,
+        "flags": provenance.flags,
+        "rung": provenance.rung,
+        "wanted": dataclasses.asdict(wanted) | ({SENSITIVITY: by} if by else {}),
+        "t": task.timing.words(scene.mechanism.symbols),
+        "xi": task.xi,
+        "keep": task.keep,
+        "scene": fingerprint(scene, wanted) or "cannot be told",
+    }
+    told: dict[str, Any] = json.loads(json.dumps(words))
+    return told
+
+
+def difference(before: Any, now: Any, where: str = "") -> str | None:
+    """The first place at which two identities differ, in words; None where they do not."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in dict.fromkeys([*before, *now]):
+            place = f"{where} {key}".strip()
+            if key not in before or key not in now:
+                return f"{place} was {'not there' if key not in before else 'there'}, and {'is' if key in now else 'is not'}"
+            found = difference(before[key], now[key], place)
+            if found:
+                return found
+        if where == "grid" and list(before) != list(now):
+            return f"the axes of the grid were {', '.join(before)} and are {', '.join(now)}"
+        return None
+    if before == now:
+        return None
+    if where in ("sources", "scene"):
+        what = {"sources": "the program's own code", "scene": "an expression, a law of motion or the posture of the scene"}[where]
+        return f"{what} has changed"
+    return f"{where} was {_short(before)} and is {_short(now)}"
+
+
+def _short(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)

@@ -1,0 +1,134 @@
+"""Sweeps from Python: a scene, or a case, over a grid or a list of designs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...arguments import Outputs, ThreadCount, public
+from ...base.room import MOST_THREADS
+from ...base.vocabulary import Backend, Keep, Precision
+from ...case import Case
+from ...declare.even_points import EvenPoints
+from ...declare.scene import Scene
+from ...declare.times import Over, Times
+from ...errors import DeclarationError
+from ...instants.rung import Rung, Steps
+from ...methods import method
+from .axes import designs_of
+from .carrying_out import Progress, carry_out
+from .plan import Plan
+from .reading import Sweep
+from .workers import Threads, Workers
+
+
+@public
+def sweep(
+    scene: Scene | Case,
+    grid: Any,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+    xi: EvenPoints | None = None,
+    wanted: Outputs | None = None,
+    keep: Keep = "peaks",
+    backend: Backend = "auto",
+    precision: Precision = "double",
+    newton: Steps | None = None,
+    flags: str = "",
+    workers: ThreadCount | None = None,
+    dask: str | None = None,
+    resume: bool = False,
+    force: bool = False,
+    many: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Evaluate a scene for many designs, and keep of each what sizes its parts. Nothing is derived or compiled for a design.
+
+    Parameters
+    ----------
+    scene
+        A scene, or a case from :func:`.load_case`; a cluster needs a case, for its workers load it too.
+    grid
+        A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or a :class:`.Range`; or a
+        :class:`.Listed` of designs, as :func:`.read_designs` reads it from CSV.
+    out
+        The file; by default one that lives as long as what is returned.
+    parameters
+        Values of parameters that are not swept.
+    t, over, wanted
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name. With ``over``, or with bounds of
+        ``t`` that are expressions of parameters, every design has times of its own.
+    xi
+        Ratios xi/l at which section forces are kept too: over the instants, the value largest in size at each.
+    keep
+        ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all outputs over time.
+    backend, precision, newton, flags
+        How it is evaluated: see :class:`.Rung`.
+    workers
+        How many threads share the designs; default: one a core.
+    dask
+        The address of a Dask scheduler whose workers evaluate instead.
+    resume, force
+        Go on with what an earlier sweep into ``out`` left, or start anew whatever is there.
+    many
+        Mean it where there are more than 10^9 designs.
+    progress
+        Called with what is being done (``designs``, after an interrupt ``stopping``, then ``file``), how much of it is done, and of
+        how much.
+
+    Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
+    :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
+    :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
+    :class:`StoppedError` after an interrupt. What was done is kept.
+    """
+    case = scene if isinstance(scene, Case) else None
+    own = scene.scene if isinstance(scene, Case) else scene
+    if not isinstance(own, Scene):
+        raise DeclarationError(f"sweep: expected a Scene or a Case, got {own!r}")
+    plan = Plan.of(
+        own,
+        designs_of(grid),
+        fixed=parameters,
+        t=t,
+        over=over,
+        xi=xi,
+        wanted=wanted,
+        keep=keep,
+        rung=Rung(backend, precision, newton, None, flags),
+        many=many,
+    )
+    keeper = _Temporary() if out is None else None
+    target = keeper.path / "sweep.h5" if keeper else Path(out or "")
+    hands = hired(workers, dask, case)
+    seen = carry_out(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
+    return Sweep.open(target, keeper, seen)
+
+
+class _Temporary:
+    """A folder that goes with the object."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="lagrange_casadi-"))
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+
+def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
+    """Who evaluates. Raises :class:`DeclarationError` for a count that no machine has, both, or a cluster without a case."""
+    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_THREADS):
+        raise DeclarationError(f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}")
+    if dask is None:
+        return Threads(workers)
+    if workers is not None:
+        raise DeclarationError("workers and dask exclude each other: a cluster has workers of its own")
+    if case is None:
+        raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
+    cluster: Workers = method("sweep.dask")(dask, case)
+    return cluster

@@ -1,0 +1,75 @@
+"""Who evaluates blocks: here, the threads of this process."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Generator, Iterable
+from concurrent.futures import wait
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from ...base.room import cores, memory
+from .blocks import Queue
+from .crew import Crew
+from .plan import Plan
+
+Block = tuple[int, int, list[bytes]]
+"""Designs from and to before, and their columns as the file keeps them."""
+
+Blocks = Generator[Block | None, None, None]
+"""Blocks as they are done; None where nothing was done for a while, so that whoever waits may stop."""
+
+
+PULSE, PATIENCE = 0.1, 0.7
+"""Seconds after which whoever waits hears that nothing came, and in which blocks that are under way may still end."""
+
+
+class Workers(Protocol):
+    """Whoever evaluates blocks."""
+
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
+        """Evaluate what is in the queue, in any order; what was begun when it is stopped is given if it ends within patience."""
+
+
+@dataclass(frozen=True)
+class Threads:
+    """Threads of this process, by default one a core, each at a block of its own; fewer where memory does not hold as many."""
+
+    count: int | None = None
+
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
+        """Evaluate what is in the queue."""
+        count = max(1, int(min(self.count or cores(), memory() / max(1, plan.harvest.engine.room))))
+
+        def evaluated(start: int, stop: int) -> list[bytes]:
+            return plan.harvest.chunks(plan.block(start, stop), plan.room)
+
+        crew, pending = Crew(count), deque[tuple[int, int, Any]]()
+        try:
+            while True:
+                while len(pending) <= count and (block := queue.take()):
+                    pending.append((*block, crew.give(evaluated, *block)))
+                if not pending:
+                    return
+                start, stop, future = pending[0]
+                if queue.stopped:
+                    yield from _last(pending)
+                    return
+                if not wait([future], PULSE).done:
+                    yield None
+                    continue
+                pending.popleft()
+                yield start, stop, future.result()
+        finally:
+            for _, _, future in pending:
+                future.cancel()
+            crew.dismiss()
+
+
+def _last(pending: Iterable[tuple[int, int, Any]]) -> Blocks:
+    """Of blocks that were begun, those that still end; of the others none begins."""
+    begun = [(start, stop, future) for start, stop, future in pending if not future.cancel()]
+    ended = wait([future for _, _, future in begun], PATIENCE).done
+    for start, stop, future in begun:
+        if future in ended:
+            yield start, stop, future.result()

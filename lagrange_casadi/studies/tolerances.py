@@ -1,0 +1,166 @@
+"""What tolerances of parameters do to peaks: to first order by exact derivatives, and by designs drawn at random."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from ..arguments import Outputs, public
+from ..base.arrays import Array
+from ..base.numerals import real
+from ..base.units import Within
+from ..base.vocabulary import SAMPLES, Backend
+from ..declare.mechanism import Mechanism
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.refusal import Status
+from .designs.prepared import prepare
+
+_LARGEST = 1_000_000
+_UNITS = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "m": ("m", 1.0), "deg": ("rad", np.pi / 180.0), "rad": ("rad", 1.0)}
+_UNITS |= {"g": ("kg", 1e-3), "kg": ("kg", 1.0)}
+"""Units that a tolerance may be told in: of which unit they are, and how much of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """How far the peak of a quantity spreads.
+
+    ``nominal`` is the peak without tolerances, with its sign. To first order ``worst`` is how far it may be off, if every parameter
+    is at the worse end of its tolerance, and ``sigma`` its standard deviation; ``shares`` are by parameter what of the variance is
+    due to it, the largest first. Both are NaN where the peak has no derivative. ``mean``, ``deviation``, ``low`` and ``high`` are
+    those of the designs that were drawn: mean, standard deviation, least and largest.
+    """
+
+    quantity: str
+    unit: str
+    nominal: float
+    worst: float
+    sigma: float
+    shares: Mapping[str, float]
+    mean: float
+    deviation: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Spreads:
+    """What tolerances [units of the parameters] do to a scene's peaks, by full name, the one that spreads most for its size first.
+
+    ``drawn`` designs were evaluated, of which ``failed`` have no result.
+    """
+
+    case: str
+    tolerances: Mapping[str, float]
+    drawn: int
+    failed: int
+    peaks: Mapping[str, Spread]
+
+
+def read_tolerance(mechanism: Mechanism, name: str, value: float | str, nominal: float) -> float:
+    """A tolerance in the parameter's unit: a number, or a text such as ``0.1mm``, ``0.5deg``, ``2g`` or ``1%``.
+
+    Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is no tolerance of it.
+    """
+    if name not in mechanism.parameters:
+        raise UnknownNameError("parameter", name, mechanism.parameters)
+    unit = mechanism.parameters[name].unit
+    try:
+        found = _number(value, unit, nominal)
+    except ValueError:
+        raise DeclarationError(
+            f"tolerance of '{name}': expected a number above 0 in {unit or '1'}, or a text such as '0.1mm', '0.5deg', '2g' or "
+            f"'1%', got {value!r}"
+        ) from None
+    return found
+
+
+def _number(value: float | str, unit: str, nominal: float) -> float:
+    if isinstance(value, str):
+        text = value.strip()
+        if text.endswith("%"):
+            found = real(text[:-1]) / 100.0 * abs(nominal)
+        else:
+            digits = text.rstrip("adegmkru")
+            of, scale = _UNITS.get(text[len(digits) :].strip(), (unit, 1.0))
+            if of != unit or (text[len(digits) :] and text[len(digits) :] not in _UNITS):
+                raise ValueError
+            found = real(digits) * scale
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError
+    else:
+        found = float(value)
+    if not 0.0 < found < np.inf:
+        raise ValueError
+    return found
+
+
+@public
+def tolerances(
+    scene: Scene,
+    within: Mapping[str, float | str],
+    *,
+    parameters: Mapping[str, float] | None = None,
+    wanted: Outputs | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+    samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
+    backend: Backend = "auto",
+) -> Spreads:
+    """How far peaks spread where parameters are ``within`` tolerances: by name plus or minus so much, as ``{"l": "0.1mm"}``.
+
+    To first order by exact derivatives; and by ``samples`` designs, whose parameters are drawn evenly from their tolerances and
+    independently, the same ones in every run. A standard deviation is that of even distributions: a tolerance over the root of 3.
+
+    ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises what that does, and
+    :class:`DeclarationError` for what is no tolerance.
+    """
+    if not isinstance(scene, Scene):
+        raise DeclarationError(f"tolerances: expected a Scene, got {scene!r}")
+    if not isinstance(within, Mapping) or not within:
+        raise DeclarationError(f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}")
+    mechanism = scene.mechanism
+    values = mechanism.values(parameters)
+    sizes = {name: read_tolerance(mechanism, name, value, values.get(name, 0.0)) for name, value in within.items()}
+    for name, size in sizes.items():
+        for end in (values[name] - size, values[name] + size):
+            mechanism.parameters[name].check(end)
+    f = prepare(scene, wanted=wanted, t=t, over=over, backend=backend)
+    gradient = f.gradient(values)
+    places = [f.parameters.index(name) for name in sizes]
+    reach = np.array(list(sizes.values()))
+    p = np.tile(np.array(list(values.values())), (samples, 1))
+    p[:, places] += reach * np.random.default_rng(0).uniform(-1.0, 1.0, (samples, reach.size))
+    drawn = f.designs(p)
+    ok = drawn.status == Status.OK
+    moves = gradient.slopes[:, places] * reach
+    found = {}
+    for k, quantity in enumerate(f.quantities):
+        found[quantity] = _spread(quantity, f.units[k], float(gradient.value[k]), moves[k], tuple(sizes), drawn.value[ok, k])
+    ranked = sorted(found, key=lambda name: -_relative(found[name]))
+    return Spreads(mechanism.name, sizes, samples, int(np.count_nonzero(~ok)), {name: found[name] for name in ranked})
+
+
+def _spread(quantity: str, unit: str, nominal: float, moves: Array, names: Sequence[str], values: Array) -> Spread:
+    # The sign of a peak may turn where two are nearly as large.
+    values = values * np.sign(values) * (np.sign(nominal) or 1.0)
+    variances = moves**2 / 3.0
+    total = float(variances.sum())
+    shares = variances / total if total > 0.0 else np.zeros_like(variances)
+    order = sorted(range(len(names)), key=lambda k: -shares[k] if shares[k] == shares[k] else 0.0)
+    told = values.size > 0 and bool(np.isfinite(values).all())
+    mean, deviation, low, high = (
+        (float(x) for x in (values.mean(), values.std(), values.min(), values.max())) if told else (float("nan"),) * 4
+    )
+    by_name = {names[k]: float(shares[k]) for k in order}
+    return Spread(quantity, unit, nominal, float(np.abs(moves).sum()), total**0.5, by_name, mean, deviation, low, high)
+
+
+def _relative(spread: Spread) -> float:
+    share = spread.sigma / abs(spread.nominal) if spread.nominal else 0.0
+    return share if np.isfinite(share) else -1.0

@@ -1,0 +1,126 @@
+"""How far a point moves because links bend, by the unit-load method.
+
+The displacement of a point along a direction is the sum over all links of section forces, times compliance, times the section
+forces of a unit force there (Castigliano; Timoshenko, *Strength of Materials*, part I, on strain energy), the drives held. The
+latter are the difference of two evaluations, with a force as large as the machine's own, and without.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import casadi as ca
+import numpy as np
+
+from ..arguments import public
+from ..base.arrays import Array
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Body, Force, Link, Parameter, Point, PointMass
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..elastic.compliance import Compliance, nodes
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..strength.member import Member
+from .evaluate import evaluate
+
+_LOAD = "tool deflection"
+_PUSHES = tuple(f"{_LOAD} {axis}" for axis in "xyz")
+
+
+@dataclass(frozen=True, eq=False)
+class ToolDeflection:
+    """How far a point moves because links bend, stretch and twist, at instants ``t`` [s].
+
+    ``by_link`` is the part of every link that has a beam, in ground axes [m], (t, 2), in space (t, 3); other links are rigid.
+    """
+
+    t: Array
+    by_link: Mapping[str, Array]
+
+    @property
+    def moved(self) -> Array:
+        """The displacement."""
+        return np.asarray(sum(self.by_link.values()))
+
+    @property
+    def size(self) -> Array:
+        """How far it is, (t,)."""
+        return np.asarray(np.linalg.norm(self.moved, axis=1))
+
+    @property
+    def largest(self) -> float:
+        """The largest over the instants."""
+        return float(self.size.max())
+
+
+@public
+def tool_deflection(
+    scene: Scene,
+    point: Body | Point,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+) -> ToolDeflection:
+    """How far a point of a scene moves because links bend, quasi-statically, the drives held where they are.
+
+    Links that have a beam give way, others are rigid. Where equilibrium leaves forces open, least strain energy tells them.
+    Parameters are those of :func:`.evaluate`.
+
+    Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces of a link that gives way stay
+    open, or the point is on the ground or of another mechanism; and what :func:`.evaluate` does.
+    """
+    mechanism = scene.mechanism
+    if not isinstance(point, (Point, Link, PointMass)):
+        raise DeclarationError(f"tool_deflection: expected a point of the mechanism, got {point!r}")
+    place = point if isinstance(point, Point) else Point(point, 0.0, 0.0)
+    if mechanism.bodies.get(place.body.name) is not place.body or place.body is mechanism.ground:
+        raise DeclarationError(
+            f"tool_deflection: the point is on '{place.body.name}', expected a moving body of '{mechanism.name}'"
+        )
+    links = [name for name, link in mechanism.links.items() if link.beam is not None]
+    if not links:
+        raise DeclarationError("tool_deflection: no link has a beam, which says what it is made of; all are rigid")
+
+    pushed = replace(scene, mechanism=_pushed(mechanism, place), assembly=dict(scene.assembly))
+    asked: dict[str, Any] = {"t": t, "over": over, "wanted": [f"section:{link}" for link in links], "elastic": links}
+
+    def sections(forces: Mapping[str, float]) -> Solution:
+        return evaluate(pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked)
+
+    plain = sections({})
+    # A force elsewhere pulls a bar, and bends none.
+    members = {link: Member.of(plain, link, spun=link != place.body.name) for link in links}
+    beams = {link: Compliance.of(member, f"tool_deflection: link '{link}'") for link, member in members.items()}
+    push, ways = _size(plain, links), _PUSHES[: 3 if mechanism.space else 2]
+    by_link = {link: np.zeros((plain.t.size, len(ways))) for link in links}
+    for k, way in enumerate(ways):
+        unit = sections({way: push})
+        for link, beam in beams.items():
+            at = nodes(beam.member)
+            own = beam.member.at(at.u)
+            more = np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces]) - own
+            by_link[link][:, k] = np.sum(beam.strains(own, at.index, at.u) * more * at.weights, axis=(0, 2)) / push
+    return ToolDeflection(plain.t, by_link)
+
+
+def _size(solution: Solution, links: list[str]) -> float:
+    """A force as large as those in the links, so that nothing is lost in the difference."""
+    forces = ("axial", "shear")
+    most = max(float(np.abs(solution.section(link).law.extreme(force)[1]).max()) for link in links for force in forces)
+    return most or 1.0
+
+
+def _pushed(mechanism: Mechanism, place: Point) -> Mechanism:
+    """The mechanism with one force more, whose components are parameters."""
+    found: Any = copy.copy(mechanism)
+    pushes = {name: Parameter(name, 0.0, "N", -math.inf, math.inf, ca.SX.sym(name)) for name in _PUSHES}
+    found.parameters = dict(mechanism.parameters) | pushes
+    x, y, z = (parameter.symbol for parameter in pushes.values())
+    found.loads = dict(mechanism.loads) | {_LOAD: Force(_LOAD, place, x, y, False, z if mechanism.space else 0.0)}
+    return cast(Mechanism, found)

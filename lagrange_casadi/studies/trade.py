@@ -1,0 +1,238 @@
+"""The trade between speed and accuracy, measured: every method of evaluation (rung) on one scene, side by side on this machine.
+
+Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the scene's own grid, relative to the
+peak of each quantity over them; of what is zero by structure, relative to the largest peak of its unit. Times are of the
+instants alone, nothing derived or compiled, on one thread, taken in turns so that whatever else the machine does meets all.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..base.tables import ANGLE, LENGTH
+from ..base.vocabulary import PRECISIONS
+from ..codegen import find_compiler
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..equations.derive import assembled, derive
+from ..equations.scene_graph import SceneGraph
+from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
+from ..instants.backends import Evaluated, run
+from ..instants.from_table import columns
+from ..instants.refusal import resting, unfinished
+from ..instants.rung import Rung
+from ..judge.reference import reference
+from .peaks import Shortfall, shortfall
+
+INSTANTS = 10_000
+"""Instants that are timed, over the scene's own span of time; of the virtual machine a tenth."""
+
+COMPARED = 101
+COUNTS = (25, 50, 100, 200, 400, 800)
+"""Instants of a cycle, for what they miss of the peaks."""
+
+ROUNDS = 7
+_NIL = 1e-9
+_LEAST = 2e-3
+
+COMPILED = (
+    *(Rung(backend, precision) for precision in PRECISIONS for backend in ("lanes", "c")),
+    *(Rung("c", flags=flags) for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")),
+    Rung("lanes", flags="-ffast-math"),
+    *(Rung(backend, precision, newton=1) for precision in PRECISIONS for backend in ("lanes", "c")),
+    *(Rung(backend, newton=2) for backend in ("lanes", "c")),
+    *(Rung("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
+    *(Rung("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
+)
+RUNGS = (*COMPILED, Rung("vm"))
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What a rung costs and gives: seconds an instant, and errors relative to each quantity's peak.
+
+    ``largest`` is over all quantities and instants, ``median`` over the quantities' largest; ``worst`` names the quantity that errs
+    most. ``note`` says what else there is to know, such as how many nodes a table has.
+    """
+
+    rung: Rung
+    seconds: float
+    largest: float
+    median: float
+    worst: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The rungs of one scene, fastest first, and those that it has not, with the reason.
+
+    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where that cannot be said.
+    """
+
+    case: str
+    instants: int
+    compared: int
+    measurements: tuple[Measurement, ...]
+    refused: Mapping[str, str]
+    peaks: tuple[Shortfall, ...] = ()
+
+    @property
+    def front(self) -> tuple[Measurement, ...]:
+        """The rungs that no other one beats in both speed and accuracy, fastest first."""
+        found: list[Measurement] = []
+        for one in self.measurements:
+            if not found or one.largest < found[-1].largest:
+                found.append(one)
+        return tuple(found)
+
+    @property
+    def exported(self) -> Trade:
+        """The same of what exported C can be: one instant at a time, by a compiler's usual flags."""
+        return replace(self, measurements=tuple(one for one in self.measurements if one.rung.backend == "c" and not one.rung.flags))
+
+    def fastest(self, accuracy: float) -> Measurement:
+        """The fastest rung whose largest error is at most ``accuracy``, relative to the peak.
+
+        Raises :class:`AccuracyError` where none is; it names the most accurate one.
+        """
+        if not accuracy > 0.0:
+            raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
+        for one in self.measurements:
+            if one.largest <= accuracy:
+                return one
+        best = min(self.measurements, key=lambda one: one.largest)
+        raise AccuracyError(
+            f"no method of evaluating '{self.case}' keeps {accuracy:g} of the peak; the best, "
+            f"{best.rung.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it as plain numbers and words, for JSON."""
+        rungs = [asdict(one) | {"options": one.rung.options, "front": one in self.front} for one in self.measurements]
+        found = {"case": self.case, "instants": self.instants, "compared": self.compared, "rungs": rungs}
+        return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
+
+
+def trade(
+    scene: Scene,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+    wanted: Sequence[str] | None = None,
+    rungs: Sequence[Rung] = RUNGS,
+    progress: Callable[[Rung], None] = lambda rung: None,
+) -> Trade:
+    """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is told of each before it is taken.
+
+    Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
+    their own, and what :func:`.evaluate` raises where the scene has no result.
+    """
+    told = scene.mechanism.values(parameters)
+    values = np.array(list(told.values()))
+    times = scene.instants(scene.timing(t, over), told).t
+    scene = assembled(scene, told, wanted)
+    graph = derive(scene, wanted)
+    compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
+    truth = _Truth(graph, times, compared, values)
+    refused: dict[str, str] = {}
+    works: dict[Rung, tuple[Callable[[], Any], int]] = {}
+    found: dict[Rung, tuple[float, float, str, str]] = {}
+    for rung in rungs:
+        progress(rung)
+        if rung.newton is not None and graph.newton is None:
+            continue
+        try:
+            evaluated, _ = columns(graph, times, values, rung, 1)
+            if unfinished(graph, evaluated).any():
+                raise AssemblyError("some instants have no result")
+            works[rung] = _work(graph, times, values, rung)
+        except (AssemblyError, CompilerError, DeclarationError) as error:
+            refused[rung.options] = str(error)
+            continue
+        nodes = "" if evaluated.cycle is None else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
+        found[rung] = (*truth.errors(graph, evaluated), nodes)
+    seconds = _in_turns(works)
+    measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
+    ordered = tuple(sorted(measured, key=lambda one: one.seconds))
+    sampled = replace(scene, wanted=scene.wanted if wanted is None else wanted)
+    try:
+        peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
+    except (AssemblyError, DeclarationError):
+        peaks = ()
+    return Trade(scene.mechanism.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
+
+
+class _Truth:
+    """The reference at some instants, and how far an evaluation is from it."""
+
+    def __init__(self, graph: SceneGraph, t: Array, compared: Array, p: Array) -> None:
+        evaluated, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        moves = ~resting(graph, evaluated.out)  # at rest there is nothing to compare
+        compared = compared[moves[compared]] if moves[compared].any() else compared
+        self.compared = compared
+        rows = reference(graph, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
+        self.columns = {output: [row[k] for row in rows] for output, k in graph.outputs.items()}
+        self.angles = graph.loop_angles
+        peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
+        largest: dict[str, float] = {}
+        for name, peak in peaks.items():
+            unit = name.quantity.unit
+            largest[unit] = max(largest.get(unit, 0.0), peak)
+        for unit, size in _motions(graph, t, p).items():
+            largest[unit] = max(largest.get(unit, 0.0), size)
+        of_unit = {name: largest[name.quantity.unit] for name in peaks}
+        self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
+
+    def errors(self, graph: SceneGraph, evaluated: Evaluated) -> tuple[float, float, str]:
+        """The largest and the median error relative to the peaks, and which quantity errs most."""
+        worst = {}
+        for name, k in graph.outputs.items():
+            if name in self.columns:
+                gaps = [float(x - float(y)) for x, y in zip(self.columns[name], evaluated.out[k, self.compared], strict=True)]
+                if name in self.angles:
+                    gaps = [math.remainder(gap, math.tau) for gap in gaps]
+                worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
+        name = max(worst, key=lambda name: worst[name])
+        return worst[name], float(np.median(list(worst.values()))), str(name)
+
+
+def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
+    """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
+    extent, (_, rates, _) = graph.extent(p), (np.atleast_2d(part.full()) for part in graph.motion(t[None], p))
+    kinds = [graph.data.kinds.coordinates[name] for name in graph.driven]
+    turning = [np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0) for row, kind in zip(rates, kinds, strict=True)]
+    rate = float(max(turning, default=0.0))
+    units = ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0))
+    return {
+        unit + per: size * rate**power for unit, size in units for power, per in enumerate(("", "/s", "/s^2")) if unit + per != "1"
+    }
+
+
+def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
+    """What is timed, made ready, and its instants."""
+    count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
+    dense = np.linspace(t[0], t[-1], count)
+    evaluated, _ = columns(graph, dense, p, rung, 1)
+    return lambda: columns(graph, dense, p, rung, 1, into=evaluated), count
+
+
+def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:
+    """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be read off a clock."""
+    taken: dict[Rung, list[float]] = {rung: [] for rung in works}
+    for _ in range(ROUNDS):
+        for rung, (work, count) in works.items():
+            calls, start = 0, time.perf_counter()
+            while (passed := time.perf_counter() - start) < _LEAST or not calls:
+                work()
+                calls += 1
+            taken[rung].append(passed / (calls * count))
+    return {rung: float(np.median(times)) for rung, times in taken.items()}

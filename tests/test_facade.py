@@ -1,0 +1,111 @@
+"""The public names are there after a bare import, no others are listed, and little is loaded before it is asked for."""
+
+import ast
+import json
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import lagrange_casadi as lc
+from lagrange_casadi.base import vocabulary
+from lagrange_casadi.strength import CRITERIA
+from lagrange_casadi.strength.critical_plane import FINDLEY
+from lagrange_casadi.strength.stress import KINDS
+
+pytestmark = pytest.mark.quick
+
+STUB = Path(lc.__file__).with_suffix(".pyi")
+
+
+def fresh(program):
+    """What a program prints as JSON, in a process of its own."""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def test_the_public_names_are_listed_and_nothing_else():
+    tree = ast.parse(STUB.read_text())
+    named = [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    (listed,) = (ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign))
+    assert sorted(listed) == sorted(named) == dir(lc) == sorted(lc.__all__)
+    assert fresh("import json, lagrange_casadi as lc; print(json.dumps(dir(lc)))") == dir(lc)
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = lc.nothing
+
+
+def test_each_name_is_there_after_a_bare_import():
+    """And is what its stub says: no module takes the place of a function of its name, in whatever order they are asked for."""
+    program = """
+import json, sys, lagrange_casadi as lc
+names = dir(lc)
+for name in (names, names[::-1])[int(sys.argv[1]) if sys.argv[1:] else 0]:
+    getattr(lc, name)
+import lagrange_casadi.cli, lagrange_casadi.exports, lagrange_casadi.studies.sweep
+print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
+"""
+    tree = ast.parse(STUB.read_text())
+    submodules = {a.name for node in tree.body if isinstance(node, ast.ImportFrom) and node.module is None for a in node.names}
+    for order in ("0", "1"):
+        done = subprocess.run([sys.executable, "-c", program, order], capture_output=True, text=True, check=True)
+        kinds = json.loads(done.stdout)
+        assert {name for name, kind in kinds.items() if kind == "module"} == submodules
+        assert all(kinds[name] == "function" for name in ("evaluate", "sweep", "optimise", "export", "table", "check", "size"))
+
+
+def test_no_package_has_the_name_of_a_public_function():
+    """Imported late, it would replace the function as the package's attribute."""
+    tree = ast.parse(STUB.read_text())
+    functions = {a.name for node in tree.body if isinstance(node, ast.ImportFrom) and node.module for a in node.names}
+    modules = {path.stem for path in STUB.parent.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
+    assert not functions & modules
+
+
+LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.modules)))"
+
+
+@pytest.mark.parametrize(
+    ("program", "unneeded"),
+    [
+        ("import lagrange_casadi", ("numpy", "casadi", "h5py", "matplotlib", "lagrange_casadi.declare")),
+        ("import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate", ("h5py", "matplotlib", "lagrange_casadi.equations")),
+        ("import lagrange_casadi.cli", ("numpy", "casadi", "h5py", "matplotlib", "tqdm", "lagrange_casadi.declare")),
+        ("import lagrange_casadi as lc\nfor name in dir(lc): getattr(lc, name)", ("matplotlib", "tqdm", "distributed")),
+    ],
+)
+def test_what_is_not_asked_for_is_not_loaded(program, unneeded):
+    loaded = fresh(LOADED.format(program))
+    assert not set(loaded) & set(unneeded)
+
+
+def processor_time(*command):
+    """The least of some runs [s], of a process and those that it starts."""
+
+    def spent():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    found = []
+    for _ in range(4):
+        before = spent()
+        subprocess.run(command, check=True, capture_output=True)
+        found.append(spent() - before)
+    return min(found)
+
+
+@pytest.mark.skipif("PYTHONDONTWRITEBYTECODE" in os.environ, reason="nothing would be compiled before")
+def test_imports_take_little_time():
+    """In processor time, over that of what every mechanism needs."""
+    least = processor_time(sys.executable, "-c", "import casadi, numpy")
+    assert processor_time(sys.executable, "-c", "import lagrange_casadi") < 1.5 * least
+    asked = "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate"
+    assert processor_time(sys.executable, "-c", asked) < 2.5 * least
+    assert processor_time(sys.executable, "-m", "lagrange_casadi", "--help") < 2.0 * least
+
+
+def test_words_that_may_be_chosen_are_those_that_are_known():
+    assert set(vocabulary.CRITERIA) == {*CRITERIA, FINDLEY}
+    assert set(vocabulary.YIELDING) == {kind for kind in KINDS if kind not in ("normal", "shear")}
