@@ -11,8 +11,7 @@ from ..base.arrays import Array
 from ..base.tables import ANGLE, LENGTH
 from ..declare.description import Description, motions_of
 from ..declare.times import DriveAxis
-from ..errors import shown
-from .untrusted import check_chunks, check_dataset
+from .untrusted import check_chunks, check_dataset, shown
 
 
 def drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
