@@ -17,7 +17,7 @@ import lagrange_casadi
 from lagrange_casadi.methods import METHODS
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
-CASE = PACKAGE.parent / "cases" / "four_bar"
+CASE = Path(__file__).parents[1] / "cases" / "four_bar"
 ORDER = (
     "version",
     "errors",
