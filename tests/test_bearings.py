@@ -118,7 +118,7 @@ def test_what_is_open_is_told():
     [
         (lambda: bearings.Pin(-0.01, 0.02, 0.01, STEEL), "joint 'O': pin: diameter must be positive, got -0.01"),
         (lambda: bearings.Pin(0.01, 0.02, 0.01, beams.Material("wood", 500.0)), "material 'wood' has no yield_strength"),
-        (lambda: bearings.Plain(0.01, 0.02, speed=0.0), "Plain: speed: expected a positive number, got 0"),
+        (lambda: bearings.Plain(0.01, 0.02, speed=0.0), "speed must be positive, got 0"),
         (lambda: 3.0, "fit: parts: expected a Pin, a Plain or a Rolling, got 3"),
     ],
 )
