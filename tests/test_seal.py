@@ -212,6 +212,7 @@ def unsealed(request, run, monkeypatch, tmp_path):
         with h5py.File(path, "w") as file:
             file.attrs.update({"schema": optimum.SCHEMA, "schema_version": optimum.VERSION, "complete": True})
             file.attrs.update({"stopped": False, "feasible": True, "converged": True})
+            file.create_group("points")
         seal.seal(path, optimum.SCHEMA)
         readers = (optimum.check_optimum,)
     for read in readers:
