@@ -17,12 +17,14 @@ import casadi as ca
 import numpy as np
 
 from .base.room import MOST_THREADS
-from .base.units import Within, double, is_small, is_whole, typed
+from .base.units import Within, double, is_whole, typed
 from .errors import DeclarationError, shown
+
+LATER = "looked at where it is used"
+"""What an annotation says of an argument whose function tells better than a kind what was expected."""
 
 _OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
 """Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
-
 
 Finite: TypeAlias = Annotated[float, Within()]
 """A number that is not infinite."""
@@ -158,7 +160,7 @@ def _kind(hint: Any) -> _Kind | None:
     """The kind that an annotation says; None for one that its function looks at itself."""
     origin, of = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is Annotated:
-        return _ranged(*of) if isinstance(of[1], Within) else _NAMED.get(of[1])
+        return None if of[1] == LATER else _ranged(*of) if isinstance(of[1], Within) else _NAMED[of[1]]
     if origin in (typing.Union, types.UnionType):
         return _one_of(of)
     if origin is Literal:
@@ -296,7 +298,7 @@ _SIMPLE: dict[type, _Kind] = {
     str: _if("a text", lambda value: isinstance(value, str)),
     bool: _Kind("True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE),
     int: _Kind("a whole number", lambda value: int(value) if is_whole(value) else _NONE),
-    float: _Kind("a number", lambda value: _NONE if (found := double(value)) is None else value if is_small(value) else found),
+    float: _Kind("a number", lambda value: _NONE if (found := double(value)) is None else found),
     Path: _if("a path", _is_path),
 }
 _SIMPLE[os.PathLike] = _SIMPLE[Path]

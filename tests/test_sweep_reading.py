@@ -94,9 +94,9 @@ def test_a_design_by_its_number(swept, listed):
     assert swept.values(35, "status") == {"status": swept["status"][5, 2, 1]}
     rows, other = listed
     assert list(other.design(49).values()) == rows[49].tolist()
-    for number, says in ((-1, "a number from 0 to 35"), (36, "a number from 0 to 35"), (10**20, "a whole number")):
+    for number in (-1, 36, 10**20):
         for read in (swept.design, lambda number: swept.values(number, "status")):
-            with pytest.raises(DeclarationError, match=f"expected {says}"):
+            with pytest.raises(DeclarationError, match=rf"design {number}: expected a number from 0 to 35"):
                 read(number)
 
 

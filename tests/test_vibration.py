@@ -22,7 +22,7 @@ def shaken(rate, count=65):
     m.set_gravity(0.0, 0.0)
     frame = m.link("frame", length=1.0, mass=1.0)
     bar, foot = m.link("bar", length=1.0, beam=beams.Beam(SHAPE, strong.STEEL)), m.point_mass("foot", 0.0)
-    m.prismatic("up", m.ground, frame, axis=(0, 1))
+    m.prismatic("up", m.ground, frame, axis=(0, 1), angle=0)
     m.revolute("A", frame, bar)
     m.prismatic("slide", frame.tip, foot, axis=(1, 0))
     m.revolute("B", bar.tip, foot)
@@ -53,12 +53,11 @@ def test_a_bar_shaken_by_a_sine(part):
 def test_a_result_says_that_rigid_links_are_not_enough(tmp_path):
     """In its notes, which commands and pages show, where its deflection is wanted; a file that is read again says so too."""
     slow, fast = (evaluate(shaken(part * natural()), wanted=["deflection:bar"], certificate=False) for part in (0.05, 0.8))
-    assert len(slow.notes) == 1
-    assert "slides along joint 'up'" in slow.notes[0]
-    _, note = fast.notes
+    assert slow.notes == ()
+    (note,) = fast.notes
     assert note == f"link 'bar': {vibration(fast, 'bar').words}"
     assert "rigid links are not enough: by harmonic 1" in note
-    assert evaluate(shaken(0.8 * natural()), wanted=["section:bar"], certificate=False).notes == slow.notes
+    assert evaluate(shaken(0.8 * natural()), wanted=["section:bar"], certificate=False).notes == ()
     save(fast, tmp_path / "fast.h5")
     assert load(tmp_path / "fast.h5").notes == fast.notes
 

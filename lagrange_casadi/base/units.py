@@ -96,7 +96,7 @@ def in_words(unit: str) -> str:
 
 def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
     """A whole number in a range. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
-    if not is_whole(value) or not least <= value <= most:  # type: ignore[operator]
+    if not is_whole(value) or abs(value) >= 2**63 or not least <= value <= most:  # type: ignore[operator, arg-type]
         raise DeclarationError(f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}")
     return int(value)  # type: ignore[call-overload, no-any-return]
 
@@ -110,13 +110,8 @@ def within(what: str, value: object, low: float, high: float) -> float:
 
 
 def is_whole(value: object) -> bool:
-    """Whether it is a whole number of 64 bits, and no truth value."""
-    return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
-
-
-def is_small(value: object) -> bool:
-    """Whether it is one of Python's own whole numbers, of 64 bits: it stays whole, for it may be a count."""
-    return type(value) is int and abs(value) < 2**63
+    """Whether it is a whole number, of whatever size, and no truth value."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def double(value: Any) -> float | None:

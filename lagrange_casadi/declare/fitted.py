@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..arguments import NotNegative, Positive, Symbolic, public
+from ..arguments import LATER, NotNegative, Positive, Symbolic, public
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 
@@ -45,7 +45,7 @@ class Plain:
     bore: Symbolic
     width: Symbolic
     pressure: Positive | None = None
-    speed: Annotated[float | None, "may be a text"] = None
+    speed: Annotated[float | None, LATER] = None
     heating: Positive | None = None
 
 

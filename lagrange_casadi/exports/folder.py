@@ -5,19 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import casadi as ca
 import numpy as np
 
-from ..arguments import Outputs, public
+from ..arguments import LATER, Outputs, public
 from ..base.manifest import Manifest
 from ..base.publish import check_writable
 from ..base.vocabulary import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError
-from ..instants.rung import Rung, Steps
+from ..instants.rung import Rung
 from ..portable.contract import Contract
 from ..portable.data import LARGEST
 from ..portable.header import header
@@ -50,8 +50,8 @@ def export(
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
     precision: Precision = "double",
-    newton: Steps | None = None,
-    table: float | None = None,
+    newton: Annotated[int | None, LATER] = None,
+    table: Annotated[float | None, LATER] = None,
     largest: int | None = None,
     force: bool = False,
     fmu: bool = False,

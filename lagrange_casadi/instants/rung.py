@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING
 
-from ..base.units import Within
 from ..base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 
 FEWEST_NODES = 8
 MOST_STEPS = 1000
-Steps: TypeAlias = Annotated[int, Within(1, MOST_STEPS)]
 """Each step squares what a loop still misses: after some ten nothing changes."""
 
 
@@ -55,7 +53,9 @@ class Rung:
             if name not in valid:
                 raise UnknownNameError(kind, str(name), valid)
         if self.newton is not None and (type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS):
-            raise DeclarationError(f"newton: expected a whole number from 1 to {MOST_STEPS}, got {self.newton!r}")
+            raise DeclarationError(
+                f"newton: expected a number of steps, from 1 to {MOST_STEPS} (after some ten nothing changes), got {self.newton!r}"
+            )
         if self.table is not None and not _tabulates(self.table):
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"

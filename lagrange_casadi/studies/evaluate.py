@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from ..arguments import Outputs, ThreadCount, public
+from ..arguments import LATER, Outputs, ThreadCount, public
 from ..base.vocabulary import Backend, Precision
 from ..declare.even_points import EvenPoints
 from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError
-from ..instants.rung import Rung, Steps
+from ..instants.rung import Rung
 
 if TYPE_CHECKING:
     from ..instants.solution import Solution
@@ -29,9 +29,9 @@ def evaluate(
     wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: Steps | None = None,
-    table: float | None = None,
-    flags: str = "",
+    newton: Annotated[int | None, LATER] = None,
+    table: Annotated[float | None, LATER] = None,
+    flags: Annotated[str, LATER] = "",
     threads: ThreadCount | None = None,
     certificate: bool = True,
     elastic: Elastic | None = None,

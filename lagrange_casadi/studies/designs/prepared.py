@@ -6,19 +6,19 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import Numeric, Outputs, ThreadCount, public
+from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
 from ...base.vocabulary import Backend, Precision
 from ...declare.scene import Scene, without_fitted, without_life
 from ...declare.times import Over, Times
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.refusal import Status
-from ...instants.rung import Rung, Steps
+from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate
 from .engine import DesignEngine, Outcome
@@ -301,8 +301,8 @@ def prepare(
     wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: Steps | None = None,
-    flags: str = "",
+    newton: Annotated[int | None, LATER] = None,
+    flags: Annotated[str, LATER] = "",
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
 

@@ -14,7 +14,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import public
+from ...arguments import LATER, public
 from ...base.arrays import Array
 from ...base.units import number, typed
 from ...declare.even_points import points
@@ -43,8 +43,8 @@ class Range:
     Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
     """
 
-    start: Annotated[float, "may be a text"]
-    stop: Annotated[float, "may be a text"]
+    start: Annotated[float, LATER]
+    stop: Annotated[float, LATER]
     count: int
     log: bool = False
     unit: str = field(default="", init=False, compare=False)
@@ -100,7 +100,7 @@ class Values:
     Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
     """
 
-    values: Annotated[tuple[float, ...], "may be texts"]
+    values: Annotated[tuple[float, ...], LATER]
     unit: str = field(default="", init=False, compare=False)
 
     def __post_init__(self) -> None:

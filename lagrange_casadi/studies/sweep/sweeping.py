@@ -8,9 +8,9 @@ import tempfile
 import weakref
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from ...arguments import Outputs, ThreadCount, public
+from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.room import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, Precision
 from ...case import Case
@@ -18,7 +18,7 @@ from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...errors import DeclarationError
-from ...instants.rung import Rung, Steps
+from ...instants.rung import Rung
 from ...methods import method
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
@@ -41,8 +41,8 @@ def sweep(
     keep: Keep = "peaks",
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: Steps | None = None,
-    flags: str = "",
+    newton: Annotated[int | None, LATER] = None,
+    flags: Annotated[str, LATER] = "",
     workers: ThreadCount | None = None,
     dask: str | None = None,
     resume: bool = False,
