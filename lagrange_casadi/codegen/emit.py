@@ -1,8 +1,7 @@
 """The C of a scene: CasADi's code for each function, and functions of ours that run them over instants.
 
 One file serves two compilers. As C every value is a double. As C++, with ``lanes.h`` put before it, what is done for each instant
-is done for a pack of instants at once; what depends on the instant before (iterated loops), or is read from a table (a spline),
-stays with doubles.
+is done for a pack of instants at once; what depends on the instant before (iterated loops) stays with doubles.
 """
 
 from __future__ import annotations
@@ -159,32 +158,12 @@ _IN_PAIRS = """
    Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride + i] is the rest of t[i],
    p[{np} + k] that of p[k]."""
 
-_SMOOTH = """    arg[0] = time;
+_DRIVE = """    arg[0] = time;
     arg[1] = parameters;
     res[0] = counted;
     res[1] = rates;
     res[2] = rates + {nd};
     drive(arg, res, iw, w, 0);
-"""
-
-_SPLINE = """    {{
-      {real} found[{nc} + 2*{nd}], narrow_w[{lead_w}], moment[{nt}];
-      {real} lane[{nc} + 2*{nd}][LANES], times[{nt}][LANES];
-      memcpy(times, time, sizeof times);
-      for (j = 0; j < LANES; ++j) {{
-        const {real}* narrow_arg[{lead_arg}];
-        {real}* narrow_res[{lead_res}];
-        for (k = 0; k < {nt}; ++k) moment[k] = times[k][j];
-        narrow_arg[0] = moment;
-        narrow_arg[1] = p;
-        narrow_res[0] = found;
-        narrow_res[1] = found + {nc};
-        narrow_res[2] = found + {nc} + {nd};
-        lead(narrow_arg, narrow_res, iw, narrow_w, 0);
-        for (k = 0; k < {nc} + 2*{nd}; ++k) lane[k][j] = found[k];
-      }}
-      memcpy(counted, lane, sizeof lane);
-    }}
 """
 
 _FOLLOW = """
@@ -265,12 +244,11 @@ class Parts:
     @classmethod
     def of(cls, graph: SceneGraph, stages: Stages) -> Parts:
         """Those of a scene."""
-        smooth = bool(stages.drive.is_a("SXFunction"))
         constants, instant = hoisted(stages.instant)
-        narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
-        wide = [*([stages.drive] if smooth else []), constants, instant]
+        narrow = [] if stages.loops is None else [_lead(stages.drive), stages.loops]
+        wide = [stages.drive, constants, instant]
         sizes = _sizes(graph, stages) | work("", *wide, *narrow) | {"constants": constants.size1_out(0)}
-        drive = _SMOOTH.format(**sizes) if smooth else _SPLINE.format(**sizes, **work("lead_", *narrow))
+        drive = _DRIVE.format(**sizes)
         return cls(narrow, wide, sizes, drive if sizes["nc"] + sizes["nd"] else "")
 
 
@@ -286,8 +264,8 @@ def following(graph: SceneGraph, stages: Stages, newton: int | None, sizes: dict
 @symbolic
 def _lead(drive: ca.Function) -> ca.Function:
     """The drive under a name of its own, for one instant at a time."""
-    inputs = [ca.MX.sym(drive.name_in(i), drive.size1_in(i)) for i in range(drive.n_in())]
-    return ca.Function("lead", inputs, drive.call(inputs))
+    inputs = drive.sx_in()
+    return ca.Function("lead", inputs, drive.call(inputs), {"cse": True})
 
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:

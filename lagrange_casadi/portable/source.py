@@ -15,7 +15,7 @@ from ..declare.ends import BEYOND
 from ..instants.rules import rules
 from ..version import __version__
 from .contract import REST, Contract
-from .data import sampled, table_call, table_text
+from .data import table_call, table_text
 from .golden import Golden
 from .program import Format, Program, literal
 from .sections import functions
@@ -158,7 +158,6 @@ class Source:
                 rounding=rule["rounding"],
                 p_values="model->parameters" if self.program.sizes["p"] else "0",
             )
-        found += sampled(self.program, number)
         return found + table_text(self.program)
 
     def _defaults(self) -> str:
@@ -214,20 +213,18 @@ class Source:
         return "model->parameters" if self.program.sizes["p"] else "0"
 
     def _motion(self) -> Iterable[str]:
-        c, P, smooth = self.contract, self._upper, self.program.sizes["smooth"]
+        c, P, drives = self.contract, self._upper, self.program.sizes["drives"]
         ends = self.program.functions.get("beyond")
-        if smooth:
-            values = max(1, 2 * smooth if c.rests else smooth)
-            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{smooth}], acceleration[{smooth}];"
+        if drives:
+            values = 2 * drives if c.rests else drives
+            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{drives}], acceleration[{drives}];"
             yield "const casadi_real* arg[2];"
             yield "casadi_real* res[3];"
-        for k, _ in enumerate(self.program.samples):
-            yield f"casadi_real sample_{k}[4];"
         if ends is not None:
             yield f"casadi_real far[{ends.size1_out(0)}];"
         yield from self._refused("model->seal != SEAL", "NOT_PREPARED")
         yield from self._refused(self._untimely(), "BAD_TIME")
-        if smooth:
+        if drives:
             yield "at[0] = time;"
             if c.rests:
                 yield "at[1] = time_rest;"
@@ -242,8 +239,6 @@ class Source:
             yield "res[0] = far;"
             yield "beyond(arg, res);"
             yield from self._refused(" || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME")
-        for k, _ in enumerate(self.program.samples):
-            yield f"sample_of_{k}(time, {'time_rest' if c.rests else '0'}, sample_{k});"
         yield from self._driven()
         yield f"return {P}_OK;"
 
@@ -265,22 +260,17 @@ class Source:
 
     def _driven(self) -> Iterable[str]:
         """Time, where it counts, and the motion of each drive, put into the inputs."""
-        c, smooth = self.contract, self.program.sizes["smooth"]
+        c = self.contract
         if c.timed:
             yield f"inputs->{c.input_of('time')} = time;"
             if c.rests:
                 yield f"inputs->{c.input_of(f'{REST}time')} = time_rest;"
-        for drive, place in zip(c.drives, self.program.order, strict=True):
-            terms = (
-                [f"d[{place}]", f"d[{smooth + place}]", f"rate[{place}]", f"acceleration[{place}]"]
-                if place < smooth
-                else [f"sample_{place - smooth}[{k}]" for k in (0, 3, 1, 2)]
-            )
-            yield f"inputs->{c.input_of(f'motion:{drive}')} = {terms[0]};"
+        for k, drive in enumerate(c.drives):
+            yield f"inputs->{c.input_of(f'motion:{drive}')} = d[{k}];"
             if c.rests:
-                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = {terms[1]};"
-            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = {terms[2]};"
-            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = {terms[3]};"
+                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = d[{len(c.drives) + k}];"
+            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = rate[{k}];"
+            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = acceleration[{k}];"
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes = self.contract, self._upper, self.program.sizes
