@@ -12,7 +12,8 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, WIDE, dump, work
+from .emit import LANES_PLACE, START, WIDE
+from .printer import print_functions
 
 POINTS = Call(
     "lagrange_casadi_points",
@@ -38,11 +39,11 @@ _LOOP = """
 /* n points: t[i], z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is meant; for
    parameters p. Of each found[i] becomes its value, rate[i] its derivative by time, slopes + i*{np} those by the parameters. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
-  casadi_int i, j, k, of, iw[{iw}];
+  casadi_int i, j, k, of;
   double lane[{own}][LANES], one[{many}][LANES], told[2 + {np}][LANES];
-  casadi_real at[{own}], p[{np} + 1], meant[{many}], y[2 + {np}], w[{w}];
-  const casadi_real* arg[{arg}];
-  casadi_real* res[{res}];
+  casadi_real at[{own}], p[{np} + 1], meant[{many}], y[2 + {np}];
+  const casadi_real* arg[7];
+  casadi_real* res[3];
   memset(one, 0, sizeof one);
   for (k = 0; k < {np}; ++k) p[k] = call->p[k];
   for (i = 0; i < call->n; i += LANES) {{
@@ -68,7 +69,7 @@ LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
     res[0] = y;
     res[1] = y + 1;
     res[2] = y + 2;
-    at_point(arg, res, iw, w, 0);
+    at_point(arg, res);
     memcpy(told, y, sizeof told);
     for (j = 0; j < LANES && i + j < call->n; ++j) {{
       call->found[i + j] = told[0][j];
@@ -97,8 +98,8 @@ def emit_points(function: Any) -> str:
     """The C of a function at points; the same text in every process."""
     sizes = {f"n{name[0]}": function.size1_in(name) for name in ("z", "p")}
     sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nz"]}
-    text = START + POINTS.text() + WIDE + dump("points", [function])
-    return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes, **work("", function))
+    text = START + POINTS.text() + WIDE + print_functions({"at_point": function}, "double", prefix="point", packs=True)
+    return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes)
 
 
 def load_points(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> PointsLibrary:

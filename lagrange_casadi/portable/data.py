@@ -11,8 +11,9 @@ import numpy as np
 from ..arithmetic.lookups import lookup
 from ..base.arrays import Array
 from ..base.vocabulary import Precision
+from ..codegen.printer import Format, literal
 from ..errors import SizeError
-from .program import Format, Program, literal
+from .program import Program
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""

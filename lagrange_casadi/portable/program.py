@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
-from ..codegen.plain import plain
+from ..codegen.printer import print_functions
 from ..codegen.stages import controlled
 from ..declare.motion import ends_function
 from ..equations.checks import Check, Column
@@ -44,7 +42,7 @@ class Program:
     @property
     def text(self) -> str:
         """The C of its functions."""
-        return plain(self.functions, self.precision)
+        return print_functions(self.functions, self.precision, prefix="graph")
 
     @property
     def rule(self) -> dict[str, float]:
@@ -135,21 +133,3 @@ def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, 
 
 def _changes(value: Any) -> bool:
     return isinstance(value, ca.SX) and not value.is_constant()
-
-
-Format = Callable[[float], str]
-
-
-def literal(precision: Precision) -> Format:
-    """How a number is written in C, so that it is read as the same number again."""
-    single = precision == "single"
-
-    def write(value: float) -> str:
-        number = float(np.float32(value)) if single else float(value)
-        if math.isinf(number):
-            return "-INFINITY" if number < 0 else "INFINITY"
-        text = f"{number:.9g}" if single else f"{number:.17g}"
-        text = text if any(mark in text for mark in ".en") else f"{text}.0"
-        return f"{text}f" if single else text
-
-    return write

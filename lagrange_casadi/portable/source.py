@@ -11,13 +11,14 @@ import casadi as ca
 
 from ..base.quantities import Output
 from ..codegen.emit import newton_rule
+from ..codegen.printer import Format, function_name, literal
 from ..declare.ends import BEYOND
 from ..instants.rules import rules
 from ..version import __version__
 from .contract import REST, Contract
 from .data import table_call, table_text
 from .golden import Golden
-from .program import Format, Program, literal
+from .program import Program
 from .sections import functions
 from .slopes import ExportedSlopes
 from .slopes import code as sensitivity
@@ -47,7 +48,11 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
-        sections = functions(self.contract, self.program, self._number, self._function("sqrt")) if self.contract.links else ""
+        sections = (
+            functions(self.contract, self.program, self._number, function_name("sqrt", self.contract.precision))
+            if self.contract.links
+            else ""
+        )
         if self.slopes is not None:
             sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(
@@ -130,16 +135,13 @@ class Source:
     def _number(self) -> Format:
         return literal(self.contract.precision)
 
-    def _function(self, name: str) -> str:
-        return f"{name}f" if self.contract.precision == "single" else name
-
     def _helpers(self) -> str:
         number, found = self._number, ""
         if self.program.graph.loop_angles:
             turn = number(math.tau)
             found += (
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"
-                f"  return angle - {turn}*{self._function('ceil')}(angle/{turn} - {number(0.5)});\n}}\n"
+                f"  return angle - {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} - {number(0.5)});\n}}\n"
             )
         if self.iterated:
             rule = {key: number(value) for key, value in self.program.rule.items()}
@@ -153,7 +155,7 @@ class Source:
                 turn=number(math.tau),
                 inverse=number(1.0 / math.tau),
                 half=number(0.5),
-                floor=self._function("floor"),
+                floor=function_name("floor", self.contract.precision),
                 rate=rule["rate"],
                 rounding=rule["rounding"],
                 p_values="model->parameters" if self.program.sizes["p"] else "0",
@@ -329,7 +331,7 @@ class Source:
 
     def _verdict(self) -> Iterable[str]:
         P, number, closed = self._upper, self._number, self.iterated
-        fabs, graph = self._function("fabs"), self.program.graph
+        fabs, graph = function_name("fabs", self.contract.precision), self.program.graph
         for rule in rules(graph, self.contract.precision, self.program.newton):
             k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
             beside = f"{limit}*model->matter[0]"
