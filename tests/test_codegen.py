@@ -111,7 +111,7 @@ def test_wanting_the_effort_alone_emits_no_section_term():
     """One value an instant beside the loop's closure and its gap, and the same C as a mechanism that has no section to give."""
     scene = slider_crank(wanted=["effort"])
     alone, both = (codegen.emit(derive(scene, wanted)) for wanted in (["effort"], ["effort", "section:rod"]))
-    statements = [len(re.findall(r"\ba\d+=", text)) for text in (alone, both)]
+    statements = [len(re.findall(r"\ba\d+ = ", text)) for text in (alone, both)]
     assert statements[0] + 10 < statements[1]
     assert derive(scene).instant.size1_out(0) == 3
     assert alone == codegen.emit(derive(without_ends()))

@@ -367,6 +367,8 @@ def test_a_table_in_a_constraint_names_the_curve():
 
 
 def test_exported_c_tells_how_large_its_curves_are(tmp_path):
-    with pytest.raises(SizeError, match=r"what all curves look up takes .* bytes of constants, and the limit is 1000"):
+    with pytest.raises(
+        SizeError, match=r"what curves and motions by samples look up takes .* bytes of constants, and the limit is 1000"
+    ):
         export(sampled_cam(), tmp_path / "small", largest=1000)
     assert export(sampled_cam(), tmp_path / "enough").prefix == "cam"

@@ -163,7 +163,7 @@ class Doubled(ca.Callback):
 
 def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
     callback = Doubled()
-    scene = pendulum(law=Motion(callback, spline=True))
+    scene = pendulum(law=Motion(callback))
     assert name_of(scene) is None
     for _ in range(2):
         assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0

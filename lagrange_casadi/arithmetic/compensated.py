@@ -19,6 +19,7 @@ import numpy as np
 
 from ..base.vocabulary import Precision
 from .interpret import Arithmetic
+from .lookups import Lookup
 from .scalars import added, as_expression, less, product
 
 DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
@@ -41,11 +42,15 @@ def closed(x: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """high + low, expressions of scalars; ``low`` is None where the value is exact. ``number`` is the value where it is known."""
+    """high + low, expressions of scalars; ``low`` is None where the value is exact. ``number`` is the value where it is known.
+
+    Both are ``whole`` numbers where they are entries of a table.
+    """
 
     high: Any
     low: Any = None
     number: float | None = None
+    whole: bool = False
 
     @property
     def value(self) -> Any:
@@ -87,14 +92,14 @@ class Pairs:
             ca.OP_FABS: self._size,
             ca.OP_COPYSIGN: lambda x, y: self._signed(self._size(x), y.value),
             ca.OP_FLOOR: self._floor,
-            ca.OP_CEIL: lambda x: self.negate(self._floor(self.negate(x))),
+            ca.OP_CEIL: lambda x: x if x.whole else self.negate(self._floor(self.negate(x))),
             ca.OP_FMOD: self.remainder,
             ca.OP_REMAINDER: self.nearest_remainder,
             ca.OP_FMIN: lambda x, y: self._either(self._below(x, y), x, y),
             ca.OP_FMAX: lambda x, y: self._either(self._below(x, y), y, x),
             ca.OP_IF_ELSE_ZERO: lambda where, x: _choose(where.value, x),
             ca.OP_ASSIGN: lambda x: x,
-            ca.OP_CALL: lambda lookup, x: Pair(lookup.function(x.value)),
+            ca.OP_CALL: self._looked_up,
         }
         return {code: self._once(code) for code in _UNARY + _BINARY} | rules
 
@@ -180,6 +185,13 @@ class Pairs:
     def nearest_remainder(self, x: Pair, y: Pair) -> Pair:
         """C's remainder: x less the multiple of y that is nearest."""
         return self.subtract(x, self.multiply(self._floor(self.add(self.divide(x, y), self.constant(0.5))), y))
+
+    def _looked_up(self, lookup: Lookup, x: Pair) -> Pair:
+        """What a table has for a number: an entry with all the digits that a pair holds."""
+        if lookup.kind == "cell":
+            return Pair(lookup.function(x.value))
+        high, low = lookup.parts(DTYPES[self.precision])
+        return Pair(high(x.value), None if low is None else low(x.value), whole=True)
 
     def _below(self, x: Pair, y: Pair) -> Any:
         return self._value(self.subtract(x, y)) < 0.0

@@ -7,6 +7,7 @@ digits, arrays with errors put on operations, or expressions that become another
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -91,7 +92,8 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
             if rule is not None and step.looked_up is not None:
                 rule = functools.partial(rule, step.looked_up)
             elif rule is None or step.operation == ca.OP_CALL:
-                what = "calls another one" if step.operation == ca.OP_CALL else f"takes {_name(step.operation)}, unknown here"
+                unknown = f"takes {operation_name(step.operation)}, unknown here"
+                what = "calls another one" if step.operation == ca.OP_CALL else unknown
                 raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
             work[step.results[0]] = rule(*(work[place] for place in step.arguments))
     return outputs
@@ -122,7 +124,54 @@ def operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, list
         work[step.results[0]] = found
 
 
-def _name(operation: int) -> str:
+def written_out(expression: Any) -> Any:
+    """Return a scalar expression with the functions that it calls written out, but for tables and what has no expression.
+
+    So a user's function of scalars that is never inlined is followed and compiled like all else. Other functions, as a callback,
+    remain calls.
+    """
+    symbols = ca.symvar(expression)
+    function = ca.Function("expression", symbols, [expression])
+    if not any(_has_expression(called) for called in function.find_functions(0)):
+        return expression
+    return _written_out(function, symbols)[0]
+
+
+def _has_expression(function: Any) -> bool:
+    return bool(function.is_a("SXFunction"))
+
+
+def _written_out(function: Any, inputs: Sequence[Any]) -> list[Any]:
+    """Return the outputs of an SX function of expressions, with what it calls written out."""
+    written, work = function.instructions_sx(), dict[int, Any]()
+    outputs = [ca.SX(function.sparsity_out(k)) for k in range(function.n_out())]
+    for k in range(function.n_instructions()):
+        operation, places, results = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
+        if operation == ca.OP_OUTPUT:
+            outputs[results[0]].nz[results[1]] = work[places[0]]
+        elif operation == ca.OP_CONST:
+            work[results[0]] = ca.SX(function.instruction_constant(k))
+        elif operation == ca.OP_INPUT:
+            work[results[0]] = ca.SX(inputs[places[0]]).nz[places[1]]
+        elif operation == ca.OP_CALL:
+            called = written[k].which_function()
+            values = iter([work[place] for place in places])
+            given = [ca.SX(called.sparsity_in(i), _column(values, called.nnz_in(i))) for i in range(called.n_in())]
+            found = _written_out(called, given) if _has_expression(called) else called.call(given)
+            every = [row.nz[i] for row in found for i in range(row.nnz())]
+            work |= {place: value for place, value in zip(results, every, strict=True) if place >= 0}
+        else:
+            operands = [work[place] for place in places]
+            work[results[0]] = ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
+    return outputs
+
+
+def _column(values: Iterator[Any], count: int) -> Any:
+    return ca.vertcat(ca.SX(0, 1), *itertools.islice(values, count))
+
+
+def operation_name(operation: int) -> str:
+    """Return CasADi's name of an operation."""
     return next((name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation), str(operation))
 
 

@@ -49,6 +49,13 @@ class Lookup:
             return np.searchsorted(self.numbers[1:-1], x, side="right").astype(float)
         return self.numbers[np.asarray(x, int)]
 
+    def parts(self, kind: npt.DTypeLike) -> tuple[Any, Any | None]:
+        """The functions of the entries rounded to numbers of a kind, and of what that leaves of them; None if it leaves nothing."""
+        high = self.numbers.astype(kind).astype(float)
+        low = self.numbers - high
+        rest = _function("entry", tuple(low.tolist())) if low.any() else None
+        return _function("entry", tuple(high.tolist())), rest
+
 
 def cell(breaks: Sequence[float], x: Any, *, ends: bool) -> Any:
     """The number of the cell in which an expression lies, as a scalar expression; of three breaks or more."""

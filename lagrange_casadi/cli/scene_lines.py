@@ -52,9 +52,8 @@ def _constraint(constraint: Constraint) -> str:
 
 
 def _law(law: Motion, symbol: Any) -> str:
-    if law.spline:
-        many = f"{len(law.knots)} " if law.knots else ""
-        return f"a spline through {many}samples from {law.span[0]:g} to {law.span[1]:g} s"
+    if law.knots:
+        return f"a spline through {len(law.knots)} samples from {law.span[0]:g} to {law.span[1]:g} s"
     if law.told:
         return law.told
     if law.stretches:

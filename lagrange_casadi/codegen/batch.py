@@ -12,20 +12,20 @@ import numpy as np
 from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, dump, work
+from .emit import LANES_PLACE, START
+from .printer import print_functions
 
 _ENTRY = "lagrange_casadi_batch"
 
 _LOOP = """
 /* n points. Of each argument NAME the row of point i is NAME + i/NAME_every times its size, the first where NAME_every is 0. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
-  casadi_int i, iw[{iw}];
-  double w[{w}];
+  casadi_int i;
   const double* arg[{arg}];
-  double* res[{res}];
+  double* res[1];
   for (i = 0; i < call->n; ++i) {{
 {lines}
-    at_once(arg, res, iw, w, 0);
+    at_once(arg, res);
   }}
 }}
 """
@@ -66,8 +66,8 @@ def emit_batch(function: Any) -> str:
     ]
     lines.append(f"    res[0] = call->found + i*{function.numel_out(0)};")
     call = _call(function)
-    text = START + call.text() + dump("batch", [function])
-    return text + _LOOP.format(entry=_ENTRY, call=call.name, lines="\n".join(lines), **work("", function))
+    text = START + call.text() + print_functions({"at_once": function}, "double", prefix="batch")
+    return text + _LOOP.format(entry=_ENTRY, call=call.name, lines="\n".join(lines), arg=len(_names(function)))
 
 
 def load_batch(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> BatchLibrary:

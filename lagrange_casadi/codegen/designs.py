@@ -20,8 +20,9 @@ from ..summits import between, panels
 from ..summits import search as summits
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
-from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
+from .emit import FOLLOW, Parts, emit, following
 from .link_curves import Along, along, turning
+from .printer import function_name, print_functions
 from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
@@ -140,14 +141,13 @@ class Reduction:
 def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction) -> str:
     """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
     parts = Parts.of(graph, stages)
-    single = stages.precision == "single"
-    text = f"\n#undef CASADI_PREFIX\n{dump('matter', [reduction.matter])}"
+    text = emit(graph, stages, newton)
+    text += print_functions({"matter_of": reduction.matter}, stages.precision, prefix="matter", packs=True)
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
-    text = emit(graph, stages, newton) + (in_single(text) if single else text)
     text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
     text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
-    text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, reduction.matter), drive=parts.drive)
+    text += _WORK.format(**parts.sizes, drive=parts.drive)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
@@ -160,8 +160,8 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Re
     return {
         "REAL": sizes["real"],
         "SOME(count)": "((count) > 0 ? (count) : 1)",
-        "ROOT": "sqrtf" if precision == "single" else "sqrt",
-        "FABS": "fabsf" if precision == "single" else "fabs",
+        "ROOT": function_name("sqrt", precision),
+        "FABS": function_name("fabs", precision),
         "HALF": "((DESIGNS_REAL) 0.5)",
         "SIXTH": "((DESIGNS_REAL) 1/6)",
         "LEAP": _real(LEAP),
@@ -301,10 +301,10 @@ _WORK = """
 /* The columns y of a pack of instants: of its times, at the start of at, and of its iterated coordinates, at DESIGNS_PLACE. */
 static void designs_columns(const casadi_real* parameters, const casadi_real* constants, const DESIGNS_REAL* p, casadi_real* at,
                             casadi_real* y) {{
-  casadi_int iw[{iw}], j = 0, k = 0;
-  casadi_real w[{w}], *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
-  const casadi_real* arg[{arg}];
-  casadi_real* res[{res}];
+  casadi_int j = 0, k = 0;
+  casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
+  const casadi_real* arg[5];
+  casadi_real* res[3];
   (void) j; (void) k; (void) p; (void) parameters; (void) time;
 {drive}    arg[0] = counted;
   arg[1] = rates;
@@ -312,19 +312,17 @@ static void designs_columns(const casadi_real* parameters, const casadi_real* co
   arg[3] = place;
   arg[4] = constants;
   res[0] = y;
-  instant(arg, res, iw, w, 0);
+  instant(arg, res);
 }}
 
 /* What parameters alone decide. */
 static void designs_fixed(const casadi_real* parameters, casadi_real* constants, casadi_real* matter) {{
-  casadi_int iw[{iw}];
-  casadi_real w[{w}];
-  const casadi_real* arg[{arg}];
-  casadi_real* res[{res}];
+  const casadi_real* arg[1];
+  casadi_real* res[1];
   arg[0] = parameters;
   res[0] = constants;
-  constants_of(arg, res, iw, w, 0);
+  constants_of(arg, res);
   res[0] = matter;
-  matter_of(arg, res, iw, w, 0);
+  matter_of(arg, res);
 }}
 """

@@ -1,29 +1,24 @@
-"""The C of a scene: CasADi's code for each function, and functions of ours that run them over instants.
+"""The C of a scene: each function of its graph, and functions that run them over instants.
 
 One file serves two compilers. As C every value is a double. As C++, with ``lanes.h`` put before it, what is done for each instant
-is done for a pack of instants at once; what depends on the instant before (iterated loops), or is read from a table (a spline),
-stays with doubles.
+is done for a pack of instants at once; what depends on the instant before (iterated loops) stays with doubles.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.scene_graph import SceneGraph
-from ..errors import SizeError
 from .calls import Call
-from .split import split
+from .printer import function_name, literal, print_functions
 from .stages import Stages, plain
-from .tables import with_tables
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"
 NEWTON_STEPS = 50
@@ -59,7 +54,12 @@ OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 
 START = f"""\
-{LANES_PLACE}#include <string.h>
+{LANES_PLACE}#include <math.h>
+#include <string.h>
+#define casadi_int long long
+#ifndef casadi_real
+#define casadi_real double
+#endif
 #ifdef LANES
 #define LAGRANGE_CASADI_C extern "C"
 #else
@@ -79,7 +79,7 @@ START = f"""\
 #define LAGRANGE_CASADI_PART __attribute__((noinline))
 #else
 #define LAGRANGE_CASADI_PART
-#define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C CASADI_SYMBOL_EXPORT
+#define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C
 #endif
 """
 
@@ -89,7 +89,6 @@ _START_SINGLE = """\
 """
 
 WIDE = """
-#undef CASADI_PREFIX
 #undef casadi_real
 #define casadi_real lanes_pack
 """
@@ -103,17 +102,17 @@ LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
   const {real} *t = call->t, *p = call->p, *z = call->z;
   {real}* out = call->out;
   int* status = call->status;
-  casadi_int i, j, k, many, iw[{iw}];
+  casadi_int i, j, k, many;
   {real} lanes[LANES];
-  casadi_real at[{inputs}], y[{rows}], w[{w}], sum[4];
+  casadi_real at[{inputs}], y[{rows}], sum[4];
   casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
   casadi_real *parameters = place + {nz}, *constants = parameters + {nt}*{np};
-  const casadi_real* arg[{arg}];
-  casadi_real* res[{res}];
+  const casadi_real* arg[5];
+  casadi_real* res[3];
   for (k = 0; k < {nt}*{np}; ++k) parameters[k] = p[k];
   arg[0] = parameters;
   res[0] = constants;
-  constants_of(arg, res, iw, w, 0);
+  constants_of(arg, res);
   for (i = 0; i < n; i += LANES) {{
     many = n - i < LANES ? n - i : LANES;
     if (many == LANES) {{
@@ -136,7 +135,7 @@ LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
     arg[3] = place;
     arg[4] = constants;
     res[0] = y;
-    instant(arg, res, iw, w, 0);
+    instant(arg, res);
     if (many == LANES) {{
       for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
     }} else {{
@@ -159,32 +158,12 @@ _IN_PAIRS = """
    Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride + i] is the rest of t[i],
    p[{np} + k] that of p[k]."""
 
-_SMOOTH = """    arg[0] = time;
+_DRIVE = """    arg[0] = time;
     arg[1] = parameters;
     res[0] = counted;
     res[1] = rates;
     res[2] = rates + {nd};
-    drive(arg, res, iw, w, 0);
-"""
-
-_SPLINE = """    {{
-      {real} found[{nc} + 2*{nd}], narrow_w[{lead_w}], moment[{nt}];
-      {real} lane[{nc} + 2*{nd}][LANES], times[{nt}][LANES];
-      memcpy(times, time, sizeof times);
-      for (j = 0; j < LANES; ++j) {{
-        const {real}* narrow_arg[{lead_arg}];
-        {real}* narrow_res[{lead_res}];
-        for (k = 0; k < {nt}; ++k) moment[k] = times[k][j];
-        narrow_arg[0] = moment;
-        narrow_arg[1] = p;
-        narrow_res[0] = found;
-        narrow_res[1] = found + {nc};
-        narrow_res[2] = found + {nc} + {nd};
-        lead(narrow_arg, narrow_res, iw, narrow_w, 0);
-        for (k = 0; k < {nc} + 2*{nd}; ++k) lane[k][j] = found[k];
-      }}
-      memcpy(counted, lane, sizeof lane);
-    }}
+    drive(arg, res);
 """
 
 _FOLLOW = """
@@ -196,10 +175,10 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
   const {real} *t = call->t, *p = call->p;
   {real} *guess = call->guess, *z = call->z;
   int* status = call->status;
-  casadi_int i, k, step, iw[{iw}];
-  {real} correction[{nz}], at[{nz}], w[{w}], counted[{nc} + 2*{nd}], moment[{nt}], size, before;
-  const {real}* arg[{arg}];
-  {real}* res[{res}];
+  casadi_int i, k, step;
+  {real} correction[{nz}], at[{nz}], counted[{nc} + 2*{nd}], moment[{nt}], size, before;
+  const {real}* arg[3];
+  {real}* res[3];
   for (i = 0; i < n; ++i) {{
     for (k = 0; k < {nt}; ++k) moment[k] = t[k*stride + i];
     arg[0] = moment;
@@ -207,23 +186,23 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
     res[0] = counted;
     res[1] = counted + {nc};
     res[2] = counted + {nc} + {nd};
-    lead(arg, res, iw, w, 0);
+    lead(arg, res);
     size = before = 1;
     for (k = 0; k < {nz}; ++k) at[k] = guess[k];
-    for (step = 0; step < {steps} && !(size < {done:.17g}); ++step) {{
+    for (step = 0; step < {steps} && !(size < {done}); ++step) {{
       arg[0] = at;
       arg[1] = counted;
       arg[2] = p;
       before = size;
       res[0] = correction;
       res[1] = &size;
-      loops(arg, res, iw, w, 0);
+      loops(arg, res);
       if (!(size - size == 0)) break;
       for (k = 0; k < {nz}; ++k) at[k] += correction[k];
     }}
-    status[i] = !(size < {lost:.17g}) ? {NOT_CONVERGED} : {slow} ? {SLOW} : {OK};
+    status[i] = !(size < {lost}) ? {NOT_CONVERGED} : {slow} ? {SLOW} : {OK};
     for (k = 0; k < {nz}; ++k) {{
-      if (turns[k]) at[k] -= {turn:.17g}*floor(at[k]*{inverse:.17g} + 0.5);
+      if (turns[k]) at[k] -= {turn}*{floor}(at[k]*{inverse} + {half});
       if (status[i] != {NOT_CONVERGED}) guess[k] = at[k];
       z[k*stride + i] = guess[k];
     }}
@@ -240,54 +219,52 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     """
     stages = plain(graph) if stages is None else stages
     parts = Parts.of(graph, stages)
-    sizes = parts.sizes
-    text = START + INSTANTS.text(sizes["real"])
-    if parts.narrow:
-        text += dump("follow", parts.narrow)
+    sizes, single = parts.sizes, stages.precision == "single"
+    text = (_START_SINGLE if single else "") + START + INSTANTS.text(sizes["real"])
+    text += print_functions(parts.narrow, stages.precision, prefix="follow")
     if stages.loops:
         text += following(graph, stages, newton, sizes)
-    pairs = _IN_PAIRS.format(**sizes) if stages.precision == "single" else ""
     inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + sizes["constants"]
-    text += WIDE + dump("scene", parts.wide)
-    text += _EVALUATE.format(**sizes, drive=parts.drive, single=pairs, inputs=inputs)
-    return _START_SINGLE + in_single(text) if stages.precision == "single" else text
+    text += WIDE + print_functions(parts.wide, stages.precision, prefix="scene", packs=True)
+    return text + _EVALUATE.format(**sizes, drive=parts.drive, single=_IN_PAIRS.format(**sizes) if single else "", inputs=inputs)
 
 
 @dataclass(frozen=True)
 class Parts:
     """What an emitted file is made of: functions of one instant at a time, functions of packs, sizes, and the text that drives."""
 
-    narrow: list[ca.Function]
-    wide: list[ca.Function]
+    narrow: Mapping[str, ca.Function]
+    wide: Mapping[str, ca.Function]
     sizes: dict[str, Any]
     drive: str
 
     @classmethod
     def of(cls, graph: SceneGraph, stages: Stages) -> Parts:
         """Those of a scene."""
-        smooth = bool(stages.drive.is_a("SXFunction"))
         constants, instant = hoisted(stages.instant)
-        narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
-        wide = [*([stages.drive] if smooth else []), constants, instant]
-        sizes = _sizes(graph, stages) | work("", *wide, *narrow) | {"constants": constants.size1_out(0)}
-        drive = _SMOOTH.format(**sizes) if smooth else _SPLINE.format(**sizes, **work("lead_", *narrow))
-        return cls(narrow, wide, sizes, drive if sizes["nc"] + sizes["nd"] else "")
+        narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
+        wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
+        sizes = _sizes(graph, stages) | {"constants": constants.size1_out(0)}
+        return cls(narrow, wide, sizes, _DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else "")
 
 
 def following(graph: SceneGraph, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
     """The function that closes iterated loops, by so many steps an instant; its name is ``sizes["follow"]``."""
     assert graph.newton is not None
+    number = literal(stages.precision)
     rule = newton_rule(stages.precision, newton)
     turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
-    slow = "size > {rate:.17g}*before && size > {rounding:.17g}".format(**rule) if newton is None else "0"
-    return _FOLLOW.format(**sizes, **rule, told=_told(newton), turns=turns, slow=slow)
-
-
-@symbolic
-def _lead(drive: ca.Function) -> ca.Function:
-    """The drive under a name of its own, for one instant at a time."""
-    inputs = [ca.MX.sym(drive.name_in(i), drive.size1_in(i)) for i in range(drive.n_in())]
-    return ca.Function("lead", inputs, drive.call(inputs))
+    slow = f"size > {number(rule['rate'])}*before && size > {number(rule['rounding'])}" if newton is None else "0"
+    numbers = {"turn": math.tau, "inverse": 1.0 / math.tau, "half": 0.5, "done": rule["done"], "lost": rule["lost"]}
+    return _FOLLOW.format(
+        **sizes,
+        **{name: number(value) for name, value in numbers.items()},
+        steps=int(rule["steps"]),
+        floor=function_name("floor", stages.precision),
+        told=_told(newton),
+        turns=turns,
+        slow=slow,
+    )
 
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
@@ -326,8 +303,6 @@ def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
         "nc": stages.drive.size1_out(0),
         "nd": graph.instant.size1_in("d"),
         "nz": graph.instant.size1_in("z"),
-        "turn": math.tau,
-        "inverse": 1.0 / math.tau,
         "OK": OK,
         "NOT_CONVERGED": NOT_CONVERGED,
         "NOT_FINITE": NOT_FINITE,
@@ -344,50 +319,3 @@ def hoisted(instant: ca.Function, rows: Sequence[int] | None = None) -> tuple[ca
     c = ca.vertcat(ca.SX(0, 1), *symbols)
     hoisted = ca.Function("constants_of", [inputs[-1]], [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))], {"cse": True})
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})
-
-
-def dump(name: str, functions: list[ca.Function]) -> str:
-    """CasADi's C of functions, fit for packs."""
-    generator = ca.CodeGenerator(name, {"with_header": False})
-    for function in functions:
-        generator.add(function)
-    text = with_tables(str(generator.dump()), functions, packs=True)
-    text = re.sub(r"\((a\d+)\?(a\d+):0\)", r"lanes_choose(\1,\2)", text)
-    text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", text)
-    text = re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text)
-    text = split(opened(text))
-    return text.replace("return x<0 ? -1 : x>0 ? 1 : x;", "return lanes_sign(x);")
-
-
-def opened(text: str) -> str:
-    """CasADi's C without the signs that kept its simplifications out: see :func:`.closed`."""
-    return _OWN_SIGN.sub(lambda found: "" if found[1] == found[2] else f"  {found[1]}={found[2]};\n", text)
-
-
-def work(prefix: str, *functions: ca.Function) -> dict[str, int]:
-    """The largest sizes of the working arrays of some functions."""
-    sizes = {name: max(getattr(f, f"sz_{name}")() for f in functions) for name in ("arg", "res", "iw", "w")}
-    return {f"{prefix}{name}": max(1, size) for name, size in sizes.items()}
-
-
-def in_single(text: str) -> str:
-    """The same C with literals and functions of single precision, so that nothing is done in doubles."""
-    text = _LITERAL.sub(lambda found: f"{_nearest(found.group())}f", text)
-    return _FUNCTION.sub(r"\1f(", text)
-
-
-def _nearest(literal: str) -> str:
-    """A literal's nearest single, by as many digits as tell it; no subnormal becomes a warning of the compiler's."""
-    with np.errstate(over="ignore"):
-        value = np.float32(literal)
-    if not np.isfinite(value):
-        raise SizeError(
-            f"the number {float(literal):g} is too large for single precision, which ends at {np.finfo(np.float32).max:.3g}"
-        )
-    return literal if value == float(literal) else f"{float(value):.8e}"
-
-
-_OWN_SIGN = re.compile(r"^  (a\d+)=copysign\((a\d+),\2\);\n", re.MULTILINE)
-_LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])")
-_NAMES = "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt floor ceil fabs fmin fmax fmod"
-_FUNCTION = re.compile(rf"\b({'|'.join(_NAMES.split())}|pow|atan2|copysign|hypot|remainder)\(")

@@ -12,14 +12,14 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, WIDE, dump, work
+from .emit import LANES_PLACE, START, WIDE
+from .printer import print_functions
 
 POINTS = Call(
     "lagrange_casadi_points",
     {
         "n": "long long",
         "t": "const double*",
-        "drives": "const double*",
         "z": "const double*",
         "p": "const double*",
         "xi": "const double*",
@@ -31,19 +31,19 @@ POINTS = Call(
         "slopes": "double*",
     },
 )
-"""What the C takes: n points, each with a time, drives, iterated coordinates, a ratio, and so on; and the parameters of all."""
+"""What the C takes: n points, each with a time, iterated coordinates, a ratio, and so on; and the parameters of all."""
 
 _ENTRY = "lagrange_casadi_at_points"
 
 _LOOP = """
-/* n points: t[i], drives + i*{nd}, z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is meant; for
+/* n points: t[i], z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is meant; for
    parameters p. Of each found[i] becomes its value, rate[i] its derivative by time, slopes + i*{np} those by the parameters. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
-  casadi_int i, j, k, of, iw[{iw}];
+  casadi_int i, j, k, of;
   double lane[{own}][LANES], one[{many}][LANES], told[2 + {np}][LANES];
-  casadi_real at[{own}], p[{np} + 1], meant[{many}], y[2 + {np}], w[{w}];
-  const casadi_real* arg[{arg}];
-  casadi_real* res[{res}];
+  casadi_real at[{own}], p[{np} + 1], meant[{many}], y[2 + {np}];
+  const casadi_real* arg[7];
+  casadi_real* res[3];
   memset(one, 0, sizeof one);
   for (k = 0; k < {np}; ++k) p[k] = call->p[k];
   for (i = 0; i < call->n; i += LANES) {{
@@ -54,24 +54,22 @@ LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
       lane[1][j] = call->xi[of];
       lane[2][j] = call->value[of];
       lane[3][j] = call->moving[of];
-      for (k = 0; k < {nd}; ++k) lane[4 + k][j] = call->drives[of*{nd} + k];
-      for (k = 0; k < {nz}; ++k) lane[4 + {nd} + k][j] = call->z[of*{nz} + k];
+      for (k = 0; k < {nz}; ++k) lane[4 + k][j] = call->z[of*{nz} + k];
       one[call->chosen[of]][j] = 1;
     }}
     memcpy(at, lane, sizeof lane);
     memcpy(meant, one, sizeof one);
     arg[0] = at;
     arg[1] = at + 4;
-    arg[2] = at + 4 + {nd};
-    arg[3] = p;
-    arg[4] = at + 1;
-    arg[5] = at + 2;
-    arg[6] = at + 3;
-    arg[7] = meant;
+    arg[2] = p;
+    arg[3] = at + 1;
+    arg[4] = at + 2;
+    arg[5] = at + 3;
+    arg[6] = meant;
     res[0] = y;
     res[1] = y + 1;
     res[2] = y + 2;
-    at_point(arg, res, iw, w, 0);
+    at_point(arg, res);
     memcpy(told, y, sizeof told);
     for (j = 0; j < LANES && i + j < call->n; ++j) {{
       call->found[i + j] = told[0][j];
@@ -86,7 +84,7 @@ LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
 
 @dataclass(frozen=True, eq=False)
 class PointsLibrary:
-    """The loaded code of a function ``at_point(t, drives, z, p, xi, value, moving, chosen) -> (found, rate, slopes)``."""
+    """The loaded code of a function ``at_point(t, z, p, xi, value, moving, chosen) -> (found, rate, slopes)``."""
 
     entry: Any
 
@@ -98,10 +96,10 @@ class PointsLibrary:
 
 def emit_points(function: Any) -> str:
     """The C of a function at points; the same text in every process."""
-    sizes = {f"n{name[0]}": function.size1_in(name) for name in ("drives", "z", "p")}
-    sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nd"] + sizes["nz"]}
-    text = START + POINTS.text() + WIDE + dump("points", [function])
-    return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes, **work("", function))
+    sizes = {f"n{name[0]}": function.size1_in(name) for name in ("z", "p")}
+    sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nz"]}
+    text = START + POINTS.text() + WIDE + print_functions({"at_point": function}, "double", prefix="point", packs=True)
+    return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes)
 
 
 def load_points(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> PointsLibrary:

@@ -26,7 +26,6 @@ from ..arithmetic.lookups import Lookup
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
-from ..declare.laws import Laws
 from ..equations.scene_graph import SceneGraph
 
 FEW_TURNS = 128.0
@@ -61,10 +60,8 @@ def plain(graph: SceneGraph) -> Stages:
     loops = None
     if graph.newton is not None:
         loops = ca.Function("loops", [z, counted, p], graph.newton.step.call([z, t, d, p]))
-    smooth = graph.motion.is_a("SXFunction")
-    time, values = (t, p) if smooth else (ca.MX.sym("t"), ca.MX.sym("p", p.numel()))
-    driven = graph.motion.call([time, values])
-    drive = ca.Function("drive", [time, values], [ca.vertcat(time, driven[0]), *driven[1:]])
+    driven = graph.motion.call([t, p])
+    drive = ca.Function("drive", [t, p], [ca.vertcat(t, driven[0]), *driven[1:]])
     return Stages(drive, loops, instant)
 
 
@@ -72,17 +69,25 @@ def plain(graph: SceneGraph) -> Stages:
 @functools.lru_cache(maxsize=32)
 def compensated(graph: SceneGraph, precision: Precision) -> Stages:
     """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
-    return _compensated(graph, graph.laws, precision)
+    pairs, single = Pairs(precision), precision == "single"
+    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
+    t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
+    driven, *changes = interpret(graph.laws.motion, [[t_pair], p_pairs], pairs.arithmetic)
+    # As a controller gives them: see controlled().
+    driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
+    handed, loops, instant = _counted(graph, pairs, t_pair, driven, p_pairs)
+    given = [handed, *(_column([pair.value for pair in row]) for row in changes)]
+    drive = ca.Function("drive", [time, ca.vec(parameters)], given, {"cse": True})
+    return Stages(drive, loops, instant, precision, compensated=True)
 
 
 @dataclass(frozen=True, eq=False)
 class Controlled(Graphs):
     """The functions of an instant whose drives are given, not prescribed: for code that a controller calls.
 
-    ``law(t, p) -> (d, d_rate, d_acceleration)`` are the motions that are written in scalars, as :class:`.Laws` order them;
-    ``count(moment, p) -> counted`` stands for the drive of :class:`Stages`, of which ``loops`` and ``instant`` are. A moment is the
-    time and the driven coordinates; in single precision all of them once more follow, what rounding them to single left. So do t
-    and d; parameters do not.
+    ``law(t, p) -> (d, d_rate, d_acceleration)`` is the law of the drives; ``count(moment, p) -> counted`` stands for the drive of
+    :class:`Stages`, of which ``loops`` and ``instant`` are. A moment is the time and the driven coordinates; in single precision
+    all of them once more follow, what rounding them to single left. So do t and d; parameters do not.
     """
 
     law: Any
@@ -104,15 +109,14 @@ def controlled(graph: SceneGraph, precision: Precision, fixed: tuple[float, ...]
     if precision == "double":
         stages, p = plain(graph), graph.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
-        return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
-    laws = graph.laws
+        return Controlled(graph.laws.motion, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
     pairs, rows = Pairs(precision), 1 + len(graph.driven)
     moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in _split(p)] if fixed is None else [pairs.constant(x) for x in fixed]
     handed, loops, instant = _counted(graph, pairs, t, driven, known)
     count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
-    return Controlled(_paired_law(laws.smooth, pairs, p, known), count, loops, instant, precision)
+    return Controlled(_paired_law(graph.laws.motion, pairs, p, known), count, loops, instant, precision)
 
 
 def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
@@ -134,7 +138,7 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any
 
 def turns_many(graph: SceneGraph, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
-    functions = (graph.instant, graph.laws.smooth, *([graph.newton.step] if graph.newton else []))
+    functions = (graph.instant, graph.laws.motion, *([graph.newton.step] if graph.newton else []))
     if not all(followable(function) for function in functions):
         return False
     sampled = t[np.linspace(0, t.size - 1, min(t.size, _SAMPLES)).astype(int)]
@@ -164,13 +168,10 @@ def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...
     following, of_counted = (
         Arithmetic(np.float64, {code: functools.partial(rule, code) for code in known}) for rule in (measured, counted)
     )
-    laws, t = graph.laws, np.array(instants)
-    unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(laws.order)
+    t = np.array(instants)
+    unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(graph.driven)
     with np.errstate(all="ignore"):
-        driven = list(interpret(laws.smooth, [[t], p], following)[0])
-        if laws.sampled is not None:
-            driven += list(laws.sampled(t[None], p)[0].full())
-        driven = [driven[k] for k in laws.order]
+        driven = list(interpret(graph.laws.motion, [[t], p], following)[0])
         if graph.newton is not None:
             interpret(graph.newton.step, [unknown, [t], driven, p], of_counted)
         interpret(graph.instant, [[t], driven, rates, rates, unknown, p], of_counted)
@@ -252,28 +253,6 @@ _FOLLOWED = {
     *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
     *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),
 }
-
-
-def _compensated(graph: SceneGraph, laws: Laws, precision: Precision) -> Stages:
-    pairs, single = Pairs(precision), precision == "single"
-    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
-    t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
-    smooth = interpret(laws.smooth, [[t_pair], p_pairs], pairs.arithmetic)
-    sampled = ca.SX.sym("sampled", len(laws.order) - len(smooth[0]))
-    driven = [*smooth[0], *(Pair(x) for x in _split(sampled))]
-    # As a controller gives them: see controlled().
-    driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
-    handed, loops, instant = _counted(graph, pairs, t_pair, [driven[k] for k in laws.order], p_pairs)
-    given = [handed, *(_column([pair.value for pair in row]) for row in smooth[1:])]
-    inputs = [time, ca.vec(parameters)]
-    if laws.sampled is None:
-        return Stages(ca.Function("drive", inputs, given, {"cse": True}), loops, instant, precision, compensated=True)
-    following = ca.Function("following", [*inputs, sampled], given, {"cse": True})
-    t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
-    read, *changes = laws.sampled.call([t[0], values[: parameters.size1()]])
-    handed, *others = following.call([t, values, read])
-    ordered = [ca.vertcat(a, b)[list(laws.order)] for a, b in zip(others, changes, strict=True)]
-    return Stages(ca.Function("drive", [t, values], [handed, *ordered]), loops, instant, precision, compensated=True)
 
 
 def _counted(graph: SceneGraph, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.interpret import written_out
 from ..base.units import number, typed
 from ..errors import DeclarationError, NumberError, one_line, shown
 from .parts import Expression
@@ -47,6 +48,7 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: st
                     f"{what} calls casadi.interpolant, whose C runs in doubles only, and one instant at a time; expected "
                     "lagrange_casadi.curve(x, y)(ARGUMENT), smooth, or where corners may be table(ARGUMENT, x, y)"
                 )
+            return written_out(value)
         return value
     try:
         found = number(value, unit, finite=isinstance(value, str))

@@ -1,4 +1,4 @@
-"""The motions of several drives as functions that hold nothing else, and what is asked of them beside their values."""
+"""The motions of several drives as a function that holds nothing else, and the times and knots of their samples."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from typing import Any
 import casadi as ca
 
 from ..base.symbolic import Graphs, symbolic
-from ..errors import DeclarationError
-from .curves import curve
 from .motion import Motion, motion_function
 
 _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
@@ -19,29 +17,22 @@ _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 
 @dataclass(frozen=True, eq=False)
 class Laws(Graphs):
-    """The motion of several drives, ``joints``, in two functions as :func:`.motion_function` makes them.
+    """The motion of several drives, ``joints``, by one function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of scalars.
 
-    ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
-    where it is, the sampled ones counted after the smooth ones. ``spans`` are the times that each law covers, and ``knots`` those
-    of its samples [s].
+    ``spans`` are the times that each law covers, and ``knots`` those of its samples [s].
     """
 
     joints: tuple[str, ...]
-    smooth: Any
-    sampled: Any | None
-    order: tuple[int, ...]
+    motion: Any
     spans: tuple[tuple[float, float], ...]
     knots: tuple[tuple[float, ...], ...]
 
     @classmethod
     @symbolic
     def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
-        """The functions of laws by the joint's name."""
-        smooth, sampled = ({name: law for name, law in laws.items() if law.spline is spline} for spline in (False, True))
-        order = tuple([*smooth, *sampled].index(name) for name in laws)
-        functions = motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None
+        """The function of laws by the joint's name."""
         spans, knots = tuple(law.span for law in laws.values()), tuple(law.knots for law in laws.values())
-        return cls(tuple(laws), *functions, order, spans, knots)
+        return cls(tuple(laws), motion_function(laws, parameters), spans, knots)
 
     @property
     def span(self) -> tuple[float, float]:
@@ -53,97 +44,24 @@ class Laws(Graphs):
     def only(self, joint: str) -> Laws:
         """The law of one of the drives."""
         k = self.joints.index(joint)
-        place, many = self.order[k], self.smooth.size1_out(0)
-        t, p = self.smooth.sx_in()
-        if place < many:
-            smooth, sampled = ca.Function("motion", [t, p], [row[place] for row in self.smooth(t, p)], *_NAMES), None
-        else:
-            time, values = ca.MX.sym("t"), ca.MX.sym("p", p.numel())
-            assert self.sampled is not None
-            rows = [row[place - many] for row in self.sampled(time, values)]
-            smooth = ca.Function("motion", [t, p], [ca.SX(0, 1)] * 3, *_NAMES)
-            sampled = ca.Function("motion", [time, values], rows, *_NAMES)
-        return Laws((joint,), smooth, sampled, (0,), (self.spans[k],), (self.knots[k],))
-
-    @property
-    @symbolic
-    def motion(self) -> Any:
-        """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of all drives."""
-        if self.sampled is None:
-            return self.smooth
-        t, p = ca.MX.sym("t"), ca.MX.sym("p", self.smooth.size1_in(1))
-        both = zip(self.smooth(t, p), self.sampled(t, p), strict=True)
-        return ca.Function("motion", [t, p], [ca.vertcat(*pair)[list(self.order)] for pair in both], *_NAMES)
-
-    @property
-    def with_samples(self) -> tuple[str, ...]:
-        """The drives whose laws are by samples."""
-        many = self.smooth.size1_out(0)
-        return tuple(joint for joint, place in zip(self.joints, self.order, strict=True) if place >= many)
-
-    @property
-    def known(self) -> bool:
-        """Whether all samples tell their knots."""
-        return all(self.knots[self.joints.index(joint)] for joint in self.with_samples)
+        t, p = self.motion.sx_in()
+        motion = ca.Function("motion", [t, p], [row[k] for row in self.motion(t, p)], *_NAMES, {"cse": True})
+        return Laws((joint,), motion, (self.spans[k],), (self.knots[k],))
 
     @symbolic
     def jerk(self) -> Any:
-        """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a spline's knot, that of one side.
-
-        Raises :class:`.DeclarationError` for a spline that does not tell its knots.
-        """
-        t, p = self.smooth.sx_in()
-        by_t = ca.densify(ca.jacobian(self.smooth(t, p)[2], t))
-        bend = ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
-        if self.sampled is None:
-            return bend
-        time, values = ca.MX.sym("t"), ca.MX.sym("p", p.numel())
-        rows = [bend(time, values)]
-        for place, knots in self._splines("its third derivative needs"):
-            # Not by the spline's own derivative: at a knot CasADi's splines of degree 0 write beside their memory.
-            bends = self.sampled(ca.DM(knots).T, ca.DM.zeros(p.numel()))[2][place, :].full().ravel()
-            rows.append(ca.densify(ca.jacobian(ca.interpolant("bend", "linear", [knots], bends)(time), time)))
-        return ca.Function("jerk", [time, values], [ca.vertcat(*rows)[list(self.order)]], ["t", "p"], ["d_jerk"])
-
-    @symbolic
-    def in_scalars(self) -> Laws:
-        """The same laws, none of them a spline of CasADi's own, so that they can be differentiated as often as one likes.
-
-        The spline through what one is at its knots is the same one. Raises :class:`.DeclarationError` where it does not tell them.
-        """
-        if self.sampled is None:
-            return self
-        t, p = self.smooth.sx_in()
-        value = self.smooth(t, p)[0]
-        rows: list[Any] = [value[k] for k in range(value.numel())]
-        for place, knots in self._splines("its further derivatives need"):
-            values = self.sampled(ca.DM(knots).T, ca.DM.zeros(p.numel()))[0][place, :].full().ravel()
-            rows.append(ca.SX(curve(knots, values.tolist())(t)))
-        value = ca.vertcat(ca.SX(0, 1), *(rows[k] for k in self.order))
-        rate = ca.densify(ca.jacobian(value, t))
-        found = [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
-        whole = ca.Function("motion", [t, p], found, *_NAMES, {"cse": True})
-        return Laws(self.joints, whole, None, tuple(range(len(self.joints))), self.spans, self.knots)
-
-    def _splines(self, needs: str) -> list[tuple[int, tuple[float, ...]]]:
-        """The places among the sampled laws and the knots, in that order."""
-        many, found = self.smooth.size1_out(0), []
-        for joint, place, knots in sorted(zip(self.joints, self.order, self.knots, strict=True), key=lambda law: law[1]):
-            if place >= many:
-                if not knots:
-                    raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which {needs}")
-                found.append((place - many, knots))
-        return found
+        """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a knot, that after it."""
+        t, p = self.motion.sx_in()
+        by_t = ca.densify(ca.jacobian(self.motion(t, p)[2], t))
+        return ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
 
     def words(self) -> list[Any]:
         """The laws for JSON; functions as the text in which CasADi writes them."""
-        sampled = None if self.sampled is None else self.sampled.serialize()
-        return [self.joints, self.smooth.serialize(), sampled, self.order, self.spans, self.knots]
+        return [self.joints, self.motion.serialize(), self.spans, self.knots]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Laws:
         """The laws that :meth:`words` made."""
-        joints, smooth, sampled, order, spans, knots = words
-        read = ca.Function.deserialize
-        functions = read(smooth), None if sampled is None else read(sampled)
-        return cls(tuple(joints), *functions, tuple(order), tuple((low, high) for low, high in spans), tuple(map(tuple, knots)))
+        joints, motion, spans, knots = words
+        read = ca.Function.deserialize(motion)
+        return cls(tuple(joints), read, tuple((low, high) for low, high in spans), tuple(map(tuple, knots)))

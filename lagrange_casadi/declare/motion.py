@@ -31,14 +31,13 @@ from .stretches import Stretch
 class Motion:
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
-    ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
-    which the second derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period`` is their time
+    ``span`` is the time the law covers, and ``knots`` are the times between which the second derivative of a spline is linear. Of a
+    motion made of moves ``stretches`` are these, ``period`` is their time
     where they go on over and over, and ``demands`` are what parameters must hold to.
     ``told`` says in words what a motion from a file is; ``unit`` is rad or m if texts tell its numbers in that.
     """
 
     graph: Callable[[Any], Any]
-    spline: bool = False
     span: tuple[float, float] = (-math.inf, math.inf)
     knots: tuple[float, ...] = ()
     stretches: tuple[Stretch, ...] = ()
@@ -49,7 +48,7 @@ class Motion:
 
     def __call__(self, x: Any) -> Any:
         """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
-        if self.spline:
+        if self.knots:
             raise DeclarationError("a motion by samples is of the time alone; expected lagrange_casadi.curve(x, y)(EXPRESSION)")
         try:
             expression = ca.SX(x)
@@ -122,18 +121,16 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     if isinstance(values, list | tuple) and any(isinstance(value, str) for value in values):
         values, unit = coordinates("motion samples: values", ((value, "") for value in values))
     at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)
+    t, v = rows("motion samples", at.numbers, to.numbers, 4)
+    through = curve(t, v)
+
+    def graph(time: Any) -> Any:
+        value = through(time if at.scale is None else (time - at.shift) / at.scale)
+        return value if to.scale is None else to.shift + to.scale * value
+
     if at.scale is not None or to.scale is not None:
-        through = curve(*rows("motion samples", at.numbers, to.numbers, 4))
-
-        def graph(time: Any) -> Any:
-            value = through(time if at.scale is None else (time - at.shift) / at.scale)
-            return value if to.scale is None else to.shift + to.scale * value
-
         return Motion(graph, unit=unit)
-    times, values = at.numbers, to.numbers
-    t, v = rows("motion samples", times, values, 4)
-    spline = ca.interpolant("spline", "bspline", [t], v)
-    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
+    return Motion(graph, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
 
 
 @symbolic
@@ -142,17 +139,10 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
 
     Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
     """
-    names = (["t", "p"], ["d", "d_rate", "d_acceleration"])
     t = ca.SX.sym("t")
-    smooth = [None if law.spline else _derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
-    if not any(law.spline for law in laws.values()):
-        return ca.Function("motion", [t, parameters], _stack(smooth, ca.SX), *names, {"cse": True})
-    time, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
-    rows = [
-        _derivatives(law.graph(time), time) if row is None else ca.Function(f"law{i}", [t, parameters], row, {"cse": True})(time, p)
-        for i, (law, row) in enumerate(zip(laws.values(), smooth, strict=True))
-    ]
-    return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
+    rows = [_derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
+    stacked = [ca.vertcat(ca.SX(0, 1), *(row[order] for row in rows)) for order in range(3)]
+    return ca.Function("motion", [t, parameters], stacked, ["t", "p"], ["d", "d_rate", "d_acceleration"], {"cse": True})
 
 
 def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth]:
@@ -161,7 +151,7 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth
     Moves go on smoothly by their making, wherever parameters allow them.
     """
     t = ca.SX.sym("t")
-    looked_at = {joint: law for joint, law in laws.items() if not (law.spline or law.stretches)}
+    looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
     found = {joint: Smooth.of(_scalar(joint, law, t, parameters), t, parameters) for joint, law in looked_at.items()}
     return {joint: smooth for joint, smooth in found.items() if smooth is not None}
 
@@ -173,7 +163,7 @@ def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     Below zero where it is between them; None where no law has a curve with ends.
     """
     t = ca.SX.sym("t")
-    found = [[] if law.spline else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
+    found = [[] if law.knots else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
     if not any(found):
         return None
     rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
@@ -194,10 +184,6 @@ def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
 
 
 def _derivatives(value: Any, t: Any) -> list[Any]:
-    value = value if isinstance(value, ca.MX) else ca.SX(value)
+    value = ca.SX(value)
     rate = ca.densify(ca.jacobian(value, t))
     return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
-
-
-def _stack(rows: list[Any], kind: Any) -> list[Any]:
-    return [ca.vertcat(kind(0, 1), *(row[order] for row in rows)) for order in range(3)]

@@ -87,11 +87,10 @@ class Reaching:
     def of(cls, motion: Motion, symbols: Any) -> Reaching:
         """The law of a drive over the parameters' symbols. Raises :class:`.DeclarationError` for one that is no expression."""
         law = motion_function({"over": motion}, symbols)
-        if motion.spline:
-            return cls(law, False, False, motion.span)
         t, p = law.sx_in()
         d, rate, _ = law(t, p)
-        return cls(law, not ca.depends_on(rate, t), bool(p.numel()) and bool(ca.depends_on(d, p)), motion.span)
+        steady = not (motion.knots or ca.depends_on(rate, t))
+        return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), motion.span)
 
     def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
         """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each (n, k)."""

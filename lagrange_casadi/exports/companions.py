@@ -7,9 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..base.tables import Table
+from ..codegen.printer import literal
 from ..portable.contract import CORNERS, REST, Contract, Member
 from ..portable.golden import RATIOS
-from ..portable.program import literal
 from ..portable.sections import comparisons, in_words
 from ..portable.slopes import in_readme, selftest_function, selftest_numbers
 from ..portable.source import Source

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..beams.material import Material
+from ..codegen.printer import literal
 from ..portable.naming import constants
-from ..portable.program import literal
 from ..portable.source import Source
 from ..portable.text import template
 from ..strength.fatigue import line

@@ -13,10 +13,10 @@ from ..base.arrays import Array
 from ..base.cache import working_folder
 from ..codegen import find_compiler
 from ..codegen.compiler import Compiler, broken, compiled, complaint
+from ..codegen.printer import literal
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
 from ..portable.contract import REST
 from ..portable.header import header
-from ..portable.program import literal
 from ..portable.source import Source
 from ..portable.text import indented, template
 from .fmu_description import Description, page

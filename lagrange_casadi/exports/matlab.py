@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from ..codegen.printer import literal
 from ..portable.contract import Contract, Member
-from ..portable.program import literal
 from ..portable.source import Source
 from ..portable.text import octave, octave_printed, template
 

@@ -24,12 +24,11 @@ def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Ar
     laws, coordinates = graph.laws, graph.data.kinds.coordinates
     rows = {angle: out[graph.outputs[angle]] for angle in graph.loop_angles}
     driven = [np.longdouble(row) for row in np.atleast_2d(graph.motion(t[None], p)[0].full())]
-    if followable(laws.smooth):
+    if followable(laws.motion):
         known = numpy_arithmetic()
         # A turn is meant, not the double that is nearest to it.
         exact = replace(known, constant=lambda value: _TURN if value == math.tau else known.constant(value))
-        smooth = interpret(laws.smooth, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0]
-        driven = [smooth[k] if k < len(smooth) else driven[i] for i, k in enumerate(laws.order)]
+        driven = list(interpret(laws.motion, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0])
     for name, angle in zip(graph.driven, driven, strict=True):
         if coordinates[name] == "angle" and Output("motion", name) in graph.outputs:
             whole = np.broadcast_to(np.asarray(angle - _TURN * np.rint(angle / _TURN), float), t.shape)

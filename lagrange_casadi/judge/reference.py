@@ -111,12 +111,7 @@ def _mpmath() -> Any:
 
 
 def _driven(graph: SceneGraph, time: Any, values: list[Any]) -> list[list[Any]]:
-    laws = graph.laws
-    found = interpret(laws.smooth, [[time], values], arithmetic())
-    if laws.sampled is not None:
-        read = laws.sampled(float(time), [float(value) for value in values])
-        found = [row + [type(time)(float(x)) for x in more.full().ravel()] for row, more in zip(found, read, strict=True)]
-    return [[row[k] for k in laws.order] for row in found]
+    return interpret(graph.laws.motion, [[time], values], arithmetic())
 
 
 def _closed(graph: SceneGraph, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any) -> list[Any]:

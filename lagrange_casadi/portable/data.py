@@ -1,4 +1,4 @@
-"""Motions by samples and tables of a cycle as constants in C, and how large they are."""
+"""Tables as constants in C: those of a cycle, and how large all of them are."""
 
 from __future__ import annotations
 
@@ -11,26 +11,23 @@ import numpy as np
 from ..arithmetic.lookups import lookup
 from ..base.arrays import Array
 from ..base.vocabulary import Precision
+from ..codegen.printer import Format, literal
 from ..errors import SizeError
-from .program import Format, Program, Samples, literal
+from .program import Program
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
 _LINE = 6
-_HALF, _SIXTH = 1 / 2, 1 / 6
 
 
 def table_bytes(program: Program) -> dict[str, int]:
     """The size of each table of numbers, by what it is."""
     size = 4 if program.precision == "single" else 8
     found = {}
-    for sample in program.samples:
-        more = 2 if program.precision == "single" else 1
-        found[f"the motion of joint '{sample.joint}'"] = size * (sample.knots.size * more + sample.pieces.size + len(sample.pieces))
     called = {inner.name(): lookup(inner) for function in program.functions.values() for inner in function.find_functions()}
     if curves := sum(table.numbers.size for table in called.values() if table is not None):
-        found["what all curves look up"] = size * curves
+        found["what curves and motions by samples look up"] = size * curves
     if program.cycle is not None:
         found["the table of the cycle"] = program.cycle.coefficients.size * size
     return found
@@ -43,49 +40,6 @@ def check_size(program: Program, limit: int) -> None:
             raise SizeError(
                 f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer numbers, or raise the limit"
             )
-
-
-def sampled(program: Program, number: Format) -> str:
-    """The motions by samples: constants, and a function for each."""
-    if not program.samples:
-        return ""
-    text = (resources.files(__package__) / "templates" / "samples.c").read_text()
-    return text + "".join(_motion(k, sample, program.precision == "single", number) for k, sample in enumerate(program.samples))
-
-
-def _motion(k: int, sample: Samples, single: bool, number: Format) -> str:
-    value, rest = _parts(sample.pieces[:, 0], single)
-    rows = np.column_stack([value, rest, sample.pieces[:, 1:]])
-    knots, knots_rest = _parts(sample.knots, single)
-    half, sixth = number(_HALF), number(_SIXTH)
-    text = (
-        f"\n/* The motion of joint {sample.joint}: knots, and of each piece its value, what rounding left of that, and so on. */\n"
-    )
-    text += _constants(f"knots_{k}", knots, number)
-    from_knot = f"time - knots_{k}[i]"
-    if single:
-        text += _constants(f"knots_rest_{k}", knots_rest, number)
-        from_knot = f"({from_knot}) + (rest - knots_rest_{k}[i])"
-    text += _constants(f"pieces_{k}", rows.ravel(), number)
-    lines = [
-        f"const int i = piece_of(time, {len(sample.pieces)}, knots_{k});",
-        f"const casadi_real* c = pieces_{k} + 5*i;",
-        f"const casadi_real s = {from_knot};",
-        f"const casadi_real step = s*(c[2] + s*(c[3]*{half} + s*c[4]*{sixth}));",
-        "const casadi_real value = c[0] + step, part = value - c[0];",
-        "found[0] = value;",
-        f"found[1] = c[2] + s*(c[3] + s*c[4]*{half});",
-        "found[2] = c[3] + s*c[4];",
-        "found[3] = ((c[0] - (value - part)) + (step - part)) + c[1];",
-        *([] if single else ["(void) rest;"]),
-    ]
-    body = "\n".join(f"  {line}" for line in lines)
-    return f"{text}\nstatic void sample_of_{k}(casadi_real time, casadi_real rest, casadi_real* found) {{\n{body}\n}}\n"
-
-
-def _parts(values: Array, single: bool) -> tuple[Array, Array]:
-    high = values.astype(np.float32).astype(float) if single else values
-    return high, values - high
 
 
 def table_text(program: Program) -> str:

@@ -2,45 +2,32 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
-from ..codegen.plain import plain
+from ..codegen.printer import print_functions
 from ..codegen.stages import controlled
 from ..declare.motion import ends_function
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
-from ..errors import DeclarationError
 from ..instants.cycle_table import CycleTable
 from ..instants.tabulate import still
-
-
-@dataclass(frozen=True, eq=False)
-class Samples:
-    """The motion of a joint by samples: cubics between ``knots`` (n + 1): value, rate, acceleration and jerk of each (n, 4)."""
-
-    joint: str
-    knots: Array
-    pieces: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Program:
     """What is emitted.
 
-    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``order`` says which of
-    the motions, written in scalars and then ``samples``, each drive has. ``cycle`` is a table to be read instead of an instant, and
-    ``still`` are stations that are told beside it, for they do not move.
+    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``cycle`` is a table to be
+    read instead of an instant, and ``still`` are stations that are told beside it, for they do not move.
     """
 
     graph: SceneGraph
@@ -48,8 +35,6 @@ class Program:
     functions: Mapping[str, ca.Function]
     columns: tuple[Column, ...]
     sizes: dict[str, int]
-    order: tuple[int, ...]
-    samples: tuple[Samples, ...]
     newton: int | None
     cycle: CycleTable | None
     still: Mapping[Output, float]
@@ -57,7 +42,7 @@ class Program:
     @property
     def text(self) -> str:
         """The C of its functions."""
-        return plain(self.functions, self.precision)
+        return print_functions(self.functions, self.precision, prefix="graph")
 
     @property
     def rule(self) -> dict[str, float]:
@@ -69,10 +54,7 @@ class Program:
 def program(
     graph: SceneGraph, precision: Precision, newton: int | None, p: Array, read: tuple[SceneGraph, CycleTable] | None
 ) -> Program:
-    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``.
-
-    Raises :class:`DeclarationError` for a motion by a spline that does not tell its knots.
-    """
+    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``."""
     evaluated = graph if read is None else read[0]
     fixed = read is not None
     stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
@@ -107,7 +89,6 @@ def program(
         "moment": stages.count.size1_in(0),
         "counted": stages.count.size1_out(0),
         "drives": len(graph.driven),
-        "smooth": stages.law.size1_out(1),
         "loops": stages.instant.size1_in(3),
         "evaluated": len(kept),
         "rows": max(1, len(columns)),
@@ -116,10 +97,9 @@ def program(
         "sound": 0 if fixed else functions["sound"].size1_out(0),
         "positive": 0 if fixed else positive,
     }
-    samples = tuple(_samples(graph, joint, p) for joint in graph.laws.with_samples)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
-    return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle, places)
+    return Program(graph, precision, filled, columns, sizes, newton, cycle, places)
 
 
 def _fixed(function: Any, p: Array) -> Any:
@@ -153,31 +133,3 @@ def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, 
 
 def _changes(value: Any) -> bool:
     return isinstance(value, ca.SX) and not value.is_constant()
-
-
-def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:
-    number = graph.driven.index(joint)
-    knots = np.array(graph.laws.knots[number])
-    if not knots.size:
-        raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which exported C needs")
-    rows = [np.atleast_2d(row.full())[number] for row in graph.motion(ca.DM(knots).T, ca.DM(p))]
-    jerk = np.diff(rows[2]) / np.diff(knots)
-    return Samples(joint, knots, np.stack([*(row[:-1] for row in rows), jerk], axis=1))
-
-
-Format = Callable[[float], str]
-
-
-def literal(precision: Precision) -> Format:
-    """How a number is written in C, so that it is read as the same number again."""
-    single = precision == "single"
-
-    def write(value: float) -> str:
-        number = float(np.float32(value)) if single else float(value)
-        if math.isinf(number):
-            return "-INFINITY" if number < 0 else "INFINITY"
-        text = f"{number:.9g}" if single else f"{number:.17g}"
-        text = text if any(mark in text for mark in ".en") else f"{text}.0"
-        return f"{text}f" if single else text
-
-    return write

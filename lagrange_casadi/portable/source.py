@@ -11,13 +11,14 @@ import casadi as ca
 
 from ..base.quantities import Output
 from ..codegen.emit import newton_rule
+from ..codegen.printer import Format, function_name, literal
 from ..declare.ends import BEYOND
 from ..instants.rules import rules
 from ..version import __version__
 from .contract import REST, Contract
-from .data import sampled, table_call, table_text
+from .data import table_call, table_text
 from .golden import Golden
-from .program import Format, Program, literal
+from .program import Program
 from .sections import functions
 from .slopes import ExportedSlopes
 from .slopes import code as sensitivity
@@ -47,7 +48,11 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
-        sections = functions(self.contract, self.program, self._number, self._function("sqrt")) if self.contract.links else ""
+        sections = (
+            functions(self.contract, self.program, self._number, function_name("sqrt", self.contract.precision))
+            if self.contract.links
+            else ""
+        )
         if self.slopes is not None:
             sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(
@@ -130,16 +135,13 @@ class Source:
     def _number(self) -> Format:
         return literal(self.contract.precision)
 
-    def _function(self, name: str) -> str:
-        return f"{name}f" if self.contract.precision == "single" else name
-
     def _helpers(self) -> str:
         number, found = self._number, ""
         if self.program.graph.loop_angles:
             turn = number(math.tau)
             found += (
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"
-                f"  return angle - {turn}*{self._function('ceil')}(angle/{turn} - {number(0.5)});\n}}\n"
+                f"  return angle - {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} - {number(0.5)});\n}}\n"
             )
         if self.iterated:
             rule = {key: number(value) for key, value in self.program.rule.items()}
@@ -153,12 +155,11 @@ class Source:
                 turn=number(math.tau),
                 inverse=number(1.0 / math.tau),
                 half=number(0.5),
-                floor=self._function("floor"),
+                floor=function_name("floor", self.contract.precision),
                 rate=rule["rate"],
                 rounding=rule["rounding"],
                 p_values="model->parameters" if self.program.sizes["p"] else "0",
             )
-        found += sampled(self.program, number)
         return found + table_text(self.program)
 
     def _defaults(self) -> str:
@@ -214,20 +215,18 @@ class Source:
         return "model->parameters" if self.program.sizes["p"] else "0"
 
     def _motion(self) -> Iterable[str]:
-        c, P, smooth = self.contract, self._upper, self.program.sizes["smooth"]
+        c, P, drives = self.contract, self._upper, self.program.sizes["drives"]
         ends = self.program.functions.get("beyond")
-        if smooth:
-            values = max(1, 2 * smooth if c.rests else smooth)
-            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{smooth}], acceleration[{smooth}];"
+        if drives:
+            values = 2 * drives if c.rests else drives
+            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{drives}], acceleration[{drives}];"
             yield "const casadi_real* arg[2];"
             yield "casadi_real* res[3];"
-        for k, _ in enumerate(self.program.samples):
-            yield f"casadi_real sample_{k}[4];"
         if ends is not None:
             yield f"casadi_real far[{ends.size1_out(0)}];"
         yield from self._refused("model->seal != SEAL", "NOT_PREPARED")
         yield from self._refused(self._untimely(), "BAD_TIME")
-        if smooth:
+        if drives:
             yield "at[0] = time;"
             if c.rests:
                 yield "at[1] = time_rest;"
@@ -242,8 +241,6 @@ class Source:
             yield "res[0] = far;"
             yield "beyond(arg, res);"
             yield from self._refused(" || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME")
-        for k, _ in enumerate(self.program.samples):
-            yield f"sample_of_{k}(time, {'time_rest' if c.rests else '0'}, sample_{k});"
         yield from self._driven()
         yield f"return {P}_OK;"
 
@@ -265,22 +262,17 @@ class Source:
 
     def _driven(self) -> Iterable[str]:
         """Time, where it counts, and the motion of each drive, put into the inputs."""
-        c, smooth = self.contract, self.program.sizes["smooth"]
+        c = self.contract
         if c.timed:
             yield f"inputs->{c.input_of('time')} = time;"
             if c.rests:
                 yield f"inputs->{c.input_of(f'{REST}time')} = time_rest;"
-        for drive, place in zip(c.drives, self.program.order, strict=True):
-            terms = (
-                [f"d[{place}]", f"d[{smooth + place}]", f"rate[{place}]", f"acceleration[{place}]"]
-                if place < smooth
-                else [f"sample_{place - smooth}[{k}]" for k in (0, 3, 1, 2)]
-            )
-            yield f"inputs->{c.input_of(f'motion:{drive}')} = {terms[0]};"
+        for k, drive in enumerate(c.drives):
+            yield f"inputs->{c.input_of(f'motion:{drive}')} = d[{k}];"
             if c.rests:
-                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = {terms[1]};"
-            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = {terms[2]};"
-            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = {terms[3]};"
+                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = d[{len(c.drives) + k}];"
+            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = rate[{k}];"
+            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = acceleration[{k}];"
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes = self.contract, self._upper, self.program.sizes
@@ -339,7 +331,7 @@ class Source:
 
     def _verdict(self) -> Iterable[str]:
         P, number, closed = self._upper, self._number, self.iterated
-        fabs, graph = self._function("fabs"), self.program.graph
+        fabs, graph = function_name("fabs", self.contract.precision), self.program.graph
         for rule in rules(graph, self.contract.precision, self.program.newton):
             k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
             beside = f"{limit}*model->matter[0]"

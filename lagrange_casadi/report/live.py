@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.quantities import Output
-from ..codegen.plain import plain
+from ..codegen.printer import print_functions
 from ..declare.corners import Corners
 from ..declare.density import Density
 from ..declare.description import Description, numbered
@@ -92,7 +92,7 @@ def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays:
     start, stop = timing.ends(scene.mechanism.symbols)
     numbers = ca.densify(ca.vertcat(start, stop, *asked, *masses.values()))
     function = ca.Function("numbers_of", [scene.mechanism.symbols], [numbers], {"cse": True})
-    text = _NUMBERS.format(functions=plain({"numbers_of": function}, "double"))
+    text = _NUMBERS.format(functions=print_functions({"numbers_of": function}, "double", prefix="live"))
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     return {

@@ -79,7 +79,7 @@ class Curvatures:
 def second_function(graph: SceneGraph, points: PointFunction) -> Any:
     """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
     and all parameters, and how it changes along a ``way`` of these."""
-    inner, laws = points.at_drives, graph.laws.in_scalars()
+    inner, laws = points.at_drives, graph.laws
     given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
     t, z, p, xi = (given[name] for name in ("t", "z", "p", "xi"))
     driven = laws.motion.call([t, p])

@@ -24,25 +24,20 @@ def end_slopes(laws: Laws, timing: Timing, first: float, last: float, p: Array) 
         return bounds
     motion = laws.only(timing.joint).motion
     rates = np.array([float(motion(time, p)[1]) for time in (first, last)])
-    own = np.zeros((2, p.size))
-    if motion.is_a("SXFunction"):  # samples are numbers
-        t, values = motion.sx_in()
-        slope = ca.Function("slope", [t, values], [ca.densify(ca.jacobian(motion(t, values)[0], values))])
-        own = np.stack([slope(time, p).full().ravel() for time in (first, last)])
+    t, values = motion.sx_in()
+    slope = ca.Function("slope", [t, values], [ca.densify(ca.jacobian(motion(t, values)[0], values))])
+    own = np.stack([slope(time, p).full().ravel() for time in (first, last)])
     return np.asarray((bounds - own) / rates[:, None])
 
 
 def end_bends(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
-    """Their second derivatives by all parameters, (2, parameters, parameters) [s].
-
-    Raises :class:`.DeclarationError` where a drive that says when they are has samples that do not tell their knots.
-    """
+    """Their second derivatives by all parameters, (2, parameters, parameters) [s]."""
     if timing.shared or not p.size:
         return np.zeros((2, p.size, p.size))
     t, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)
     along: Any = t
     if timing.joint:
-        along = laws.only(timing.joint).in_scalars().motion(t, values)[0]
+        along = laws.only(timing.joint).motion(t, values)[0]
     found = []
     for time, bound in zip((first, last), timing.ends(values), strict=True):
         hessian, gradient = ca.hessian(ca.SX(along - bound), ca.vertcat(t, values))

@@ -36,20 +36,18 @@ _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
 @dataclass(frozen=True, eq=False)
 class PointFunction(Graphs):
-    """``function(t, drives, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities of a graph.
+    """``function(t, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities of a graph.
 
-    ``drives`` is what ``lead(t, p)`` gives where motions are by samples; else it is empty, and there is no ``lead``.
     ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the ``quantities`` it may be one of the
     ``switches``: see :class:`.Watch`. ``xi`` is the ratio at which a section force is meant; with ``moving`` it moves with the
     station that is there, on the side on which the force is nearer to ``value``. ``rate`` is the derivative by time [1/s],
     ``slopes`` (parameters,) are those by the parameters at that time. ``at_drives`` is the same function of the drives'
-    coordinates, rates, accelerations and the rates of these, in place of ``drives``.
+    coordinates, rates, accelerations and the rates of these, which are given too.
     """
 
     quantities: tuple[Output, ...]
     switches: tuple[Watch, ...]
     function: Any
-    lead: Any | None
     at_drives: Any
 
     @classmethod
@@ -64,22 +62,12 @@ class PointFunction(Graphs):
         inner = _at_drives(graph, quantities, None if sharpness is None else sharpness.watched, sharp)
         given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
         t, p = (given[name] for name in ("t", "p"))
-        jerk = graph.laws.jerk()
-        lead = None
-        if graph.motion.is_a("SXFunction"):
-            given["drives"] = ca.SX(0, 1)
-            drives = [*graph.motion.call([t, p]), jerk.expand()(t, p)]
-        else:
-            time, values = ca.MX.sym("t"), ca.MX.sym("p", p.numel())
-            lead = ca.Function("lead", [time, values], [ca.vertcat(*graph.motion.call([time, values]), jerk(time, values))])
-            given["drives"] = ca.SX.sym("drives", lead.size1_out(0))
-            drives = ca.vertsplit(given["drives"], len(graph.driven))
-        given |= dict(zip(_DRIVES, drives, strict=True))
+        given |= dict(zip(_DRIVES, [*graph.motion.call([t, p]), graph.laws.jerk()(t, p)], strict=True))
         found = inner.call([given[inner.name_in(k)] for k in range(inner.n_in())])
-        names = ["t", "drives", "z", "p", "xi", "value", "moving", "chosen"]
+        names = ["t", "z", "p", "xi", "value", "moving", "chosen"]
         every = [given[name] for name in names]
         made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
-        return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, lead, inner)
+        return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, inner)
 
 
 def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
@@ -106,13 +94,8 @@ def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sh
         more_t, more_d, more_p = ca.vertsplit(more, _ends([t, d, p]))
         by_t, by_d, by_p = by_t + more_t, by_d + more_d, by_p + more_p
     in_time = by_t + ca.dot(by_d, rate) + ca.dot(by_rate, acceleration) + ca.dot(by_acceleration, jerk)
-    laws = graph.laws
-    smooth = laws.smooth(t, p)
-    own = [k for k, place in enumerate(laws.order) if place < smooth[0].numel()]
-    if own:
-        places = [laws.order[k] for k in own]
-        driven = ca.vertcat(*(part[places] for part in smooth))
-        by_p = by_p + ca.jtimes(driven, p, ca.vertcat(by_d[own], by_rate[own], by_acceleration[own]), True)
+    driven = ca.vertcat(*graph.laws.motion(t, p))
+    by_p = by_p + ca.jtimes(driven, p, ca.vertcat(by_d, by_rate, by_acceleration), True)
     found = [ca.dot(held, rows), in_time, by_p]
     found = [ca.densify(x) for x in ca.substitute(found, [held], [weights])]
     names = ["t", *_DRIVES, "z", "p", "xi", "value", "moving", "chosen"]

@@ -57,13 +57,8 @@ def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, b
     time, *driven, z, values = inner.sx_in()
     own = differentiable(graph.instant)(time, *driven, z, values)[[graph.outputs[output] for output in rows]]
     inner = ca.Function("both", inner.sx_in(), [ca.vertcat(own.T, inner(time, *driven, z, values))])
-    drives = ca.vertcat(*driven)
-    if graph.motion.is_a("SXFunction"):
-        slopes, lead = inner(time, *graph.motion.call([time, values]), z, values), np.zeros((t.size, 0))
-        drives = ca.SX(0, 1)
-    else:  # samples are numbers
-        slopes, lead = inner(time, *driven, z, values), np.vstack([x.full() for x in graph.motion(t[None], p)]).T
-    function = ca.Function("at_once", [time, drives, z, values], [slopes], ["t", "drives", "z", "p"], ["found"], {"cse": True})
+    slopes = inner(time, *graph.motion.call([time, values]), z, values)
+    function = ca.Function("at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True})
     extra = tuple(shlex.split(rung.flags))
 
     def build(compiler: codegen.Compiler) -> tuple[codegen.BatchLibrary, codegen.Library | None]:
@@ -73,7 +68,7 @@ def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, b
     made = compiled(rung, build)
     library, following = (None, None) if made is None else made[1]
     place = iterated(graph, following, t, p, t)
-    given = {"t": (t[:, None], 1), "drives": (lead, 1), "z": (place, 1), "p": (p[None], 0)}
+    given = {"t": (t[:, None], 1), "z": (place, 1), "p": (p[None], 0)}
     return at_points(function, library, t.size, given).reshape(t.size, len(rows), 1 + len(by))
 
 

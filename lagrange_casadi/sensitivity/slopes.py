@@ -72,7 +72,6 @@ class Slopes:
         values = np.zeros(n) if value is None else np.where(np.isfinite(value), value, 0.0)
         given: dict[str, Any] = {
             "t": t,
-            "drives": self._drives(t, p),
             "z": z,
             "p": p,
             "xi": ratios,
@@ -104,10 +103,6 @@ class Slopes:
         """Those that were asked for, by number."""
         return {}
 
-    def _drives(self, t: Array, p: Array) -> Array:
-        """What motions by samples give at times, (n, drives)."""
-        return np.zeros((t.size, 0)) if self.points.lead is None else np.asarray(self.points.lead(t[None], p).full().T)
-
     def iterated(self, t: Array, p: Array, places: Array) -> Array:
         """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed."""
         return iterated(self.graph, self.following, t, p, places)
@@ -124,6 +119,6 @@ def _interpreted(
     ones = np.zeros((points.function.size1_in("chosen"), here.size))
     ones[chosen, np.arange(here.size)] = 1.0
     rows = (given[name][None, here] for name in ("xi", "value", "moving"))
-    columns = points.function(given["t"][None, here], given["drives"][here].T, given["z"][here].T, given["p"], *rows, ones)
+    columns = points.function(given["t"][None, here], given["z"][here].T, given["p"], *rows, ones)
     for array, column in zip(found, columns, strict=True):
         array[here] = column.full().T if array.ndim > 1 else column.full().ravel()

@@ -44,13 +44,5 @@ def _seeds(count: int, by: Sequence[int]) -> Any:
 
 
 def _driven(graph: SceneGraph, t: Any, p: Any, by: Sequence[int]) -> list[Any]:
-    """How the drives' coordinates, rates and accelerations change with some parameters; those by samples do not."""
-    smooth = graph.laws.smooth(t, p)
-    count = smooth[0].numel()
-    changes = [ca.jtimes(part, p, _seeds(p.numel(), by)) for part in smooth]
-    moved = [ca.SX(len(graph.driven), len(by)) for _ in changes]
-    for k, place in enumerate(graph.laws.order):
-        if place < count:
-            for into, change in zip(moved, changes, strict=True):
-                into[k, :] = change[place, :]
-    return moved
+    """How the drives' coordinates, rates and accelerations change with some parameters."""
+    return [ca.jtimes(part, p, _seeds(p.numel(), by)) for part in graph.laws.motion(t, p)]

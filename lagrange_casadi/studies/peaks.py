@@ -163,7 +163,7 @@ def rates(graph: SceneGraph) -> ca.Function:
     out = instant(*place)
     out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
     both = ca.Function("rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"])
-    return both if graph.laws.sampled is not None else both.expand("rates", {"cse": True})
+    return both.expand("rates", {"cse": True})
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,7 +283,7 @@ class ContinuousSolution:
         value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
         reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
-        if not some or not self.graph.laws.known:
+        if not some:
             return value, t, xi
         chosen, first = [names[k] for k in some], t[some]
         before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])

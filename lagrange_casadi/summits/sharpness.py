@@ -9,7 +9,7 @@ rise and fall unseen. :mod:`.between` reads them.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -81,16 +81,16 @@ class Sharpness:
         columns = sorted({*columns, *laws} - largest)
         inputs = graph.instant.sx_in()
         names = [graph.instant.name_in(i) for i in range(len(inputs))]
-        found = _Found(inputs)
+        knots = {t for knots in graph.laws.knots for t in knots}
+        found = _Found(inputs, knots)
         if followable(graph.instant):
             out = graph.instant(*inputs)[list(columns)]
             found.look(ca.Function("wanted", inputs, [out], {"cse": True}), inputs)
-        if followable(graph.laws.smooth):
-            found.look(graph.laws.smooth, [inputs[0], inputs[-1]])
+        if followable(graph.laws.motion):
+            found.look(graph.laws.motion, [inputs[0], inputs[-1]])
         rows = ca.densify(ca.vertcat(ca.SX(0, 1), *(row for row, _ in found.kept.values())))
-        knots = sorted({t for knots in graph.laws.knots for t in knots})
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
-        return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(knots))
+        return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
 
 @symbolic
@@ -128,9 +128,13 @@ _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
 
 
 class _Found:
-    """What has been found to be watched, by kind and argument, and the symbols that it is of."""
+    """What has been found to be watched, by kind and argument, and the symbols that it is of.
 
-    def __init__(self, inputs: Sequence[Any]) -> None:
+    The time's own ``knots`` are known beforehand, and are not watched.
+    """
+
+    def __init__(self, inputs: Sequence[Any], knots: Set[float]) -> None:
+        self.knots = knots
         t, d, rate, acceleration, z, _ = inputs
         self.moving = ca.vertcat(t, d, rate, acceleration, z)
         self.place, self.place_rate = ca.vertcat(t, d), ca.vertcat(1, rate)
@@ -149,6 +153,8 @@ class _Found:
         """Watch an argument, unless parameters alone set it."""
         argument = self.bare(argument) if kind in (Kind.POLE, Kind.ROOT) else argument
         if not self.moves(argument):
+            return
+        if kind is Kind.KNOT and argument.element_hash() == self.moving[0].element_hash() and self.knots >= {*at}:
             return
         self.held.append(argument)
         row = argument

@@ -12,10 +12,10 @@
 
 typedef ${p}_real casadi_real;
 
-/* ---- Written by CasADi $casadi ---- */
+/* ---- The graph, one statement an instruction ---- */
 
 $graph
-/* ---- Written by lagrange_casadi ---- */
+/* ---- What calls it ---- */
 
 #define SEAL $seal
 

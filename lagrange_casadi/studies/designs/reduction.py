@@ -40,8 +40,8 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) ->
     """
     if rung.precision == "single":
         return compensated(graph, "single")
-    time, p = graph.laws.smooth.sx_in()
-    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p)):
+    time, p = graph.laws.motion.sx_in()
+    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
         try:
             return compensated(graph, "double")
         except DeclarationError:

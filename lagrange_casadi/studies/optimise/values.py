@@ -147,7 +147,7 @@ class PointValues:
         share, guess, p, xi, place = given
         first, last = self._span(p)
         t = first + share * (last - first)
-        d, rate, acceleration = self._motion.call([t, p])
+        d, rate, acceleration = graph.laws.motion.call([t, p])
         z = guess
         if graph.newton is not None:
             z = self._loops(guess, ca.vertcat(t, d, p))
@@ -174,11 +174,6 @@ class PointValues:
             d, rate, _ = times.law.law(0.0, symbols)
             ends = [(bound - d) / rate for bound in ends]
         return ca.Function("span", [symbols], [ca.densify(ca.SX(end)) for end in ends])
-
-    @cached_property
-    def _motion(self) -> Any:
-        """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often."""
-        return self.graph.laws.in_scalars().motion
 
     @cached_property
     def _loops(self) -> Any:

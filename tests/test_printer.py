@@ -1,0 +1,165 @@
+"""C that is printed of CasADi's functions: its bits are those of CasADi's virtual machine, and no compiler warns of it."""
+
+import ctypes
+import itertools
+import math
+import re
+
+import casadi as ca
+import numpy as np
+import pytest
+from compiled import cc
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lagrange_casadi import codegen
+from lagrange_casadi.arithmetic.interpret import written_out
+from lagrange_casadi.arithmetic.lookups import cell, entries
+from lagrange_casadi.codegen import printer
+from lagrange_casadi.codegen.printer import literal, print_functions
+from lagrange_casadi.errors import DeclarationError, SizeError
+
+pytestmark = pytest.mark.quick
+
+STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-ffp-contract=off", "-fPIC", "-shared"]
+HEAD = "#include <math.h>\n#define casadi_real double\n"
+CALL = "void f(const double** arg, double** res);\nvoid f(const double** arg, double** res) { made(arg, res); }\n"
+NUMBERS = (0.0, -0.0, 0.5, -3.0, 1e300, math.inf, math.nan)
+
+
+def compiled(function, folder, head=HEAD):
+    """The printed function, as a function of as many numbers as it has inputs."""
+    (folder / "f.c").write_text(head + print_functions({"made": function}, "double", prefix="table") + CALL)
+    result = cc([*codegen.find_compiler("c").command, *STRICT], folder, "f.c", output="f.so")
+    assert result.returncode == 0, result.stderr
+    library = ctypes.CDLL(str(folder / "f.so"))
+
+    def call(*values):
+        cells = [ctypes.c_double(value) for value in values]
+        out = (ctypes.c_double * function.nnz_out(0))(*[math.nan] * function.nnz_out(0))
+        pointers = [ctypes.cast(ctypes.byref(one), ctypes.c_void_p).value for one in cells]
+        library.f((ctypes.c_void_p * len(cells))(*pointers), (ctypes.c_void_p * 1)(ctypes.addressof(out)))
+        return np.array(out)
+
+    return call
+
+
+def every_operation(a, b):
+    """All operations that C has a name for, of two symbols."""
+    unary, binary = [], []
+    for name in (name for name in dir(ca) if name.startswith("OP_")):
+        code = getattr(ca, name)
+        if code in printer._LIBRARY or code in printer._WRITTEN or code in printer._OF_NUMBERS:
+            (binary if ca.SX.binary(code, a, b).n_dep() == 2 else unary).append(code)
+    found = [ca.SX.unary(code, a) for code in unary] + [ca.SX.binary(code, a, b) for code in binary]
+    return ca.vertcat(*found, ca.SX.binary(ca.OP_COPYSIGN, a, a) * b, a * 0.1 - math.tau)
+
+
+def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
+    a, b = ca.SX.sym("a"), ca.SX.sym("b")
+    function = ca.Function("f", [a, b], [every_operation(a, b)])
+    assert function.nnz_out(0) > 40
+    call = compiled(function, tmp_path)
+    for values in itertools.product(NUMBERS, repeat=2):
+        found, expected = call(*values), function(*values).full().ravel()
+        assert np.array_equal(found, expected, equal_nan=True), values
+        # Which of two zeros is the larger one, C leaves open.
+        some = ~np.isnan(found) & (values[0] != values[1])
+        assert np.array_equal(np.signbit(found[some]), np.signbit(expected[some])), values
+
+
+def test_truths_are_comparisons():
+    a, b = (ca.SX.sym(name) for name in "ab")
+    truths = ca.vertcat(ca.logic_not(a), ca.logic_and(a, b), ca.logic_or(a, b), ca.if_else(a, b, 2.0))
+    text = print_functions({"truths": ca.Function("truths", [a, b], [truths])}, "double", prefix="table")
+    assert re.search(r"!a\d|a\d+ (&&|\|\|) a\d", text) is None
+
+
+@pytest.mark.parametrize("length", [1, 7, 50])
+def test_a_function_in_parts_is_the_same(length, tmp_path, monkeypatch):
+    monkeypatch.setattr(printer, "LENGTH", length)
+    a, b = ca.SX.sym("a"), ca.SX.sym("b")
+    rows = [a, b]
+    for k in range(40):
+        rows.append(ca.sin(rows[-1]) * rows[k // 2] + 0.1 * k)
+    function = ca.Function("f", [a, b], [ca.vertcat(*rows[::3])])
+    text = print_functions({"made": function}, "double", prefix="table")
+    assert text.count("made_") > 1
+    call = compiled(function, tmp_path)
+    assert np.array_equal(call(0.3, -2.0), function(0.3, -2.0).full().ravel())
+
+
+def looked_up(points):
+    x, y = ca.SX.sym("x"), ca.SX.sym("y")
+    breaks, numbers = np.linspace(-1.0, 2.0, points), np.sin(np.arange(points - 1) * 1.7)
+    found = [entries(numbers, cell(breaks, argument, ends=True)) for argument in (x, ca.sin(x) + y)]
+    return ca.Function("f", [x, y], [ca.vertcat(found[0] * found[1] + y, ca.ceil(y))], {"cse": True})
+
+
+@pytest.mark.parametrize("points", [4, 5, 17, 361])
+def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
+    function = looked_up(points)
+    text = print_functions({"made": function}, "double", prefix="table")
+    # What rounds to whole numbers of itself is left; an entry, which is whole already, is not rounded.
+    assert text.count("ceil(") == 1
+    assert len(re.findall(r"a\d+ = table_", text)) == 4
+    call = compiled(function, tmp_path)
+    for x in np.linspace(-1.5, 2.5, 97):
+        for y in (-0.3, 0.0, 0.7):
+            assert np.array_equal(call(x, y), function(x, y).full().ravel())
+
+
+@given(st.floats(width=64))
+def test_a_number_is_read_as_the_same_number(value):
+    text = literal("double")(value)
+    read = float(text.replace("INFINITY", "inf").replace("NAN", "nan"))
+    assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(value)
+
+
+def test_numbers_too_large_for_singles_are_refused():
+    x = ca.SX.sym("x")
+    with pytest.raises(SizeError, match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38"):
+        print_functions({"f": ca.Function("f", [x], [1e39 * x])}, "single", prefix="table")
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [(ca.erfinv, "it takes OP_ERFINV"), (lambda x: outside(x), "it calls another one")],
+    ids=["unknown", "foreign"],
+)
+def test_what_has_no_c_is_named(make, says):
+    x = ca.SX.sym("x")
+    with pytest.raises(DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"):
+        print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
+
+
+class Outside(ca.Callback):
+    """A function that has no expression."""
+
+    def __init__(self):
+        ca.Callback.__init__(self)
+        self.construct("outside", {"enable_fd": True})
+
+    def eval(self, arguments):
+        return [2 * arguments[0]]
+
+
+outside = Outside()
+
+
+def test_functions_that_are_called_are_written_out():
+    """Of several inputs and outputs, within each other; callbacks and tables remain."""
+    x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
+    inner = ca.Function("inner", [x, y], [x[0] * y, ca.sin(x[1])], {"never_inline": True})
+    outer = ca.Function("outer", [y], [inner(ca.vertcat(y, 2 * y), y + 1)[1] * y], {"never_inline": True})
+    a = ca.SX.sym("a")
+    for expression, left in (
+        (outer(a) + inner(ca.vertcat(a, 1), 3.0)[0], 0),
+        (outer(outside(a)), 1),
+        (outer(entries((1.0, 2.0, 4.0), cell((0.0, 1.0, 2.0, 3.0), a, ends=True))), 2),
+    ):
+        written = written_out(expression)
+        function = ca.Function("f", [a], [written])
+        assert len(function.find_functions(0)) == left
+        for value in (0.3, 1.7):
+            assert float(function(value)) == float(ca.Function("g", [a], [expression])(value))
