@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -12,7 +13,7 @@ import casadi as ca
 from ..base.symbolic import Graphs, symbolic
 from ..errors import DeclarationError
 from .curves import curve
-from .motion import Motion, motion_function
+from .motion import Motion, ends_function, motion_function
 
 _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 
@@ -23,7 +24,7 @@ class Laws(Graphs):
 
     ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
     where it is, the sampled ones counted after the smooth ones. ``spans`` are the times that each law covers, and ``knots`` those
-    of its samples [s].
+    of its samples [s]. ``beyond`` is the function of :func:`.ends_function`, or None.
     """
 
     joints: tuple[str, ...]
@@ -32,6 +33,7 @@ class Laws(Graphs):
     order: tuple[int, ...]
     spans: tuple[tuple[float, float], ...]
     knots: tuple[tuple[float, ...], ...]
+    beyond: Any | None
 
     @classmethod
     @symbolic
@@ -41,7 +43,7 @@ class Laws(Graphs):
         order = tuple([*smooth, *sampled].index(name) for name in laws)
         functions = motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None
         spans, knots = tuple(law.span for law in laws.values()), tuple(law.knots for law in laws.values())
-        return cls(tuple(laws), *functions, order, spans, knots)
+        return cls(tuple(laws), *functions, order, spans, knots, ends_function(laws, parameters))
 
     @property
     def span(self) -> tuple[float, float]:
@@ -63,14 +65,17 @@ class Laws(Graphs):
             rows = [row[place - many] for row in self.sampled(time, values)]
             smooth = ca.Function("motion", [t, p], [ca.SX(0, 1)] * 3, *_NAMES)
             sampled = ca.Function("motion", [time, values], rows, *_NAMES)
-        return Laws((joint,), smooth, sampled, (0,), (self.spans[k],), (self.knots[k],))
+        beyond = None if self.beyond is None else ca.Function("beyond", [t, p], [self.beyond(t, p)[k]], ["t", "p"], ["beyond"])
+        return Laws((joint,), smooth, sampled, (0,), (self.spans[k],), (self.knots[k],), beyond)
 
-    @property
+    @cached_property
     @symbolic
     def motion(self) -> Any:
         """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of all drives."""
         if self.sampled is None:
             return self.smooth
+        if not self.smooth.size1_out(0):
+            return self.sampled
         t, p = ca.MX.sym("t"), ca.MX.sym("p", self.smooth.size1_in(1))
         both = zip(self.smooth(t, p), self.sampled(t, p), strict=True)
         return ca.Function("motion", [t, p], [ca.vertcat(*pair)[list(self.order)] for pair in both], *_NAMES)
@@ -123,7 +128,7 @@ class Laws(Graphs):
         rate = ca.densify(ca.jacobian(value, t))
         found = [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
         whole = ca.Function("motion", [t, p], found, *_NAMES, {"cse": True})
-        return Laws(self.joints, whole, None, tuple(range(len(self.joints))), self.spans, self.knots)
+        return Laws(self.joints, whole, None, tuple(range(len(self.joints))), self.spans, self.knots, self.beyond)
 
     def _splines(self, needs: str) -> list[tuple[int, tuple[float, ...]]]:
         """The places among the sampled laws and the knots, in that order."""
@@ -137,13 +142,13 @@ class Laws(Graphs):
 
     def words(self) -> list[Any]:
         """The laws for JSON; functions as the text in which CasADi writes them."""
-        sampled = None if self.sampled is None else self.sampled.serialize()
-        return [self.joints, self.smooth.serialize(), sampled, self.order, self.spans, self.knots]
+        functions = (None if f is None else f.serialize() for f in (self.smooth, self.sampled, self.beyond))
+        return [self.joints, self.order, self.spans, self.knots, *functions]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Laws:
         """The laws that :meth:`words` made."""
-        joints, smooth, sampled, order, spans, knots = words
-        read = ca.Function.deserialize
-        functions = read(smooth), None if sampled is None else read(sampled)
-        return cls(tuple(joints), *functions, tuple(order), tuple((low, high) for low, high in spans), tuple(map(tuple, knots)))
+        joints, order, spans, knots, *functions = words
+        smooth, sampled, beyond = (None if f is None else ca.Function.deserialize(f) for f in functions)
+        spans, knots = tuple((low, high) for low, high in spans), tuple(map(tuple, knots))
+        return cls(tuple(joints), smooth, sampled, tuple(order), spans, knots, beyond)

@@ -22,6 +22,7 @@ from .drives import weighed
 from .even_points import EvenPoints, checked
 from .giving import Elastic, giving
 from .guiding import guided, laws_of
+from .laws import Laws
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
@@ -299,6 +300,11 @@ class Scene(Graphs):
         return MappingProxyType(laws_of(self.mechanism, self.motion))
 
     @cached_property
+    def prescribed(self) -> Laws:
+        """These laws as functions of time and the parameters."""
+        return Laws.of(self.laws, self.mechanism.symbols)
+
+    @cached_property
     def guided(self) -> Mechanism:
         """The mechanism, with the guides of points and poses whose motion is given."""
         return guided(self.mechanism, self.motion)
@@ -354,11 +360,11 @@ class Scene(Graphs):
     @cached_property
     def span(self) -> tuple[float, float]:
         """Its own first and last instant [s], with the parameters with which it is assembled."""
-        return span_of(self.guided, self.laws, self.timing(), self.mechanism.values(self.assembly))
+        return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def instants(self, timing: Timing, values: Mapping[str, float]) -> Instants:
         """Instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
-        return instants_of(self.guided, self.laws, timing, values)
+        return instants_of(self.prescribed, timing, values)
 
     def demands(self, precision: Precision = "double") -> Demands:
         """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""

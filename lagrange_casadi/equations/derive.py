@@ -65,9 +65,18 @@ def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False
     except PostureError as error:
         error.scene = scene
         raise
-    if isinstance(found, SceneGraph):
-        return found
+    if isinstance(found, _Derived):
+        return found.graph
     raise type(found)(str(found))
+
+
+@symbolic
+def as_derived(scene: Scene, wanted: Outputs) -> Scene:
+    """Return the scene that :func:`derive` makes a graph of: itself, or one whose rounded axes are corrected."""
+    derive(scene, wanted)
+    found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
+    assert isinstance(found, _Derived)
+    return found.scene
 
 
 @symbolic
@@ -92,7 +101,7 @@ def assembled(
         there = _at(scene, tuple(values.items()))
         derive(there, wanted, elastic=elastic)
         return there
-    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _SERVES:
+    if graph.data.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
             derive(there, wanted, elastic=elastic)
@@ -110,31 +119,39 @@ def _nearest(scene: Scene) -> Scene | None:
     return None if scene.mechanism.rounded else nearest(scene)
 
 
+@dataclass(frozen=True, eq=False)
+class _Derived:
+    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do not close as declared."""
+
+    graph: SceneGraph
+    scene: Scene
+
+
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
-    key = fingerprint(scene, want)
-    key = f"{key}-elastic" if key and elastic else key
+    identity = fingerprint(scene, want)
+    key = f"{identity}-elastic" if identity and elastic else identity
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
-        return SceneGraph.loads(text, scene, want)
+        return _Derived(SceneGraph.loads(text), scene)
     try:
-        graph = _derive(scene, want, elastic)
+        graph = replace(_derive(scene, want, elastic), identity=identity)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
         found = None if near is None else _kept(near, want, elastic)
-        if isinstance(found, SceneGraph):
+        if isinstance(found, _Derived):
             return found
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
         found = _kept(near, want, elastic)
-        if isinstance(found, SceneGraph):
+        if isinstance(found, _Derived):
             return found
     if key:
         cache.write(f"{key}.graph", graph.dumps())
-    return graph
+    return _Derived(graph, scene)
 
 
 def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -> float:
@@ -142,7 +159,7 @@ def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -
     rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
     if not rows:
         return 0.0
-    t, p, newton = graph.scene.span[0], list(values.values()), graph.newton
+    t, p, newton = graph.data.span[0], list(values.values()), graph.newton
     motion, z = graph.motion(t, p), ca.DM(newton.guess if newton else [])
     for _ in range(_STEPS):
         correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
@@ -206,11 +223,8 @@ def _derive(scene: Scene, asked: Wanted, elastic: bool) -> SceneGraph:
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(
-        scene=scene,
-        data=ModelData.of(scene, moving.driven),
+        data=ModelData.of(scene, moving.laws),
         wanted=asked,
-        driven=moving.driven,
-        motion=moving.motion,
         instant=instant,
         newton=moving.solved.newton,
         columns=tuple(columns),
