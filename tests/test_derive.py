@@ -19,6 +19,7 @@ from lagrange_casadi.declare.motion import Motion, expression, harmonic, polynom
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
 from lagrange_casadi.equations.scene_graph import SceneGraph
+from lagrange_casadi.errors import PickleError
 
 pytestmark = pytest.mark.quick
 
@@ -41,6 +42,10 @@ def test_a_graph_comes_back_from_its_text_as_it_was(name):
             graph.newton.names,
             graph.newton.joints,
         )
+
+
+def test_an_earlier_name_is_that_of_the_same_function():
+    assert lagrange_casadi.derive is lagrange_casadi.compile_scene
 
 
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
@@ -169,6 +174,8 @@ def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
     for _ in range(2):
         assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0
     assert not list(fresh_cache.glob("*.graph"))
+    with pytest.raises(PickleError, match=r"the scene of '.*' cannot be pickled: it calls a function"):
+        pickle.dumps(derive(scene, ["motion"]))
 
 
 def test_the_code_that_derives_is_all_of_the_package():

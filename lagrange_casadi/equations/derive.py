@@ -48,12 +48,22 @@ _STEPS = 50
 
 @public
 @symbolic
-def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
-    """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
+def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
+    """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
-    With ``elastic`` it tells how forces change with what equilibrium leaves open.
+    What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
 
-    A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
+    Parameters
+    ----------
+    scene
+        The scene.
+    wanted
+        Output names, as in :class:`.Scene`; by default the scene's own.
+    elastic
+        Whether the functions tell how forces change with what equilibrium leaves open.
+
+    A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
+    declaration.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
@@ -70,9 +80,13 @@ def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False
     raise type(found)(str(found))
 
 
+derive = compile_scene
+"""An earlier name of the same function."""
+
+
 @symbolic
 def as_derived(scene: Scene, wanted: Outputs) -> Scene:
-    """Return the scene that :func:`derive` makes a graph of: itself, or one whose rounded axes are corrected."""
+    """Return the scene that :func:`compile_scene` makes a graph of: itself, or one whose rounded axes are corrected."""
     derive(scene, wanted)
     found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
     assert isinstance(found, _Derived)
@@ -91,7 +105,7 @@ def assembled(
 
     So it is too where rounded axes were corrected for its own parameters, and loops close with these but do not with ``values``.
 
-    Raises what :func:`derive` does, where they can be assembled with neither.
+    Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
         graph = derive(scene, wanted, elastic=elastic)
@@ -141,14 +155,14 @@ def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError
         near = _nearest(scene)
         found = None if near is None else _kept(near, want, elastic)
         if isinstance(found, _Derived):
-            return found
+            return replace(found, graph=replace(found.graph, identity=identity))
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
         found = _kept(near, want, elastic)
         if isinstance(found, _Derived):
-            return found
+            return replace(found, graph=replace(found.graph, identity=identity))
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return _Derived(graph, scene)

@@ -16,6 +16,7 @@ from ..base.quantities import Output, law_members, station_members
 from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
 from ..declare.scene import Wanted
+from ..errors import PickleError
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
 from .mobility import stations_of
@@ -25,7 +26,7 @@ from .open_forces import OpenForces
 
 @dataclass(frozen=True, eq=False)
 class SceneGraph(Graphs):
-    """What a scene computes, as CasADi functions and plain data that hold nothing else; it can be sent and kept as text.
+    """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be sent, and kept as text.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
     each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
@@ -161,5 +162,11 @@ class SceneGraph(Graphs):
         return cls(data, wanted, instant, newton, columns, loop_angles, free, kept["identity"])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Send it as its text."""
-        return SceneGraph.loads, (self.dumps(),)
+        """Send it as its text. Raises :class:`.PickleError` for a function that CasADi does not write."""
+        try:
+            return SceneGraph.loads, (self.dumps(),)
+        except RuntimeError:
+            raise PickleError(
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives in this process alone; "
+                "expected expressions of CasADi's own functions"
+            ) from None
