@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -21,7 +21,7 @@ from ..declare.density import Density
 from ..declare.description import Description, Template
 from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
-from ..declare.masses import ALL, mass_of
+from ..declare.masses import ALL, masses_of
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Parameter
 from ..declare.possible import Margins
@@ -83,7 +83,7 @@ class ModelData(Graphs):
             extent=ca.Function("extent", [symbols], [ca.densify(ca.SX(extent(mechanism)))], ["p"], ["extent"], {"cse": True}),
             margins={precision: scene.demands(precision).margins() for precision in PRECISIONS},
             corners=Corners.of(scene),
-            masses=ca.Function("masses", [symbols], [_masses(mechanism)], ["p"], ["masses"], {"cse": True}),
+            masses=ca.Function("masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}),
             partial=tuple(name for name, load in mechanism.loads.items() if isinstance(load, LineLoad) and not load.whole),
             jumps={name: _jumps(link.mass) for name, link in mechanism.links.items() if isinstance(link.mass, Density)},
             stated=Stated.of(mechanism),
@@ -142,55 +142,42 @@ class ModelData(Graphs):
 
     def words(self) -> dict[str, Any]:
         """The data for JSON; functions as the text in which CasADi writes them."""
-        return {
-            "name": self.name,
-            "space": self.space,
-            "rounding": self.rounding,
-            "parameters": {name: [p.default, p.unit, p.low, p.high] for name, p in self.parameters.items()},
-            "kinds": asdict(self.kinds),
-            "closings": self.closings,
-            "laws": self.laws.words(),
-            "timing": asdict(self.timing),
-            "span": self.span,
-            "extent": self.extent.serialize(),
-            "margins": {precision: margins.words() for precision, margins in self.margins.items()},
-            "corners": self.corners.words(),
-            "masses": self.masses.serialize(),
-            "partial": self.partial,
-            "jumps": self.jumps,
-            "stated": self.stated.words(),
-            "template": self.template.dumps(),
-        }
+        return {name: write(getattr(self, name)) for name, (write, _) in _WRITTEN.items()}
 
     @classmethod
     def loads(cls, words: Mapping[str, Any]) -> ModelData:
         """Read the data that :meth:`words` made."""
-        return cls(
-            name=words["name"],
-            space=words["space"],
-            rounding=words["rounding"],
-            parameters={
-                name: Parameter(name, default, unit, low, high, ca.SX.sym(name))
-                for name, (default, unit, low, high) in words["parameters"].items()
-            },
-            kinds=Kinds(**words["kinds"]),
-            closings=words["closings"],
-            laws=Laws.loads(words["laws"]),
-            timing=Timing(**words["timing"]),
-            span=tuple(words["span"]),
-            extent=ca.Function.deserialize(words["extent"]),
-            margins={precision: Margins.loads(margins) for precision, margins in words["margins"].items()},
-            corners=Corners.loads(words["corners"]),
-            masses=ca.Function.deserialize(words["masses"]),
-            partial=tuple(words["partial"]),
-            jumps={name: tuple(jumps) for name, jumps in words["jumps"].items()},
-            stated=Stated.loads(words["stated"]),
-            template=Template.loads(words["template"]),
-        )
+        return cls(**{name: read(words[name]) for name, (_, read) in _WRITTEN.items()})
 
 
-def _masses(mechanism: Mechanism) -> Any:
-    return ca.densify(ca.vertcat(*(mass_of(mechanism, part) for part in (*(body.name for body in mechanism.moving), ALL))))
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
+def _parameters(words: Mapping[str, Any]) -> dict[str, Parameter]:
+    known = words.items()
+    return {name: Parameter(name, default, unit, low, high, ca.SX.sym(name)) for name, (default, unit, low, high) in known}
+
+
+_FUNCTION = ca.Function.serialize, ca.Function.deserialize
+_WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    **dict.fromkeys(("name", "space", "rounding", "closings"), (_as_it_is, _as_it_is)),
+    **dict.fromkeys(("span", "partial"), (_as_it_is, tuple)),
+    **dict.fromkeys(("extent", "masses"), _FUNCTION),
+    "parameters": (lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()}, _parameters),
+    "kinds": (asdict, lambda words: Kinds(**words)),
+    "laws": (Laws.words, Laws.loads),
+    "timing": (asdict, lambda words: Timing(**words)),
+    "margins": (
+        lambda own: {precision: margins.words() for precision, margins in own.items()},
+        lambda words: {precision: Margins.loads(margins) for precision, margins in words.items()},
+    ),
+    "corners": (Corners.words, Corners.loads),
+    "jumps": (_as_it_is, lambda words: {name: tuple(jumps) for name, jumps in words.items()}),
+    "stated": (Stated.words, Stated.loads),
+    "template": (Template.dumps, Template.loads),
+}
+"""How each field is written for JSON, and read."""
 
 
 def _jumps(density: Density) -> tuple[float, ...]:
