@@ -352,7 +352,7 @@ def test_a_worker_needs_no_file_of_the_case(tmp_path):
         "from lagrange_casadi import Mechanism, Scene, beams, motion\n"
         "def scene():\n"
         "    m = Mechanism('arm')\n"
-        "    beam = beams.Beam(beams.rectangle(0.02, 0.01), beams.STEEL.but(endurance=2e8))\n"
+        "    beam = beams.Beam(beams.rectangle(0.02, 0.01), beams.material('C45+QT').but(endurance=2e8))\n"
         "    arm = m.link('arm', length=m.parameter('l', LENGTH, 'm'), beam=beam)\n"
         "    m.revolute('O', m.ground, arm)\n"
         "    m.line_load('wind', arm, y=-500.0, between=(0.1, 0.35))\n"

@@ -148,7 +148,9 @@ def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError
     key = f"{identity}-elastic" if identity and elastic else identity
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
-        return _Derived(SceneGraph.loads(text), scene)
+        graph = SceneGraph.loads(text)
+        # Scenes of one name may differ in what follows from nothing that is derived.
+        return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
     try:
         graph = replace(_derive(scene, want, elastic), identity=identity)
     except (AssemblyError, MobilityError) as error:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,16 +19,14 @@ from ..declare.scene import Scene, Wanted
 
 @symbolic
 def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
-    """The hash of the declaration, its expressions, laws of motion and instants, what is wanted, and the code that derives.
+    """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code that derives.
 
     None where the declaration holds something whose content cannot be told.
     """
     declared = declaration(scene, wanted)
     if declared is None:
         return None
-    timing = json.dumps(scene.timing().words(scene.mechanism.symbols))
-    content = [sources(), ca.CasadiMeta.version(), timing, scene.rounding.hex(), declared]
-    return hashlib.sha256("\0".join(content).encode()).hexdigest()[:32]
+    return hashlib.sha256("\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
 
 
 @symbolic

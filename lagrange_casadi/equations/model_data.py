@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -73,7 +73,7 @@ class ModelData(Graphs):
         return cls(
             name=mechanism.name,
             space=mechanism.space,
-            rounding=scene.rounding if mechanism.rounded else 0.0,
+            rounding=_rounding(scene),
             parameters=mechanism.parameters,
             kinds=kinds_of(scene.guided),
             closings=_closings(mechanism),
@@ -89,6 +89,10 @@ class ModelData(Graphs):
             stated=Stated.of(mechanism),
             template=template(scene),
         )
+
+    def asked_by(self, scene: Scene) -> ModelData:
+        """The same, with how a scene of the same name asks for instants and lets axes be rounded."""
+        return replace(self, timing=scene.timing(), rounding=_rounding(scene))
 
     @cached_property
     def defaults(self) -> Array:
@@ -178,6 +182,10 @@ _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "template": (Template.dumps, Template.loads),
 }
 """How each field is written for JSON, and read."""
+
+
+def _rounding(scene: Scene) -> float:
+    return scene.rounding if scene.mechanism.rounded else 0.0
 
 
 def _jumps(density: Density) -> tuple[float, ...]:

@@ -19,7 +19,7 @@ from ..declare.even_points import EvenPoints, points
 from ..declare.giving import Elastic, felt, giving
 from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted, checked_ratios
-from ..declare.times import Over, Times, Timing, span_of
+from ..declare.times import Over, Times, Timing, instants_of, span_of
 from ..declare.wanted_slopes import by_parameters
 from ..elastic.completing import told_errors, wanted_alone
 from ..elastic.least_energy import Completed, complete
@@ -83,7 +83,7 @@ def solve(
     rung.check(graph)
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
-    instants, places = scene.instants(timing, values), points(ratios)
+    instants, places = instants_of(graph.laws, timing, values), points(ratios)
     times = instants.t
     p = np.array(list(values.values()))
     left_open: tuple[Output, ...] = ()
