@@ -61,8 +61,8 @@ class Finder:
         """That of a problem, whatever its limits are."""
         known = (problem.objective, *((c.term, c.least) for c in problem.constraints))
         if known not in self.programs:
-            judge = self.judge
-            self.programs[known] = Program(judge.values, self.question.box, problem, self.engine.count, judge.least_closure)
+            judge, box, count = self.judge, self.question.box, self.engine.count
+            self.programs[known] = Program(judge.values, box, problem, count, judge.least_closure)
         return self.programs[known]
 
     def descend(self, errand: Errand, told: Told) -> Trail:
