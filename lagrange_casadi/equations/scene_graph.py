@@ -162,11 +162,10 @@ class SceneGraph(Graphs):
         return cls(data, wanted, instant, newton, columns, loop_angles, free, kept["identity"])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Send it as its text. Raises :class:`.PickleError` for a function that CasADi does not write."""
-        try:
-            return SceneGraph.loads, (self.dumps(),)
-        except RuntimeError:
+        """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
+        if self.identity is None:
             raise PickleError(
                 f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives in this process alone; "
                 "expected expressions of CasADi's own functions"
-            ) from None
+            )
+        return SceneGraph.loads, (self.dumps(),)
