@@ -7,7 +7,6 @@ import numpy as np
 from lagrange_casadi import Scene, SpatialMechanism, derive
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.base.vocabulary import Backend
-from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.ordering import in_order
@@ -70,7 +69,6 @@ def _fills(law: SectionLaw, forces: tuple[str, ...], t: Array, xi: Array, thread
 def _law(t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     found = graph((f"section:{LINK}",))
     work = columns_of(found, np.zeros(0), t, backend, threads)
-    mechanism = found.scene.mechanism
-    description = describe(mechanism, mechanism.values(), found.scene.motion)
+    description = found.data.at(found.data.defaults)
     outputs = in_order(dict(zip(found.outputs, work(), strict=True)), description)
     return work, Solution("arm", t, t, outputs, description, Provenance("", "", "", "", "", {})).section(LINK).law

@@ -11,7 +11,6 @@ from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.base.room import cores
 from lagrange_casadi.base.vocabulary import Backend
-from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.backends import rows, run
@@ -119,8 +118,6 @@ def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[W
     """What works out the rod's law, and the law, whose arrays that fills."""
     graph = derive(SCENE, ["section:rod"])
     work = columns_of(graph, np.array(case.parameters), t, backend, threads)
-    mechanism = graph.scene.mechanism
-    values = mechanism.values(dict(zip(mechanism.parameters, case.parameters, strict=True)))
-    description = describe(mechanism, values, graph.scene.motion)
+    description = graph.data.at(case.parameters)
     outputs = in_order(dict(zip(graph.outputs, work(), strict=True)), description)
     return work, Solution("slider_crank", t, t, outputs, description, Provenance("", "", "", "", "", {})).section("rod").law

@@ -9,7 +9,7 @@ from .declare.scene import Scene
 from .declare.shaking import shaking
 from .declare.spatial import SpatialMechanism
 from .elastic.vibration import vibration
-from .equations.derive import derive
+from .equations.derive import compile_scene, derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .exports import export
@@ -49,6 +49,7 @@ __all__ = [
     "bearings",
     "best",
     "check",
+    "compile_scene",
     "curve",
     "density",
     "derive",

@@ -62,7 +62,7 @@ def columns_at(graph, t, values):
     """A graph's columns at an instant, by name, and its drives as (coordinate, rate, acceleration)."""
     p = list(values.values())
     driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
-    found = graph.instant(t, *driven, settle(graph, t, p, graph.scene.t[0]), p).full().ravel()
+    found = graph.instant(t, *driven, settle(graph, t, p, graph.data.span[0]), p).full().ravel()
     return dict(zip(graph.names, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
 
 

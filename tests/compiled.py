@@ -37,7 +37,7 @@ def built(graph, language, extra=(), precision="double"):
 
 def filled(library, graph, t, threads=1, precision="double"):
     """The columns by a library that is built."""
-    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
+    p, dtype = graph.data.defaults, DTYPES[precision]
     guess = np.array(graph.newton.guess if graph.newton else (), dtype)
     z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
     out = np.full((len(graph.columns), t.size), np.nan, dtype)

@@ -61,22 +61,22 @@ class Instant:
     changes: dict
 
 
-def meaning(graph, i, t, values):
+def meaning(scene, graph, i, t, values):
     """What the outputs of a graph mean at an instant. ``values`` are the parameters by name, doubles that are taken as exact."""
     with mp.workdps(DIGITS):
         time, p = mp.mpf(t), [mp.mpf(value) for value in values.values()]
         driven = interpret(graph.motion, [[time], p], arithmetic())
-        rough = [mp.mpf(float(x)) for x in settle(graph, t, list(values.values()), graph.scene.t[0]).full().ravel()]
+        rough = [mp.mpf(float(x)) for x in settle(graph, t, list(values.values()), graph.data.span[0]).full().ravel()]
         z = _closed(graph, rough, time, driven, p)
-        places, own = _outputs(graph, time, driven, z, p, None)
+        places, own = _outputs(scene, graph, time, driven, z, p, None)
         total = [mp.mpf(0)] * len(own)
         step = mp.mpf(10) ** -CHANGE
-        for changed, others in _changed(graph, driven, p, step):
-            _, other = _outputs(graph, time, changed, _closed(graph, z, time, changed, others), others, places)
+        for changed, others in _changed(scene, graph, driven, p, step):
+            _, other = _outputs(scene, graph, time, changed, _closed(graph, z, time, changed, others), others, places)
             total = [change + abs(a - b) / step for change, a, b in zip(total, other, own, strict=True)]
         drives = dict(zip(graph.driven, zip(*driven, strict=True), strict=True))
-        free = precise(graph.scene, t, drives, values, least=LEAST)
-        for joint in graph.scene.mechanism.joints.values():
+        free = precise(scene, t, drives, values, least=LEAST)
+        for joint in scene.mechanism.joints.values():
             if joint.kind == "revolute" and joint.coordinate:
                 child, parent = (free.get(f"pose:{point.body.name}:angle", 0) for point in (joint.child, joint.parent))
                 free[f"motion:{joint.name}"] = child - parent
@@ -93,23 +93,23 @@ def _found(value, place, zero):
     return found if abs(found) > zero or not callable(value) else mp.mpf(0)
 
 
-def _changed(graph, driven, p, step):
+def _changed(scene, graph, driven, p, step):
     """The inputs with one of them changed, one after the other: driven coordinates, rates and accelerations, and parameters."""
-    joints = graph.scene.mechanism.joints
+    joints = scene.mechanism.joints
     for order, row in enumerate(driven):
         for j, value in enumerate(row):
             if order == 0 and joints[graph.driven[j]].coordinate == "angle":
                 value -= 2 * mp.pi * mp.nint(value / (2 * mp.pi))
             yield [[x + step * value if (i, k) == (order, j) else x for k, x in enumerate(xs)] for i, xs in enumerate(driven)], p
     for k, value in enumerate(p):
-        if value and _read(graph)[k]:
+        if value and _read(scene, graph)[k]:
             yield driven, [x + step * value if i == k else x for i, x in enumerate(p)]
 
 
 @functools.lru_cache(maxsize=32)
-def _made(graph):
+def _made(scene, graph):
     """Length and density's coefficients of every link that has sections, one below the other, as a function of the parameters."""
-    m = graph.scene.mechanism
+    m = scene.mechanism
     made = [ca.SX(x) for name in graph.wanted.sections for x in (m.links[name].length, *_coefficients(m.links[name]))]
     return ca.Function("made", [m.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *made))])
 
@@ -118,10 +118,10 @@ def _coefficients(link):
     return itertools.chain(*link.mass.cells)
 
 
-def _matter(graph, p):
+def _matter(scene, graph, p):
     """Length and cells of the density, by link."""
-    m, found = graph.scene.mechanism, {}
-    (numbers,) = interpret(_made(graph), [p], arithmetic())
+    m, found = scene.mechanism, {}
+    (numbers,) = interpret(_made(scene, graph), [p], arithmetic())
     numbers = iter(numbers)
     for name in graph.wanted.sections:
         length = next(numbers)
@@ -130,9 +130,9 @@ def _matter(graph, p):
 
 
 @functools.lru_cache(maxsize=32)
-def _read(graph):
+def _read(scene, graph):
     """Which parameters an instant reads, or a link's length or density: the law of motion's own are none of these."""
-    slopes = graph.instant.jac_sparsity(0, graph.instant.index_in("p")), _made(graph).jac_sparsity(0, 0)
+    slopes = graph.instant.jac_sparsity(0, graph.instant.index_in("p")), _made(scene, graph).jac_sparsity(0, 0)
     read = {k for slope in slopes for k in slope.get_col()}
     return [k in read for k in range(graph.instant.size1_in("p"))]
 
@@ -146,7 +146,7 @@ def _closed(graph, z, time, driven, p):
     return z
 
 
-def _outputs(graph, time, driven, z, p, places):
+def _outputs(scene, graph, time, driven, z, p, places):
     """Values at places, by default those that the outputs themselves suggest."""
     (found,) = interpret(graph.instant, [[time], *driven, z, p], arithmetic())
     named = {name: value for name, value in zip(graph.names, found, strict=True) if not name.startswith("_")}
@@ -158,13 +158,13 @@ def _outputs(graph, time, driven, z, p, places):
         places = [Place(name) for name in named] + [
             Place(f"section:{link}:{force}", *where) for link, law in laws.items() for where in _ratios(law) for force in FORCES
         ]
-    values, matter = [], _matter(graph, p)
+    values, matter = [], _matter(scene, graph, p)
     for place in places:
         if place.ratio is None:
             values.append(named[place.name])
         elif place.name.endswith(FORCES[0]):
             # All three of a section at once: their places follow each other.
-            link = graph.scene.mechanism.links[place.name.split(":")[1]]
+            link = scene.mechanism.links[place.name.split(":")[1]]
             values += _section(link.mass, *matter[link.name], laws[link.name], place.ratio)
     return places, values
 

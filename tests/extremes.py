@@ -58,7 +58,7 @@ class Extreme:
         solution = self.solution(backend="vm")
         n, condition = solution.t.size, solution.certificate.get("condition", solution.t)
         chosen = sorted({n // 3, int(np.argmax(condition))})
-        return [meaning(self.graph, i, float(solution.t[i]), self.numbers) for i in chosen]
+        return [meaning(self.scene(), self.graph, i, float(solution.t[i]), self.numbers) for i in chosen]
 
     def judged(self, solution):
         """How far a solution is from it, worst first."""

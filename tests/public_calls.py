@@ -77,6 +77,7 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     bare = {"scene": scene, "backend": "vm"}
     one = {"l": (0.2, 0.3, 2)}
     for name, given in {
+        "compile_scene": {"scene": scene, "wanted": ["effort"]},
         "derive": {"scene": scene, "wanted": ["effort"]},
         "evaluate": {**lean, "certificate": False},
         "prepare": lean,

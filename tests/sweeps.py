@@ -44,7 +44,7 @@ class Formula:
         self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
         self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
-    def failures(self, p):
+    def failures(self, p, whole):
         return {}
 
     def evaluate(self, p, *, threads=None, histories=False):

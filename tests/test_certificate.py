@@ -14,6 +14,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, export, save
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
 from lagrange_casadi.instants import refusal
@@ -108,7 +109,7 @@ def test_a_wrong_multiplier_is_seen():
     scene = geared()
     solution = evaluate(scene)
     wrong = {Output("multiplier", "mesh"): solution.multiplier("mesh") * 1.001}
-    equations = written(scene.mechanism, {})
+    equations = written(Stated.of(scene.mechanism), np.zeros(0))
     assert certify(solution, equations)["balance"].max() < 1e-14
     assert certify(solution, equations, wrong)["balance"].max() > 1e-5
 

@@ -12,6 +12,7 @@ from mechanisms import far
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.written import written
 
@@ -96,7 +97,9 @@ def test_far_from_the_origin_right_results_pass():
 def wrong(scene, solution, name):
     """The largest residuals of a solution with one output that is off by a millionth."""
     values = solution.series[name] * MILLIONTH
-    residuals = certify(solution, written(scene.mechanism, scene.mechanism.values(None)), {Output.of(name): values})
+    residuals = certify(
+        solution, written(Stated.of(scene.mechanism), np.array([*scene.mechanism.values().values()])), {Output.of(name): values}
+    )
     return {residual: float(gaps.max()) for residual, gaps in residuals.items()}
 
 

@@ -7,9 +7,8 @@ from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 
-from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, save
+from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, motion, save
 from lagrange_casadi.declare.kinds import kinds_of
-from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.figures import figures
 from lagrange_casadi.instants.refusal import Status
@@ -130,7 +129,7 @@ def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
     line = {"tool": (motion.harmonic(0.05, 0.1, 1.0), motion.polynomial(0.6))}
     scene = Scene(made, line, ["output:still"], t=(0, 1, 101), posture=ROUGH, drives=["O", "C"])
     designs = DesignEngine.of(scene, rung=rung)
-    assert not designs.failures(np.array(list(made.values().values())))
+    assert not designs.failures(np.array(list(made.values().values())), derive(scene, ["all"]))
 
 
 def test_a_file_of_it_is_checked(tmp_path):

@@ -58,6 +58,25 @@ ORDER = (
 )
 """A room imports only those before it, late imports too."""
 
+COMPILED = (
+    *("summits", "codegen", "instants", "judge", "strength", "elastic", "sensitivity", "store", "shapes", "animation", "cluster"),
+    *("report.live", "studies.designs", "studies.optimise", "studies.sweep", "portable.program"),
+)
+"""What asks nothing of a declaration but by what it is compiled to; packages, and modules by their whole names."""
+
+FIRST = {
+    "studies.designs.engine": "DesignEngine.of compiles",
+    "studies.designs.prepared": "what is wanted is read",
+    "studies.optimise.problem": "the question is read",
+    "studies.optimise.search": "the scene of a case is taken",
+    "studies.sweep.plan": "the plan is made",
+    "studies.sweep.resting": "solutions are evaluated",
+    "studies.sweep.sweeping": "the scene of a case is taken",
+    "studies.sweep.turning": "the grid is read",
+    "report.live": "the page is asked for",
+}
+"""Modules of these that read a declaration before it is compiled, and what for."""
+
 LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "cli")
 """What nothing but the command line imports."""
 
@@ -118,6 +137,17 @@ def test_nothing_but_the_command_line_imports_a_leaf():
 
 
 @pytest.mark.quick
+def test_what_is_compiled_is_not_declared_again():
+    """No module goes back to a scene or its mechanism; those of the first stage alone read one."""
+    back = {}
+    for name, path in modules().items():
+        if not any(f"{name}.".startswith(f"{one}.") for one in COMPILED):
+            continue
+        nodes = ast.walk(ast.parse(path.read_text()))
+        back[name] = sum(isinstance(node, ast.Attribute) and node.attr in ("scene", "mechanism") for node in nodes)
+    assert {name for name, count in back.items() if count} == FIRST.keys()
+
+
 def test_no_module_stands_in_a_circle():
     try:
         list(TopologicalSorter({name: {other for other, _ in imported(name)} for name in modules()}).static_order())

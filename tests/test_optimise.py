@@ -202,7 +202,6 @@ def test_limits_that_hold_nowhere_are_told():
         ({"subject_to": "r <= 1"}, DeclarationError, "subject_to: expected a list of texts"),
         ({"resume": True}, DeclarationError, "resume: expected out"),
         ({"resume": True, "force": True}, DeclarationError, "exclude each other"),
-        ({"dask": "tcp://127.0.0.1:1"}, DeclarationError, "a cluster needs a case"),
         ({"transmission": 2.0}, DeclarationError, "transmission: expected a sine"),
     ],
 )

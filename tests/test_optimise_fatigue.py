@@ -84,7 +84,7 @@ def test_it_is_that_of_the_instants_that_are_asked_for():
     scene = Scene(m, {"O": polynomial(0, 2.0, 30.0)}, over=("O", 0.0, 6.2, 9))
     words = {"transmission": 0.05, "t": None, "parameters": None, "backend": "vm"}
     question = Question.of(scene, "peak:utilisation:crank:fatigue", {"h": (0.01, 0.03)}, (), **words)
-    judged = Finder.of(scene, question).judge.look(np.array([0.015]))
+    judged = Finder.of(question, question.engine(scene)).judge.look(np.array([0.015]))
     (value,) = judged.values.values()
     assert value == pytest.approx(used(scene, "crank", {"h": 0.015}), rel=1e-9)
 

@@ -24,7 +24,7 @@ def refined(scene, solution, names=None):
 
 def columns(graph, t, p):
     """Columns and their rates at an instant, with iterated loops closed there."""
-    z = settle(graph, t, p, graph.scene.t[0])
+    z = settle(graph, t, p, graph.data.span[0])
     return [x.full().ravel() for x in rates(graph)(ca.vertcat(t, z), p)]
 
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi.declare import motion
+from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.declare.reaching import Missed, Reaching
 
 pytestmark = pytest.mark.quick
@@ -19,7 +20,7 @@ TURN = math.tau
 
 def reached(law, start, stop, speeds=(10.0,), around=0.0, count=181):
     """The way of a law with the parameter w, and the times of equal steps along it."""
-    law, p = Reaching.of(law, ca.vertcat(W)), np.array(speeds, float)[:, None]
+    law, p = Reaching.of(Laws.of({"J": law}, ca.vertcat(W)), "J"), np.array(speeds, float)[:, None]
     way = law.way(*(np.full(len(p), float(x)) for x in (start, stop)), p, np.full(len(p), float(around)), looks=65)
     coordinates = np.tile(np.linspace(start, stop, count), (len(p), 1))
     return law, way, coordinates, law.times(way, coordinates, p)

@@ -44,7 +44,7 @@ def slopes_at(slopes, t, p):
     chosen = np.array([slopes.numbers[q] for q, _ in names], np.intc)
     times = np.full(len(names), t)
     # Loops are followed to the time from the start.
-    z = slopes.iterated(np.linspace(slopes.graph.scene.t[0], t, 20), p, times)
+    z = slopes.iterated(np.linspace(slopes.graph.data.span[0], t, 20), p, times)
     found = slopes.at(times, z, p, chosen, np.array([xi for _, xi in names]))
     return {(str(q), xi): (found.value[k], found.slopes[k]) for k, (q, xi) in enumerate(names)}
 

@@ -10,7 +10,7 @@ from conftest import CASES, SMALL, SPATIAL
 from estimates import assert_near, exactly, ratios
 from spatial_reference import Entry
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.figures import figures
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic, polynomial
@@ -254,7 +254,7 @@ def test_a_design_whose_small_quantities_are_rounding_is_judged():
     """Its loop is iterated over all instants, and looked at in a few."""
     scene = scene_of("cardan_shaft")
     designs = DesignEngine.of(scene, t=(0.0, 0.1, 33), rung=Rung("c"))
-    assert designs.failures(np.array(list(scene.mechanism.values({"aside": 0.05}).values()))) == {}
+    assert designs.failures(np.array(list(scene.mechanism.values({"aside": 0.05}).values())), derive(scene, ["all"])) == {}
 
 
 @pytest.mark.sampled(7)

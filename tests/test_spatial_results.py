@@ -149,8 +149,9 @@ def test_designs_have_the_same_peaks(scene, fine, half, rung, tolerance):
 
 
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
-    mechanism, timing, xi = scene.mechanism, scene.timing(None), np.linspace(0, 1, 7)
-    harvest = Harvest(DesignEngine.of(scene, timing=timing), mechanism, "histories", InstantAxis.of(scene, timing), xi)
+    engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
+    data = engine.graph.data
+    harvest = Harvest(engine, data, engine.graph, "histories", InstantAxis.of(data, timing), xi)
     found = dict(zip((column.name for column in harvest.columns), harvest.evaluate(np.array([[6.0], [2.0]])), strict=True))
     attributes = {column.name: column.attributes for column in harvest.columns}
     for link in LINKS:

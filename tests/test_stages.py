@@ -18,7 +18,6 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
-from lagrange_casadi.declare.kinds import kinds_of
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.backends import run
@@ -38,7 +37,7 @@ SINGLE = [Rung("c", "single"), Rung("lanes", "single")]
 
 def gap(graph, t, rung, truth=None):
     """The largest error of any column on a rung, relative to the peak of its kind; angles up to whole turns."""
-    p, kind = values(graph), unit_in(graph.scene.mechanism) if graph.scene.mechanism.space else kind_of
+    p, kind = values(graph), unit_in(graph.data.kinds) if graph.data.space else kind_of
     table, _ = run(graph, t, p, rung)
     assert not table.status.any()
     truth = exact(graph, t, z=table.iterated) if truth is None else truth
@@ -55,13 +54,13 @@ def gap(graph, t, rung, truth=None):
     return worst
 
 
-def unit_in(mechanism):
+def unit_in(kinds):
     """In space whole motions and moments are nil, and not by structure: what has the same unit is measured by one peak."""
-    return lambda name: name if name.startswith("_") else Output.of(name).unit(kinds_of(mechanism)).replace("rad", "1")
+    return lambda name: name if name.startswith("_") else Output.of(name).unit(kinds).replace("rad", "1")
 
 
 def values(graph):
-    return np.array(list(graph.scene.mechanism.values().values()))
+    return graph.data.defaults
 
 
 def exact(graph, t, **beside):
@@ -83,8 +82,8 @@ def test_plain_stages_are_the_graphs_bits(name):
     graph = derive(load_case(CASES / name).scene, ["all"])
     p, stages = values(graph), plain(graph)
     assert not stages.compensated
-    for t in np.linspace(*graph.scene.span, 5):
-        z = settle(graph, t, p, graph.scene.span[0])
+    for t in np.linspace(*graph.data.span, 5):
+        z = settle(graph, t, p, graph.data.span[0])
         out = stages.instant(*stages.drive(t, p), z, p)
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 

@@ -11,18 +11,14 @@ import sys
 import threading
 import time
 
-import numpy as np
 import pytest
 import sweeps
 
 from lagrange_casadi import Case, load_case, optimise
 from lagrange_casadi.cluster import sweeps as cluster
-from lagrange_casadi.cluster.sweeps import Cluster, SentCase
-from lagrange_casadi.declare.times import Timing
+from lagrange_casadi.cluster.sweeps import Cluster
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
-from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.sweep import columns, sweep
-from lagrange_casadi.studies.sweep.plan import Task, signature
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
 
@@ -332,47 +328,7 @@ def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path
     assert os.listdir(tmp_path) == []
 
 
-def test_a_case_travels_without_its_file(tmp_path):
-    path = tmp_path / "here" / "case.py"
-    path.parent.mkdir()
-    path.write_text(
-        "from lagrange_casadi import Mechanism, Scene\n"
-        "from lagrange_casadi.declare.motion import polynomial\n"
-        "def scene():\n"
-        "    m = Mechanism('arm')\n"
-        "    m.revolute('O', m.ground, m.link('a', length=m.parameter('l', 0.5, 'm'), mass=1.0))\n"
-        "    return Scene(m, {'O': polynomial(0, 1)})\n"
-    )
-    sent = SentCase(str(path), path.read_text())
-    assert sent.load().mechanism.name == "arm"
-    path.write_text("raise SystemExit\n")
-    assert sent.load().mechanism.name == "arm"
-    path.unlink()
-    assert sent.load().mechanism.name == "arm"
-
-
-def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
-    """What runs on a worker, here with what another version would have told it."""
-    sent = SentCase(str(slider_crank.path), slider_crank.path.read_text())
-    task = Task(("effort",), Timing(0.0, 0.08, 9), None, "peaks", Rung())
-    harvest = task.harvest(slider_crank.scene)
-    told = signature(slider_crank.scene, task, harvest.engine.provenance)
-    p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
-    assert cluster._evaluate(sent, task, told, p, 3) == harvest.chunks(p, 3)
-    other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
-    with pytest.raises(ClusterError, match=r"not give the same numbers: versions casadi was 3\.7\.0 and is .* there"):
-        cluster._evaluate(sent, task, other, p, 3)
-
-
-def test_what_fails_on_a_worker_is_one_line(slider_crank):
-    sent = SentCase("/nowhere/case.py", "1 / 0\n")
-    with pytest.raises(ClusterError, match=r"a worker failed: case .*, line 1: ZeroDivisionError"):
-        cluster._evaluate(sent, Task(("effort",), Timing(0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)), 1)
-
-
-def test_a_cluster_needs_a_case(slider_crank, tmp_path):
-    with pytest.raises(DeclarationError, match="a cluster needs a case from load_case"):
-        sweep(slider_crank.scene, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
+def test_a_cluster_and_threads_exclude_each_other(slider_crank, tmp_path):
     with pytest.raises(DeclarationError, match="workers and dask exclude each other"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2)
 
@@ -382,4 +338,4 @@ def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp
     with pytest.raises(ClusterError, match=r"a cluster needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
     assert isinstance(load_case(slider_crank.path), Case)
-    assert Cluster("tcp://x:1", slider_crank).address == "tcp://x:1"
+    assert Cluster("tcp://x:1").address == "tcp://x:1"

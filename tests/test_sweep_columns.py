@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sweeps
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import derive, evaluate
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
@@ -176,7 +176,7 @@ def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, mon
 def harvest(monkeypatch):
     """What is kept of formulas: histories of 7 instants, at 3 ratios."""
     sweeps.use(monkeypatch, count=7)
-    return Task((), Timing(0, 1, 7), (0, 1, 3), "histories", Rung()).harvest(sweeps.scene())
+    return Task(Timing(0, 1, 7), (0, 1, 3), "histories", Rung()).harvest(derive(sweeps.scene()))
 
 
 def test_a_block_is_what_takes_a_second_and_fits_into_memory(harvest, monkeypatch):

@@ -10,7 +10,7 @@ import xarray
 from click.testing import CliRunner
 from mechanisms import press, slider_crank, uneven
 
-from lagrange_casadi import Sweep, evaluate, sweep
+from lagrange_casadi import Sweep, derive, evaluate, sweep
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
 from lagrange_casadi.instants.refusal import Status
@@ -127,8 +127,9 @@ def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
     plan = Plan.of(scene, designs_of({"rpm": [60.0, 600.0]}), keep="histories", **words)
     other, p = press(uneven, wanted=["effort"]), plan.block(0, 2)
     task = pickle.loads(pickle.dumps(plan.task))
-    harvest = task.harvest(other)
-    assert signature(other, task, harvest.engine.provenance) == signature(scene, plan.task, plan.harvest.engine.provenance)
+    graph = derive(other)
+    harvest = task.harvest(graph)
+    assert signature(graph, task, harvest.engine.provenance) == signature(plan.graph, plan.task, plan.harvest.engine.provenance)
     for one, column in zip(harvest.evaluate(p), plan.harvest.evaluate(p), strict=True):
         assert one.tobytes() == column.tobytes()
 

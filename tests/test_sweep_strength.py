@@ -100,7 +100,7 @@ def at_once(scene, link):
     engine, mechanism = DesignEngine.of(scene, rung=Rung("vm")), scene.mechanism
     p = np.array([list(mechanism.values().values())])
     names, own = {name: k for k, name in enumerate(engine.columns)}, mechanism.links[link]
-    fatigue = strength.Fatigue.of(mechanism, own, [output for output in engine.outputs if output.along])
+    fatigue = strength.Fatigue.of(engine.graph.data, link, [output for output in engine.outputs if output.along])
     members = engine.evaluate(p, histories=True).series[:, [names[str(member)] for member in fatigue.members]]
     assert fatigue.stands(members).all()
     (found,) = strength.worst(fatigue, *fatigue.stresses(members, p), own.beam.material)

@@ -8,6 +8,7 @@ import pytest
 from mechanisms import press, uneven
 
 from lagrange_casadi import Mechanism, Scene, motion
+from lagrange_casadi.declare.kinds import kinds_of
 from lagrange_casadi.declare.turned import note
 from lagrange_casadi.studies.sweep.turning import turning_note
 
@@ -15,7 +16,7 @@ pytestmark = pytest.mark.quick
 
 
 def said(scene, rows=((600.0, 0.5),), **asked):
-    return note(scene, scene.timing(**asked), np.array(rows))
+    return note(scene.prescribed, kinds_of(scene.guided), scene.timing(**asked), np.array(rows))
 
 
 @pytest.mark.parametrize("law", [motion.polynomial, uneven, lambda _, w: motion.polynomial(0, 0, 100.0), lambda _, w: sampled()])
@@ -61,11 +62,11 @@ def test_a_slide_and_several_drives_have_no_turns():
     m.revolute("O", m.ground, first)
     m.revolute("P", first.tip, second)
     scene = Scene(m, {"O": motion.polynomial(0, 1.0), "P": motion.polynomial(0, 2.0)})
-    assert note(scene, scene.timing(), np.zeros((1, 0))) == ""
+    assert said(scene, np.zeros((1, 0))) == ""
     m = Mechanism("m")
     m.prismatic("S", m.ground, m.point_mass("a", 1.0), axis=(1, 0))
     scene = Scene(m, {"S": motion.polynomial(0, 1.0)})
-    assert note(scene, scene.timing(), np.zeros((1, 0))) == ""
+    assert said(scene, np.zeros((1, 0))) == ""
 
 
 def test_a_sweep_says_where_designs_make_different_turns():

@@ -9,7 +9,7 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..declare.scene import Scene
-from ..declare.times import Over, Times
+from ..declare.times import Over, Times, instants_of
 from ..equations.derive import assembled
 from ..equations.seen_inertia import SeenInertia, seen_inertia
 from ..errors import DeclarationError, UnknownNameError
@@ -46,7 +46,7 @@ def inertia_at(
     if scene.mechanism.rows or (several and len(seen.drives) != len(seen.motions)):
         why = "non-holonomic constraints" if scene.mechanism.rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
         raise DeclarationError(f"inertia at '{joint}': with {why} no drive moves alone, the others at rest")
-    times, p = scene.instants(scene.timing(t, over), values).t, np.array(list(values.values()))
+    times, p = instants_of(scene.prescribed, scene.timing(t, over), values).t, np.array(list(values.values()))
     found, _ = run(seen.graph, times, p, _VM)
     refuse(seen.graph, found, times, p, _VM)
     return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))

@@ -33,7 +33,6 @@ def beam_told(told: Mapping[str, Any]) -> Beam:
 
     Raises ``ValueError``, ``TypeError``, ``LookupError`` or :class:`.DeclarationError` for what is none, as in a forged file.
     """
-    shapes = []
     for shape in told["shapes"]:
         kind, numbers = shape["kind"], shape["dimensions"]
         known = dimensions_of(kind)
@@ -41,10 +40,16 @@ def beam_told(told: Mapping[str, Any]) -> Beam:
             raise ValueError(f"{kind!r} is no cross-section with these dimensions")
         if not all(type(x) in (int, float) and math.isfinite(x) for x in numbers.values()):
             raise ValueError(f"the dimensions of a {kind} are not numbers")
-        shapes.append(Shape(kind, {name: float(x) for name, x in numbers.items()}))
     breaks = tuple(map(float, told["breaks"]))
     if len(breaks) != len(told["cells"]) + 1 or any(b <= a for a, b in itertools.pairwise(breaks)):
         raise ValueError("the breaks of a beam do not fit its cells")
+    return beam_of(told)
+
+
+def beam_of(told: Mapping[str, Any]) -> Beam:
+    """Make the beam of what :func:`told_beam` wrote, be it numbers or expressions."""
+    shapes = [Shape(shape["kind"], dict(shape["dimensions"])) for shape in told["shapes"]]
+    breaks = tuple(map(float, told["breaks"]))
     course = Course(breaks, tuple((shapes[first], shapes[last]) for first, last in told["cells"]))
     material = Material(**{entry.name: told["material"][entry.name] for entry in fields(Material)})
     columns = None if told["columns"] is None else tuple(told["columns"])

@@ -17,6 +17,7 @@ from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
+from ..declare.kinds import kinds_of
 from ..declare.scene import Scene, fitted_of, strength_of
 from ..declare.times import Over, Timing
 from ..errors import CertificateError
@@ -139,4 +140,6 @@ def _report(
     yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
     yield from elastic_lines(solution, scene.mechanism, want)
     told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
-    yield from (f"note: {note}" for note in (*solution.notes, turned.note(scene, timing, told)) if note)
+    yield from (
+        f"note: {note}" for note in (*solution.notes, turned.note(scene.prescribed, kinds_of(scene.guided), timing, told)) if note
+    )

@@ -1,4 +1,4 @@
-"""Ways that the workers of a Dask cluster go. They are sent the case and a question, and send back ways in plain numbers."""
+"""Ways that the workers of a Dask cluster go. They are sent what is derived and a question, and send back ways in plain numbers."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..case import Case
 from ..errors import ClusterError, LagrangeCasadiError
+from ..studies.designs.engine import DesignEngine
 from ..studies.optimise.finder import Errand, Finder
 from ..studies.optimise.hands import Told
-from ..studies.optimise.problem import Question
 from ..studies.optimise.trail import STOPPED, Trail
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.plan import difference
-from .sweeps import Asked, Cluster, SentCase
+from .sweeps import Asked, Cluster
 
 _building = threading.Lock()
 
@@ -27,19 +26,18 @@ class Workers:
     """The workers of a cluster, each at a way of its own."""
 
     cluster: Cluster
-    case: Case
 
     def go(self, finder: Finder, errands: Sequence[Errand], told: Told) -> Iterator[tuple[int, Trail]]:
         """The ways of errands, as they are done. What was not done after an interrupt is not told.
 
         Raises :class:`ClusterError` where the cluster cannot serve.
         """
-        sent, question = SentCase.of(self.case), pickle.dumps(finder.question)
-        words = finder.question.words(finder.scene, finder.engine)
+        sent = pickle.dumps((finder.engine.graph, finder.question))
+        words = finder.question.words(finder.engine)
         queue = Queue((k, k + 1) for k in range(len(errands)))
 
         def asked(start: int, _stop: int) -> Asked:
-            return Asked(_descend, (sent, question, words, errands[start]))
+            return Asked(_descend, (sent, words, errands[start]))
 
         for done in self.cluster.done(asked, queue):
             if done is None:
@@ -49,17 +47,17 @@ class Workers:
             yield number, trail
 
 
-def searching(address: str, case: Case) -> Workers:
+def searching(address: str) -> Workers:
     """The workers of the Dask scheduler at an address, for searches. Raises :class:`.DeclarationError` for what is no address."""
-    return Workers(Cluster(address, case), case)
+    return Workers(Cluster(address))
 
 
-def _descend(sent: SentCase, question: bytes, words: Mapping[str, Any], errand: Errand) -> Trail:
+def _descend(sent: bytes, words: Mapping[str, Any], errand: Errand) -> Trail:
     """On a worker: the way of an errand."""
     try:
         with _building:  # a finder goes one way at a time
-            finder = _built(sent, question)
-            found = difference(words, finder.question.words(finder.scene, finder.engine))
+            finder = _built(sent)
+            found = difference(words, finder.question.words(finder.engine))
             if found:
                 raise ClusterError(f"a worker would not give the same numbers: {found} there")
             trail = finder.descend(errand, lambda *_: None)
@@ -74,6 +72,6 @@ def _descend(sent: SentCase, question: bytes, words: Mapping[str, Any], errand: 
 
 
 @functools.lru_cache(maxsize=4)
-def _built(sent: SentCase, question: bytes) -> Finder:
-    asked: Question = pickle.loads(question)
-    return Finder.of(sent.load(), asked)
+def _built(sent: bytes) -> Finder:
+    graph, question = pickle.loads(sent)
+    return Finder.of(question, DesignEngine.compiled(graph, question.timing, question.rung))

@@ -1,4 +1,4 @@
-"""Who evaluates blocks: the workers of a Dask cluster. They are sent the case and designs, and send back columns."""
+"""Who evaluates blocks: the workers of a Dask cluster. They are sent what is derived and designs, and send back columns."""
 
 from __future__ import annotations
 
@@ -12,15 +12,12 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, wait
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from ..base.arrays import Array
-from ..base.cache import working_folder
-from ..case import Case, load_case
-from ..declare.scene import Scene
+from ..equations.scene_graph import SceneGraph
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.columns import Harvest
@@ -46,32 +43,8 @@ _building = threading.Lock()
 
 
 @dataclass(frozen=True)
-class SentCase:
-    """A case as it is sent: its file's path and content. Where a worker has no such file, the content alone serves."""
-
-    path: str
-    content: str
-
-    @classmethod
-    def of(cls, case: Case) -> SentCase:
-        """A case that is loaded."""
-        return cls(str(case.path), case.path.read_text())
-
-    def load(self) -> Scene:
-        """The scene."""
-        path = Path(self.path)
-        with suppress(OSError, UnicodeDecodeError):
-            if path.read_text() == self.content:
-                return load_case(path).scene
-        with working_folder() as folder:
-            copy = folder / path.name
-            copy.write_text(self.content)
-            return load_case(copy).scene
-
-
-@dataclass(frozen=True)
 class Cluster:
-    """The workers of the Dask scheduler at ``address``, all of which load ``case`` themselves.
+    """The workers of the Dask scheduler at ``address``, which are sent what is derived, and compile it themselves.
 
     A block whose worker dies is sent to another one. Nobody waits for what does not answer, a scheduler or a worker that is frozen,
     after an interrupt. Raises :class:`ClusterError` where Dask is not installed, the scheduler cannot be reached or is lost, or
@@ -79,7 +52,6 @@ class Cluster:
     """
 
     address: str
-    case: Case
 
     def __post_init__(self) -> None:
         if not _ADDRESS.fullmatch(self.address):
@@ -87,8 +59,8 @@ class Cluster:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
-        sent = SentCase.of(self.case)
-        told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
+        sent = pickle.dumps((plan.graph, plan.harvest.whole))
+        told = signature(plan.graph, plan.task, plan.harvest.engine.provenance)
 
         def asked(start: int, stop: int) -> Asked:
             return Asked(_evaluate, (sent, plan.task, told, plan.block(start, stop), plan.room))
@@ -319,12 +291,12 @@ class Asked:
         return self.function, self.arguments
 
 
-def _evaluate(sent: SentCase, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
+def _evaluate(sent: bytes, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
     """On a worker: the columns of a block of designs."""
     try:
         with _building:
-            scene, harvest = _built(sent, task)
-        found = difference(told, signature(scene, task, harvest.engine.provenance))
+            graph, harvest = _built(sent, task)
+        found = difference(told, signature(graph, task, harvest.engine.provenance))
         if found:
             raise ClusterError(f"a worker would not give the same numbers: {found} there")
         return harvest.chunks(p, room)
@@ -336,6 +308,6 @@ def _evaluate(sent: SentCase, task: Task, told: Mapping[str, Any], p: Array, roo
 
 
 @functools.lru_cache(maxsize=4)
-def _built(sent: SentCase, task: Task) -> tuple[Scene, Harvest]:
-    scene = task.scene(sent.load())
-    return scene, task.harvest(scene)
+def _built(sent: bytes, task: Task) -> tuple[SceneGraph, Harvest]:
+    graph, whole = pickle.loads(sent)
+    return graph, task.harvest(graph, whole)

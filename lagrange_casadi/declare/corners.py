@@ -6,8 +6,9 @@ They are looked for where a mechanism goes, with the parameters that it has ther
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -32,11 +33,11 @@ def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | 
 
 @dataclass(frozen=True, eq=False)
 class Corners(Graphs):
-    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``."""
+    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``; some are ``cams``."""
 
-    scene: Scene
     laws: Mapping[str, Smooth]
     constraints: Mapping[str, Smooth]
+    cams: Collection[str]
 
     @classmethod
     @symbolic
@@ -46,7 +47,19 @@ class Corners(Graphs):
         m = scene.mechanism
         found = {name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()}
         laws = smooth_laws(scene.laws, m.symbols)
-        return cls(scene, laws, {name: smooth for name, smooth in found.items() if smooth is not None})
+        cams = [name for name, constraint in m.constraints.items() if constraint.lift is not None]
+        return cls(laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams)
+
+    def words(self) -> list[Any]:
+        """Write them for JSON."""
+        laws, constraints = ({name: smooth.words() for name, smooth in of.items()} for of in (self.laws, self.constraints))
+        return [laws, constraints, list(self.cams)]
+
+    @classmethod
+    def loads(cls, words: Sequence[Any]) -> Corners:
+        """Read what :meth:`words` wrote."""
+        laws, constraints = ({name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2])
+        return cls(laws, constraints, words[2])
 
     def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
         """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for parameters ``p``."""
@@ -63,8 +76,7 @@ class Corners(Graphs):
         for name, smooth in self.constraints.items():
             found = smooth.kink(seen(name), p)
             if found is not None:
-                cam = self.scene.mechanism.constraints[name].lift is not None
-                raise found.refused(f"cam '{name}': its lift" if cam else f"constraint '{name}'")
+                raise found.refused(f"cam '{name}': its lift" if name in self.cams else f"constraint '{name}'")
 
     def broken_laws(self, start: Array, stop: Array, p: Array) -> npt.NDArray[np.bool_]:
         """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""

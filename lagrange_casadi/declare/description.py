@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -170,6 +170,12 @@ class Template(Graphs):
                 body["mass"] = density_of(body).mass
         return found
 
+    def placed(self, content: Description, p: Any) -> Description:
+        """A part of the content, with expressions of parameters ``p`` at its places, and numbers where these are constant."""
+        numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
+        found: Description = _with(content, lambda place: numbers[place])
+        return found
+
     def dumps(self) -> str:
         """The template as text."""
         return json.dumps([_with(self.content, lambda place: {_PLACED: int(place)}), self.numbers.serialize()])
@@ -190,8 +196,13 @@ class Template(Graphs):
             content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
         if drives is not None:
             content |= {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+        return cls.over(content, asked, mechanism.symbols)
+
+    @classmethod
+    def over(cls, content: Description, asked: Sequence[Any], symbols: Any) -> Template:
+        """The template whose numbers are expressions of the parameters' symbols, in the order of its places."""
         numbers = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(expression) for expression in asked)))
-        return cls(content, ca.Function("numbers", [mechanism.symbols], [numbers], ["p"], ["numbers"]))
+        return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
 
 def _with(content: Any, number: Callable[[Place], Any]) -> Any:

@@ -76,10 +76,10 @@ class Kink:
 class Smooth:
     """A scalar expression whose slopes must not jump, and operations in it that may make them.
 
-    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of operations that may make a kink
-    where they pass zero, or a whole number if ``whole``; what is ``open`` there may be without bound, or have a slope that is, and
-    may make a kink where it only touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)``
-    the value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
+    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of operations that may make a
+    kink where they pass zero, or a whole number if ``whole``; what is ``open`` there may be without bound, or have a slope that is,
+    and may make a kink where it only touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way,
+    ``slopes(x, p)`` the value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
     """
 
     symbols: tuple[Any, ...]
@@ -119,6 +119,23 @@ class Smooth:
             np.array(open_),
             np.array([ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)] if fixed.numel() else [], bool),
         )
+
+    def words(self) -> list[Any]:
+        """Write it for JSON; functions as the text in which CasADi writes them."""
+        functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
+        return [
+            [symbol.name() for symbol in self.symbols],
+            *functions,
+            *(flags.tolist() for flags in (self.whole, self.open, self.uses)),
+        ]
+
+    @classmethod
+    def loads(cls, words: Sequence[Any]) -> Smooth:
+        """Read what :meth:`words` wrote."""
+        names, *functions, whole, open_, uses = words
+        marks, turns, slopes = map(ca.Function.deserialize, functions)
+        symbols = tuple(map(ca.SX.sym, names))
+        return cls(symbols, marks, turns, slopes, np.array(whole, bool), np.array(open_, bool), np.array(uses, bool))
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
         """The worst kink along a path (symbols, n) of straight steps, for ``values`` of the fixed symbols."""

@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 
 from ..base.symbolic import Graphs, symbolic
-from .motion import Motion, motion_function
+from .motion import Motion, ends_function, motion_function
 
 _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 
@@ -19,20 +19,22 @@ _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 class Laws(Graphs):
     """The motion of several drives, ``joints``, by one function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of scalars.
 
-    ``spans`` are the times that each law covers, and ``knots`` those of its samples [s].
+    ``spans`` are the times that each law covers, and ``knots`` those of its samples [s]. ``beyond`` is the function of
+    :func:`.ends_function`, or None.
     """
 
     joints: tuple[str, ...]
     motion: Any
     spans: tuple[tuple[float, float], ...]
     knots: tuple[tuple[float, ...], ...]
+    beyond: Any | None
 
     @classmethod
     @symbolic
     def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
         """The function of laws by the joint's name."""
         spans, knots = tuple(law.span for law in laws.values()), tuple(law.knots for law in laws.values())
-        return cls(tuple(laws), motion_function(laws, parameters), spans, knots)
+        return cls(tuple(laws), motion_function(laws, parameters), spans, knots, ends_function(laws, parameters))
 
     @property
     def span(self) -> tuple[float, float]:
@@ -46,7 +48,8 @@ class Laws(Graphs):
         k = self.joints.index(joint)
         t, p = self.motion.sx_in()
         motion = ca.Function("motion", [t, p], [row[k] for row in self.motion(t, p)], *_NAMES, {"cse": True})
-        return Laws((joint,), motion, (self.spans[k],), (self.knots[k],))
+        beyond = None if self.beyond is None else ca.Function("beyond", [t, p], [self.beyond(t, p)[k]], ["t", "p"], ["beyond"])
+        return Laws((joint,), motion, (self.spans[k],), (self.knots[k],), beyond)
 
     @symbolic
     def jerk(self) -> Any:
@@ -57,11 +60,12 @@ class Laws(Graphs):
 
     def words(self) -> list[Any]:
         """The laws for JSON; functions as the text in which CasADi writes them."""
-        return [self.joints, self.motion.serialize(), self.spans, self.knots]
+        beyond = None if self.beyond is None else self.beyond.serialize()
+        return [self.joints, self.spans, self.knots, self.motion.serialize(), beyond]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Laws:
         """The laws that :meth:`words` made."""
-        joints, motion, spans, knots = words
-        read = ca.Function.deserialize(motion)
-        return cls(tuple(joints), read, tuple((low, high) for low, high in spans), tuple(map(tuple, knots)))
+        joints, spans, knots, *functions = words
+        motion, beyond = (None if f is None else ca.Function.deserialize(f) for f in functions)
+        return cls(tuple(joints), motion, tuple((low, high) for low, high in spans), tuple(map(tuple, knots)), beyond)

@@ -112,8 +112,12 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
 
 def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
     """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
-    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
-    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
+    return told_values(values or {name: parameter.default for name, parameter in mechanism.parameters.items()}, not values)
+
+
+def told_values(values: Mapping[str, float], default: bool = False) -> str:
+    """Name the values of all parameters, to end a message with; nothing where there are none."""
+    listed = [f"{name} = {value:.6g}" for name, value in values.items()]
     if len(listed) > _TOLD:
         listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
-    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
+    return f"; with the {'default ' if default else ''}parameters {', '.join(listed)}" if listed else ""

@@ -6,7 +6,6 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import UnknownNameError
 from .density import Density
 from .mechanism import Mechanism
 from .parts import Link, PointMass, RigidMass
@@ -15,14 +14,10 @@ ALL = "all"
 """What the mass of everything that moves is called."""
 
 
-def mass_of(mechanism: Mechanism, part: str) -> Any:
-    """The mass of a link or a point mass, or of ``all`` of them [kg]. Raises :class:`.UnknownNameError` for anything else."""
-    bodies = {body.name: body for body in mechanism.moving}
-    if part in bodies:
-        return _mass(bodies[part])
-    if part == ALL:
-        return ca.SX(sum(map(_mass, mechanism.moving)))
-    raise UnknownNameError("part with a mass", part, [*bodies, ALL])
+def masses_of(mechanism: Mechanism) -> Any:
+    """The masses of its links and point masses, in their order, and last that of all of them [kg], in a column."""
+    masses = [_mass(body) for body in mechanism.moving]
+    return ca.densify(ca.vertcat(*masses, sum(masses)))
 
 
 def _mass(body: Any) -> Any:

@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ..base.numerals import readable
-from ..base.symbolic import symbolic
+from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
@@ -57,11 +57,13 @@ class Demands:
         values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))
         return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
 
-    def in_order(self, symbols: Any) -> tuple[list[Any], list[Any]]:
-        """The values as expressions in the parameters: those that must be positive, and the others."""
-        values = self.function(symbols)
-        chosen = [(demand.positive, values[k]) for k, demand in enumerate(self.each)]
-        return [value for positive, value in chosen if positive], [value for positive, value in chosen if not positive]
+    def margins(self) -> Margins:
+        """Return the values alone."""
+        values = self.function(self.symbols)
+        order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
+        ordered = ca.densify(ca.vertcat(ca.SX(0, 1), *(values[k] for k in order)))
+        function = ca.Function("margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True})
+        return Margins(function, sum(demand.positive for demand in self.each))
 
     def check(self, p: Sequence[float], number: Evaluator) -> None:
         """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first demand that is not met."""
@@ -70,6 +72,28 @@ class Demands:
         refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
         if refused.any():
             raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
+
+
+@dataclass(frozen=True, eq=False)
+class Margins(Graphs):
+    """What parameters must keep positive, ``positive`` numbers of ``function(p)``, and then what must not be negative."""
+
+    function: Any
+    positive: int
+
+    def in_order(self, symbols: Any) -> tuple[list[Any], list[Any]]:
+        """Return expressions in the parameters: those that must be positive, and the others."""
+        values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
+        return values[: self.positive], values[self.positive :]
+
+    def words(self) -> list[Any]:
+        """Write them for JSON."""
+        return [self.function.serialize(), self.positive]
+
+    @classmethod
+    def loads(cls, words: Sequence[Any]) -> Margins:
+        """Read what :meth:`words` wrote."""
+        return cls(ca.Function.deserialize(words[0]), words[1])
 
 
 @symbolic

@@ -8,8 +8,8 @@ between the two last steps, then finds the time to its last bits. A law that tur
 from __future__ import annotations
 
 import enum
+import functools
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from .motion import Motion, motion_function
+from .laws import Laws
 
 _SHARE = 1 / 32
 """Of the way that is asked for: by about so much does the coordinate change in a step."""
@@ -84,13 +84,15 @@ class Reaching:
     span: tuple[float, float]
 
     @classmethod
-    def of(cls, motion: Motion, symbols: Any) -> Reaching:
-        """The law of a drive over the parameters' symbols. Raises :class:`.DeclarationError` for one that is no expression."""
-        law = motion_function({"over": motion}, symbols)
+    @functools.lru_cache(maxsize=64)
+    def of(cls, laws: Laws, joint: str) -> Reaching:
+        """Return the law of a drive, to be inverted."""
+        one = laws.only(joint)
+        law, (span,) = one.motion, one.spans
         t, p = law.sx_in()
         d, rate, _ = law(t, p)
-        steady = not (motion.knots or ca.depends_on(rate, t))
-        return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), motion.span)
+        steady = not (one.knots[0] or ca.depends_on(rate, t))
+        return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), span)
 
     def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
         """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each (n, k)."""
@@ -106,12 +108,12 @@ class Reaching:
                 found[:, some] = [row.full().ravel()[:many] for row in law(filled[0][None], filled[1].T)]
         return found[0].reshape(t.shape), found[1].reshape(t.shape), found[2].reshape(t.shape)
 
-    @cached_property
+    @functools.cached_property
     def _few(self) -> Any:
         # Of so many times at once: the law called with as many columns takes ten times as long.
         return self.law.map(_FEW)
 
-    @cached_property
+    @functools.cached_property
     def _many(self) -> Any:
         return self.law.map(_MANY)
 

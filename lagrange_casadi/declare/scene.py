@@ -22,6 +22,7 @@ from .drives import weighed
 from .even_points import EvenPoints, checked
 from .giving import Elastic, giving
 from .guiding import guided, laws_of
+from .laws import Laws
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
@@ -29,7 +30,7 @@ from .parts import Expression, Friction
 from .possible import Demands, demands
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
-from .times import TURNS, Instants, Over, Times, Timing, instants_of, span_of
+from .times import TURNS, Over, Times, Timing, span_of
 from .wanted_slopes import SENSITIVITY, others, sensitivities
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
@@ -133,8 +134,8 @@ def outputs(mechanism: Mechanism) -> list[str]:
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    found = ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
-    return [*found, *sensitivities(mechanism)]
+    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *sensitivities(mechanism)]
+    return ["all", "effort", "motion", *named]
 
 
 def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:
@@ -299,6 +300,11 @@ class Scene(Graphs):
         return MappingProxyType(laws_of(self.mechanism, self.motion))
 
     @cached_property
+    def prescribed(self) -> Laws:
+        """These laws as functions of time and the parameters."""
+        return Laws.of(self.laws, self.mechanism.symbols)
+
+    @cached_property
     def guided(self) -> Mechanism:
         """The mechanism, with the guides of points and poses whose motion is given."""
         return guided(self.mechanism, self.motion)
@@ -321,8 +327,7 @@ class Scene(Graphs):
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a drawing at the first instant, where it can be assembled, and the parts."""
-        found: str = method("Scene._repr_html_")(self)
-        return found
+        return str(method("Scene._repr_html_")(self))
 
     @public
     def report(
@@ -348,17 +353,12 @@ class Scene(Graphs):
         """
         if t is not None and over is not None:
             raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
-        asked = self.over if t is None and over is None else over
-        return Timing.of(self.guided, self.laws, self.t if t is None else t, asked)
+        return Timing.of(self.guided, self.laws, self.t if t is None else t, self.over if t is None and over is None else over)
 
     @cached_property
     def span(self) -> tuple[float, float]:
         """Its own first and last instant [s], with the parameters with which it is assembled."""
-        return span_of(self.guided, self.laws, self.timing(), self.mechanism.values(self.assembly))
-
-    def instants(self, timing: Timing, values: Mapping[str, float]) -> Instants:
-        """Instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
-        return instants_of(self.guided, self.laws, timing, values)
+        return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def demands(self, precision: Precision = "double") -> Demands:
         """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""

@@ -22,7 +22,8 @@ from ..base.units import number
 from ..errors import DeclarationError, NumberError, UnknownNameError, shown
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
-from .limits import told_parameters
+from .laws import Laws
+from .limits import told_values
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression
@@ -48,7 +49,8 @@ _MOST_LOOKS = 1 << 16
 class Timing:
     """How instants are asked for: ``count`` from ``start`` to ``stop``, of time [s], or of the coordinate of ``joint`` [rad or m].
 
-    A law of motion that is not steady is followed to that joint's coordinate from the time ``around`` [s].
+    A law of motion that is not steady is followed to that joint's coordinate from the time ``around`` [s]. The coordinate
+    ``slides``, or is an angle.
     """
 
     start: Bound
@@ -56,6 +58,7 @@ class Timing:
     count: int
     joint: str = ""
     around: Bound = 0.0
+    slides: bool = False
 
     @classmethod
     def of(cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None) -> Timing:
@@ -77,7 +80,12 @@ class Timing:
             raise DeclarationError(f"over: COUNT must be 2 or more, got {count}")
         if start == stop:
             raise DeclarationError(f"over: STOP must not be START, got {over[1]} for both")
-        return cls(start, stop, count, over[0], _read(mechanism, "t", t)[0])
+        return cls(start, stop, count, over[0], _read(mechanism, "t", t)[0], slides)
+
+    @property
+    def unit(self) -> str:
+        """The unit of start and stop."""
+        return "s" if not self.joint else LENGTH if self.slides else ANGLE
 
     @property
     def fixed(self) -> bool:
@@ -165,63 +173,54 @@ class Instants:
     over: DriveAxis | None = None
 
 
-@functools.lru_cache(maxsize=64)
-def reaching(mechanism: Mechanism, motion: Motion) -> Reaching:
-    """The law of a drive, to be inverted."""
-    return Reaching.of(motion, mechanism.symbols)
-
-
-def even_of(mechanism: Mechanism, timing: Timing, values: Mapping[str, float]) -> EvenPoints:
+def even_of(timing: Timing, values: Mapping[str, float]) -> EvenPoints:
     """Start, stop and count in numbers, for values of all parameters. Raises :class:`.DeclarationError` for what they cannot be."""
     start, stop, _ = (float(bound[0]) for bound in timing.bounds(_row(values)))
     if not timing.joint:
         try:
             return checked("t", (start, stop, timing.count))
         except DeclarationError as error:
-            raise DeclarationError(f"{error}{'' if timing.fixed else told_parameters(mechanism, values)}") from None
+            raise DeclarationError(f"{error}{'' if timing.fixed else told_values(values)}") from None
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
-        raise DeclarationError(
-            f"over: START and STOP must be finite and apart, got {start:g} and {stop:g}{told_parameters(mechanism, values)}"
-        )
+        raise DeclarationError(f"over: START and STOP must be finite and apart, got {start:g} and {stop:g}{told_values(values)}")
     return start, stop, timing.count
 
 
-def span_of(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
     """The first and the last instant [s]. Raises :class:`.DeclarationError` where there are none."""
-    start, stop, _ = even_of(mechanism, timing, values)
+    start, stop, _ = even_of(timing, values)
     if not timing.joint:
         return start, stop
-    way = _way(mechanism, motion, timing, values)
+    way = _way(laws, timing, values)
     return float(way.first[0]), float(way.last[0])
 
 
-def instants_of(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> Instants:
+def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Instants:
     """All instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
-    even = even_of(mechanism, timing, values)
+    even = even_of(timing, values)
     if not timing.joint:
         return Instants(points(even))
     coordinates = points(even)
-    way = _way(mechanism, motion, timing, values)
-    t = reaching(mechanism, motion[timing.joint]).times(way, coordinates[None], _row(values))[0]
+    way = _way(laws, timing, values)
+    t = Reaching.of(laws, timing.joint).times(way, coordinates[None], _row(values))[0]
     if not np.isfinite(t).all():
         raise DeclarationError(
-            f"over: {timing.count} coordinates of joint '{timing.joint}' from {_shown(mechanism, timing.joint, even[0])} to "
-            f"{_shown(mechanism, timing.joint, even[1])} cannot be told apart in time: its motion nearly rests there"
+            f"over: {timing.count} coordinates of joint '{timing.joint}' from {_shown(timing, even[0])} to "
+            f"{_shown(timing, even[1])} cannot be told apart in time: its motion nearly rests there"
         )
-    unit = LENGTH if mechanism.coordinates[timing.joint][1].kind == "slide" else ANGLE
-    return Instants(t, DriveAxis(timing.joint, unit, coordinates))
+    return Instants(t, DriveAxis(timing.joint, timing.unit, coordinates))
 
 
-def _way(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> Way:
+def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
     """When a drive goes from start to stop. Raises :class:`.DeclarationError` where it does not, and says what it does instead."""
     p = _row(values)
     start, stop, around = timing.bounds(p)
-    law = reaching(mechanism, motion[timing.joint])
+    law = Reaching.of(laws, timing.joint)
     way = law.way(start, stop, p, around, looks=min(4 * timing.count, _MOST_LOOKS) + 1)
     why = Missed(int(way.missed[0]))
     if why is Missed.REACHED:
         return way
-    joint, told = timing.joint, functools.partial(_shown, mechanism, timing.joint)
+    joint, told = timing.joint, functools.partial(_shown, timing)
     asked, where = f"from {told(start[0])} to {told(stop[0])}", f"t = {way.t[0]:.6g} s, at {told(way.d[0])}"
     said = {
         Missed.STANDS_STILL: f"stands still, and does not go {asked}",
@@ -230,12 +229,12 @@ def _way(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, val
         Missed.ENDS: f"does not go {asked}: its samples end at {where}",
         Missed.NEVER: f"does not go {asked}",
     }[why]
-    raise DeclarationError(f"over: the motion of joint '{joint}' {said}{told_parameters(mechanism, values)}")
+    raise DeclarationError(f"over: the motion of joint '{joint}' {said}{told_values(values)}")
 
 
-def _shown(mechanism: Mechanism, joint: str, value: float) -> str:
+def _shown(timing: Timing, value: float) -> str:
     """A coordinate in words."""
-    if mechanism.coordinates[joint][1].kind == "slide":
+    if timing.slides:
         return f"{value:.6g} m"
     return f"{value:.6g} rad ({math.degrees(value):.6g} deg)"
 

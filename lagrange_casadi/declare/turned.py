@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.quantities import Kinds
+from .laws import Laws
 from .reaching import Reaching
-from .scene import Scene
-from .times import Timing, reaching
+from .times import Timing
 
 _LOOKS = 129
 _GOES_ON = 0.5
@@ -28,23 +29,22 @@ _PLACES = 6
 """Of an angle in degrees that is told."""
 
 
-def note(scene: Scene, timing: Timing, p: Array) -> str:
+def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
     """A line where the one drive turns, and makes less than a turn within the instants, or not the same for all parameters.
 
     ``p`` is (n, parameters); those for which there are no instants do not count. A drive that swings or comes to rest does not
     turn. Nothing is said of several drives, whose turns are no cycle, nor where instants are asked for by the drive.
     """
-    coordinates = scene.mechanism.coordinates
-    if len(scene.laws) != 1 or timing.joint or timing.count < 2:
+    if len(laws.joints) != 1 or timing.joint or timing.count < 2:
         return ""
-    ((joint, motion),) = scene.laws.items()
+    (joint,), (span,) = laws.joints, laws.spans
     start, stop, _ = timing.bounds(p)
     with np.errstate(invalid="ignore"):
-        there = np.isfinite(stop - start) & (stop > start) & (start >= motion.span[0]) & (stop <= motion.span[1])
-    if coordinates[joint][1].kind == "slide" or not there.any():
+        there = np.isfinite(stop - start) & (stop > start) & (start >= span[0]) & (stop <= span[1])
+    if kinds.coordinates[joint] == "slide" or not there.any():
         return ""
     start, stop, p = start[there], stop[there], p[there]
-    law = reaching(scene.mechanism, motion)
+    law = Reaching.of(laws, joint)
     first, last = (law.at(moment[:, None], p)[0][:, 0] for moment in (start, stop))
     turns = (last - first) / math.tau
     sizes = np.abs(turns)

@@ -34,7 +34,7 @@ def deflections(mechanism: Mechanism, name: str, columns: Mapping[Column, Any], 
     It counts from the straight line between the ``ends`` as they are, or from the link's axes at its base. Raises
     :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant.
     """
-    link = Loaded(mechanism, mechanism.links[name], columns)
+    link = Loaded(mechanism.space, mechanism.links[name], columns)
     pair = moduli(link, f"output 'deflection:{name}'")
     curves = [_curve(link, *plane, pair, ends=ends) for plane in _PLANES[link.space]]
     along = zip(*curves, strict=True)

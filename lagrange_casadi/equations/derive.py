@@ -48,12 +48,22 @@ _STEPS = 50
 
 @public
 @symbolic
-def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
-    """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
+def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
+    """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
-    With ``elastic`` it tells how forces change with what equilibrium leaves open.
+    What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
 
-    A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
+    Parameters
+    ----------
+    scene
+        The scene.
+    wanted
+        Output names, as in :class:`.Scene`; by default the scene's own.
+    elastic
+        Whether the functions tell how forces change with what equilibrium leaves open.
+
+    A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
+    declaration.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
@@ -65,9 +75,22 @@ def derive(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False
     except PostureError as error:
         error.scene = scene
         raise
-    if isinstance(found, SceneGraph):
-        return found
+    if isinstance(found, _Derived):
+        return found.graph
     raise type(found)(str(found))
+
+
+derive = compile_scene
+"""An earlier name of the same function."""
+
+
+@symbolic
+def as_derived(scene: Scene, wanted: Outputs) -> Scene:
+    """Return the scene that :func:`compile_scene` makes a graph of: itself, or one whose rounded axes are corrected."""
+    derive(scene, wanted)
+    found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
+    assert isinstance(found, _Derived)
+    return found.scene
 
 
 @symbolic
@@ -82,7 +105,7 @@ def assembled(
 
     So it is too where rounded axes were corrected for its own parameters, and loops close with these but do not with ``values``.
 
-    Raises what :func:`derive` does, where they can be assembled with neither.
+    Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
         graph = derive(scene, wanted, elastic=elastic)
@@ -92,7 +115,7 @@ def assembled(
         there = _at(scene, tuple(values.items()))
         derive(there, wanted, elastic=elastic)
         return there
-    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _SERVES:
+    if graph.data.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
             derive(there, wanted, elastic=elastic)
@@ -110,31 +133,41 @@ def _nearest(scene: Scene) -> Scene | None:
     return None if scene.mechanism.rounded else nearest(scene)
 
 
+@dataclass(frozen=True, eq=False)
+class _Derived:
+    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do not close as declared."""
+
+    graph: SceneGraph
+    scene: Scene
+
+
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
-    key = fingerprint(scene, want)
-    key = f"{key}-elastic" if key and elastic else key
+    identity = fingerprint(scene, want)
+    key = f"{identity}-elastic" if identity and elastic else identity
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
-        return SceneGraph.loads(text, scene, want)
+        graph = SceneGraph.loads(text)
+        # Scenes of one name may differ in what follows from nothing that is derived.
+        return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
     try:
-        graph = _derive(scene, want, elastic)
+        graph = replace(_derive(scene, want, elastic), identity=identity)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
         found = None if near is None else _kept(near, want, elastic)
-        if isinstance(found, SceneGraph):
-            return found
+        if isinstance(found, _Derived):
+            return replace(found, graph=replace(found.graph, identity=identity))
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
         found = _kept(near, want, elastic)
-        if isinstance(found, SceneGraph):
-            return found
+        if isinstance(found, _Derived):
+            return replace(found, graph=replace(found.graph, identity=identity))
     if key:
         cache.write(f"{key}.graph", graph.dumps())
-    return graph
+    return _Derived(graph, scene)
 
 
 def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -> float:
@@ -142,7 +175,7 @@ def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -
     rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
     if not rows:
         return 0.0
-    t, p, newton = graph.scene.span[0], list(values.values()), graph.newton
+    t, p, newton = graph.data.span[0], list(values.values()), graph.newton
     motion, z = graph.motion(t, p), ca.DM(newton.guess if newton else [])
     for _ in range(_STEPS):
         correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
@@ -206,11 +239,8 @@ def _derive(scene: Scene, asked: Wanted, elastic: bool) -> SceneGraph:
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(
-        scene=scene,
-        data=ModelData.of(scene, moving.driven),
+        data=ModelData.of(scene, moving.laws),
         wanted=asked,
-        driven=moving.driven,
-        motion=moving.motion,
         instant=instant,
         newton=moving.solved.newton,
         columns=tuple(columns),

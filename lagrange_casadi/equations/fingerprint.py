@@ -19,7 +19,7 @@ from ..declare.scene import Scene, Wanted
 
 @symbolic
 def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
-    """The hash of the declaration, its expressions and laws of motion, what is wanted, and the code that derives.
+    """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code that derives.
 
     None where the declaration holds something whose content cannot be told.
     """

@@ -23,12 +23,13 @@ from .pressing import frictions_of
 class HeldEfforts(Graphs):
     """``instant(t, d, d_rate, d_acceleration, z, p, signs) -> out``, a row for each of ``columns``.
 
-    ``signs`` are those of ``frictions``.
+    ``signs`` are those of ``frictions``; those ``every_way`` may hold their joint in more than one direction.
     """
 
     instant: Any
     columns: tuple[Column, ...]
     frictions: tuple[str, ...]
+    every_way: tuple[str, ...]
 
 
 @symbolic
@@ -58,4 +59,5 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p", "signs"]
     instant = ca.Function("held", [*moving.inputs, column(signs.values())], [ca.densify(out)], names, ["out"], {"cse": True})
-    return HeldEfforts(instant, tuple(found), tuple(signs))
+    every_way = (name for name, load in frictions_of(mechanism).items() if load.every_way or load.beside is not None)
+    return HeldEfforts(instant, tuple(found), tuple(signs), tuple(every_way))

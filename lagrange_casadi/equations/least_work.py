@@ -73,7 +73,7 @@ def least_work(
     if not giving or any(_bears(mechanism, link, columns, free, begins) for link in rigid):
         return None
     try:
-        energy = sum(_energy(Loaded(mechanism, link, columns)) for link in giving)
+        energy = sum(_energy(Loaded(mechanism.space, link, columns)) for link in giving)
     except DeclarationError:
         if elastic is True:
             return None

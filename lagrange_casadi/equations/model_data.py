@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,25 +13,24 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
+from ..base.vocabulary import PRECISIONS, Precision
 from ..beams.material import Material
+from ..beams.told import beam_of
+from ..declare.corners import Corners
 from ..declare.density import Density
 from ..declare.description import Description, Template
 from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
+from ..declare.masses import ALL, masses_of
 from ..declare.mechanism import Mechanism
+from ..declare.parts import LineLoad, Link, Parameter
+from ..declare.possible import Margins
 from ..declare.scene import Scene
+from ..declare.stated import Stated
+from ..declare.times import Timing
+from ..errors import UnknownNameError
 from .described import template
 from .gaps import extent
-
-
-@dataclass(frozen=True)
-class ParameterData:
-    """A parameter: its default, its unit, and the range from ``low`` to ``high``."""
-
-    default: float
-    unit: str
-    low: float
-    high: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,53 +39,87 @@ class ModelData(Graphs):
 
     ``kinds`` are the kinds of its coordinates, those of guides too, of its frictions and outputs. ``closings`` are the words for
     what closes loops: "joint", "path", "bar"; any other is a constraint. ``laws`` are the motions of the driven coordinates.
-    ``span`` [s] and ``count`` are those of the scene's own instants. ``rounding`` is how far axes were corrected for loops to
-    close, or zero. ``extent(p)`` is its size [m], and ``template`` its description but for the numbers.
+    ``timing`` is how the scene's own instants are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes
+    were corrected for loops to close, or zero.
+
+    ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all together [kg]. ``margins`` are what a
+    precision demands of the parameters; motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a
+    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints as they were
+    declared, for certificates, and ``template`` is the description but for the numbers.
     """
 
     name: str
     space: bool
     rounding: float
-    parameters: Mapping[str, ParameterData]
+    parameters: Mapping[str, Parameter]
     kinds: Kinds
     closings: Mapping[str, str]
     laws: Laws
+    timing: Timing
     span: tuple[float, float]
-    count: int
     extent: Any
+    margins: Mapping[Precision, Margins]
+    corners: Corners
+    masses: Any
+    partial: tuple[str, ...]
+    jumps: Mapping[str, tuple[float, ...]]
+    stated: Stated
     template: Template
 
     @classmethod
-    def of(cls, scene: Scene, driven: Sequence[str]) -> ModelData:
-        """The data of a scene, its motions in the order in which they are ``driven``."""
+    def of(cls, scene: Scene, laws: Laws) -> ModelData:
+        """Return the data of a scene whose motions are ``laws``."""
         mechanism, symbols = scene.mechanism, scene.mechanism.symbols
-        known = {name: ParameterData(p.default, p.unit, p.low, p.high) for name, p in mechanism.parameters.items()}
         return cls(
             name=mechanism.name,
             space=mechanism.space,
             rounding=_rounding(scene),
-            parameters=known,
+            parameters=mechanism.parameters,
             kinds=kinds_of(scene.guided),
             closings=_closings(mechanism),
-            laws=Laws.of({name: scene.laws[name] for name in driven}, symbols),
+            laws=laws,
+            timing=scene.timing(),
             span=scene.span,
-            count=scene.timing().count,
             extent=ca.Function("extent", [symbols], [ca.densify(ca.SX(extent(mechanism)))], ["p"], ["extent"], {"cse": True}),
+            margins={precision: scene.demands(precision).margins() for precision in PRECISIONS},
+            corners=Corners.of(scene),
+            masses=ca.Function("masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}),
+            partial=tuple(name for name, load in mechanism.loads.items() if isinstance(load, LineLoad) and not load.whole),
+            jumps={name: _jumps(link.mass) for name, link in mechanism.links.items() if isinstance(link.mass, Density)},
+            stated=Stated.of(mechanism),
             template=template(scene),
         )
+
+    def asked_by(self, scene: Scene) -> ModelData:
+        """The same, with how a scene of the same name asks for instants and lets axes be rounded."""
+        return replace(self, timing=scene.timing(), rounding=_rounding(scene))
 
     @cached_property
     def defaults(self) -> Array:
         """The default values of all parameters."""
         return np.array([parameter.default for parameter in self.parameters.values()])
 
-    def values(self, p: Array) -> dict[str, float]:
-        """Values of the parameters by name."""
+    def values(self, p: Sequence[float] | Array) -> dict[str, float]:
+        """Name the values of all parameters."""
         return dict(zip(self.parameters, map(float, p), strict=True))
 
-    def description(self, values: Mapping[str, float]) -> Description:
-        """The mechanism as plain numbers, for values of all parameters."""
-        return self.template.filled(values)
+    def at(self, p: Sequence[float] | Array) -> Description:
+        """Describe the mechanism in plain numbers, for parameters ``p``."""
+        return self.template.filled(self.values(p))
+
+    @property
+    @symbolic
+    def symbols(self) -> Any:
+        """The parameters' symbols, in a column."""
+        return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
+
+    @symbolic
+    def mass(self, part: str, p: Any) -> Any:
+        """Express the mass of a body, or of ``all`` of them [kg]. Raises :class:`.UnknownNameError` for anything else."""
+        parts = [*self.template.content["bodies"], ALL]
+        if part not in parts:
+            raise UnknownNameError("part with a mass", part, parts)
+        return self.masses(p)[parts.index(part)]
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -97,48 +130,66 @@ class ModelData(Graphs):
     @symbolic
     def matter(self, link: str, p: Any) -> tuple[Any, Density]:
         """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters ``p``."""
-        body, numbers = self.template.content["bodies"][link], self.template.numbers(p)
-        cells = tuple(tuple(numbers[int(place)] for place in cell) for cell in body["density"]["cells"])
-        return numbers[int(body["length"])], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
+        body = self.template.placed(self.template.content["bodies"][link], p)
+        cells = tuple(map(tuple, body["density"]["cells"]))
+        return body["length"], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
+
+    @symbolic
+    def link(self, name: str, p: Any) -> Link:
+        """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
+        body = self.template.placed(self.template.content["bodies"][name], p)
+        return Link(name, *self.matter(name, p), beam_of(body["beam"]))
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""
         return f"{self.closings.get(part, 'constraint')} '{part}'"
 
     def words(self) -> dict[str, Any]:
-        """The data but for ``count`` and ``rounding`` for JSON; functions as the text in which CasADi writes them."""
-        return {
-            "name": self.name,
-            "space": self.space,
-            "parameters": {name: asdict(parameter) for name, parameter in self.parameters.items()},
-            "kinds": asdict(self.kinds),
-            "closings": self.closings,
-            "laws": self.laws.words(),
-            "span": self.span,
-            "extent": self.extent.serialize(),
-            "template": self.template.dumps(),
-        }
+        """The data for JSON; functions as the text in which CasADi writes them."""
+        return {name: write(getattr(self, name)) for name, (write, _) in _WRITTEN.items()}
 
     @classmethod
-    def loads(cls, words: Mapping[str, Any], scene: Scene) -> ModelData:
-        """The data that :meth:`words` made of a scene that differs from this one in ``count`` and ``rounding`` at most."""
-        return cls(
-            name=words["name"],
-            space=words["space"],
-            rounding=_rounding(scene),
-            parameters={name: ParameterData(**parameter) for name, parameter in words["parameters"].items()},
-            kinds=Kinds(**words["kinds"]),
-            closings=words["closings"],
-            laws=Laws.loads(words["laws"]),
-            span=tuple(words["span"]),
-            count=scene.timing().count,
-            extent=ca.Function.deserialize(words["extent"]),
-            template=Template.loads(words["template"]),
-        )
+    def loads(cls, words: Mapping[str, Any]) -> ModelData:
+        """Read the data that :meth:`words` made."""
+        return cls(**{name: read(words[name]) for name, (_, read) in _WRITTEN.items()})
+
+
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
+def _parameters(words: Mapping[str, Any]) -> dict[str, Parameter]:
+    known = words.items()
+    return {name: Parameter(name, default, unit, low, high, ca.SX.sym(name)) for name, (default, unit, low, high) in known}
+
+
+_FUNCTION = ca.Function.serialize, ca.Function.deserialize
+_WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    **dict.fromkeys(("name", "space", "rounding", "closings"), (_as_it_is, _as_it_is)),
+    **dict.fromkeys(("span", "partial"), (_as_it_is, tuple)),
+    **dict.fromkeys(("extent", "masses"), _FUNCTION),
+    "parameters": (lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()}, _parameters),
+    "kinds": (asdict, lambda words: Kinds(**words)),
+    "laws": (Laws.words, Laws.loads),
+    "timing": (asdict, lambda words: Timing(**words)),
+    "margins": (
+        lambda own: {precision: margins.words() for precision, margins in own.items()},
+        lambda words: {precision: Margins.loads(margins) for precision, margins in words.items()},
+    ),
+    "corners": (Corners.words, Corners.loads),
+    "jumps": (_as_it_is, lambda words: {name: tuple(jumps) for name, jumps in words.items()}),
+    "stated": (Stated.words, Stated.loads),
+    "template": (Template.dumps, Template.loads),
+}
+"""How each field is written for JSON, and read."""
 
 
 def _rounding(scene: Scene) -> float:
     return scene.rounding if scene.mechanism.rounded else 0.0
+
+
+def _jumps(density: Density) -> tuple[float, ...]:
+    return tuple(sorted({*density.jumps, *(density.slices.breaks[1:-1] if density.slices else ())}))
 
 
 def _closings(mechanism: Mechanism) -> dict[str, str]:

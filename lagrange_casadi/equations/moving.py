@@ -13,8 +13,8 @@ from ..base.quantities import Kinds, Output, force_members
 from ..base.tables import ANGLE
 from ..declare.ends import beyond_ends
 from ..declare.kinds import kinds_of
+from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
-from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from ..geometry.vectors import ZERO, dot
@@ -41,7 +41,7 @@ class Moving:
     want: Wanted
     body: Multibody
     driven: tuple[str, ...]
-    motion: Any
+    laws: Laws
     start: Start
     solved: kinematics.Kinematics
     swings: Mapping[str, Any]
@@ -53,13 +53,14 @@ class Moving:
         borne = needed_reactions(mechanism, want.reactions, want.sections)
         body = assemble(scene.guided, tree, scene.laws, borne, pushed(scene.needs_drives, scene.weights), want.own)
         driven = tuple(c.name for c in body.coordinates if c.driven)
-        motion = motion_function({name: scene.laws[name] for name in driven}, mechanism.symbols)
+        laws = Laws.of({name: scene.laws[name] for name in driven}, mechanism.symbols)
+        motion = laws.motion
         values = list(mechanism.values(scene.assembly).values())
         first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
         start = Start(scene.span[0], first, values)
         solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
         solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
-        return cls(scene, want, body, driven, motion, start, solved, swings)
+        return cls(scene, want, body, driven, laws, start, solved, swings)
 
     @property
     def inputs(self) -> list[Any]:
@@ -70,7 +71,7 @@ class Moving:
     def begins(self, expression: Any) -> Any:
         """An expression in the inputs where the motion starts."""
         start, newton = self.start, self.solved.newton
-        at_start = (start.t, *self.motion(start.t, start.parameters), newton.guess if newton else [], start.parameters)
+        at_start = (start.t, *self.laws.motion(start.t, start.parameters), newton.guess if newton else [], start.parameters)
         return ca.Function("start", self.inputs, [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:

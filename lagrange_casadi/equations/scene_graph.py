@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,8 @@ from ..base.arrays import Array
 from ..base.quantities import Output, law_members, station_members
 from ..base.symbolic import Graphs, symbolic
 from ..declare.laws import Laws
-from ..declare.scene import Scene, Wanted
+from ..declare.scene import Wanted
+from ..errors import PickleError
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
 from .mobility import stations_of
@@ -25,25 +26,24 @@ from .open_forces import OpenForces
 
 @dataclass(frozen=True, eq=False)
 class SceneGraph(Graphs):
-    """What a scene computes, as CasADi functions that hold nothing else.
+    """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be sent, and kept as text.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
     each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
     loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
     of a joint the whole turns of angles that count them, which are in these columns without them. ``open_forces`` are there where
-    they were asked for, and equilibrium leaves something open.
+    they were asked for, and equilibrium leaves something open. ``identity`` is the hash of all that it follows from (see
+    :func:`.fingerprint`), or None where the declaration holds something whose content cannot be told.
     """
 
-    scene: Scene
     data: ModelData
     wanted: Wanted
-    driven: tuple[str, ...]
-    motion: Any
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[Column, ...]
     loop_angles: Mapping[Output, Mapping[Column, int]]
     open_forces: OpenForces | None = None
+    identity: str | None = None
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -69,8 +69,18 @@ class SceneGraph(Graphs):
 
     @property
     def laws(self) -> Laws:
-        """The motion once more, what samples give apart from what can be followed in any arithmetic."""
+        """The motions of the drives; what samples give stands apart from what can be followed in any arithmetic."""
         return self.data.laws
+
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """The coordinates whose motion is given."""
+        return self.laws.joints
+
+    @property
+    def motion(self) -> Any:
+        """The function ``motion(t, p) -> (d, d_rate, d_acceleration)``."""
+        return self.laws.motion
 
     @symbolic
     def extent(self, p: Array) -> float:
@@ -109,7 +119,7 @@ class SceneGraph(Graphs):
         return {name: f.n_instructions() if f.is_a("SXFunction") else f.n_nodes() for name, f in functions.items()}
 
     def dumps(self) -> str:
-        """The graph as text, without the scene that it is of."""
+        """Write it as text."""
         newton = None
         if self.newton is not None:
             loop = self.newton
@@ -121,16 +131,23 @@ class SceneGraph(Graphs):
                 "joints": loop.joints,
             }
         loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
-        kept = {"data": self.data.words(), "driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
+        kept = {
+            "data": self.data.words(),
+            "wanted": asdict(self.wanted),
+            "identity": self.identity,
+            "columns": self.names,
+            "loop_angles": loop_angles,
+        }
         if self.open_forces is not None:
             kept["open_forces"] = self.open_forces.dumps()
-        return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
+        return json.dumps(kept | {"instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
-    def loads(cls, text: str, scene: Scene, wanted: Wanted) -> SceneGraph:
-        """The graph that :meth:`dumps` made a text of."""
+    @symbolic
+    def loads(cls, text: str) -> SceneGraph:
+        """Read the text that :meth:`dumps` wrote."""
         kept = json.loads(text)
-        motion, instant = (ca.Function.deserialize(kept[name]) for name in ("motion", "instant"))
+        instant = ca.Function.deserialize(kept["instant"])
         newton = None
         if kept["newton"] is not None:
             loop = kept["newton"]
@@ -139,5 +156,16 @@ class SceneGraph(Graphs):
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
         free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
-        data = ModelData.loads(kept["data"], scene)
-        return cls(scene, data, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)
+        data = ModelData.loads(kept["data"])
+        told: dict[str, Any] = {name: tuple(own) if isinstance(own, list) else own for name, own in kept["wanted"].items()}
+        wanted = Wanted(**told)
+        return cls(data, wanted, instant, newton, columns, loop_angles, free, kept["identity"])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
+        if self.identity is None:
+            raise PickleError(
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives in this process alone; "
+                "expected expressions of CasADi's own functions"
+            )
+        return SceneGraph.loads, (self.dumps(),)

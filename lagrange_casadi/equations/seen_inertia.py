@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..base.quantities import Output
-from ..declare.motion import motion_function
+from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from . import kinematics
@@ -39,9 +39,9 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
     driven = tuple(c.name for c in body.coordinates if c.driven)
-    motion = motion_function({name: scene.laws[name] for name in driven}, mechanism.symbols)
+    laws = Laws.of({name: scene.laws[name] for name in driven}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
-    first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
+    first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)
     solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
     energy = ca.substitute(ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs))
@@ -56,6 +56,6 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, mechanism.symbols]
     instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
     columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
-    data, want = ModelData.of(scene, driven), Wanted.of(mechanism, ["motion"])
-    graph = SceneGraph(scene, data, want, driven, motion, instant, solved.newton, tuple(columns), {})
+    data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
+    graph = SceneGraph(data, want, instant, solved.newton, tuple(columns), {})
     return SeenInertia(graph, driven, drives)

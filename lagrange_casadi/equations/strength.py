@@ -68,13 +68,13 @@ class Part:
 class Loaded:
     """A link with a beam, its section forces and stresses as expressions."""
 
-    def __init__(self, mechanism: Mechanism, link: Link, columns: Mapping[Column, Any]) -> None:
+    def __init__(self, space: bool, link: Link, columns: Mapping[Column, Any]) -> None:
         assert link.beam is not None
         assert isinstance(link.mass, Density)
-        self.link, self.columns, self.space = link, columns, mechanism.space
+        self.link, self.columns, self.space = link, columns, space
         self.beam: Beam = link.beam
         self.course = link.beam.course
-        self.table = table_of(mechanism.space)
+        self.table = table_of(space)
         outputs = [column for column in columns if isinstance(column, Output)]
         stations = stations_of(outputs, link.name)
         self.marks = [columns[Output("station", link.name, "station", name)] for name in stations]
@@ -167,7 +167,7 @@ class Loaded:
 
 def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> dict[Column, Any]:
     """Von Mises' stress that is largest along a link [Pa]; nothing where there is no formula."""
-    link = Loaded(mechanism, mechanism.links[name], columns)
+    link = Loaded(mechanism.space, mechanism.links[name], columns)
     if not link.told:
         return {}
     return {Output("stress", name, "von_mises"): ca.sqrt(_largest(link, link.square))}
@@ -181,7 +181,7 @@ def utilisation(
     ``effective`` are the effective lengths as a column over its own. For buckling see :mod:`.buckling`.
     """
     found: dict[Column, Any] = {}
-    link = Loaded(mechanism, mechanism.links[name], columns)
+    link = Loaded(mechanism.space, mechanism.links[name], columns)
     material = link.beam.material
     if material.yield_strength is None:
         return found

@@ -101,7 +101,7 @@ class Description:
         logged = _add(root, "LogCategories")
         for name, meaning in LOGGED.items():
             _add(logged, "Category", name=name, description=meaning)
-        (start, stop), count = self.source.program.graph.data.span, self.source.program.graph.data.count
+        (start, stop), count = self.source.program.graph.data.span, self.source.program.graph.data.timing.count
         span = {"startTime": _number(start)}
         if stop > start:
             span |= {"stopTime": _number(stop), "stepSize": _number((stop - start) / max(1, count - 1))}

@@ -104,7 +104,7 @@ def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> 
     """
     if graph.newton is None:
         return ()
-    (start, stop), count = graph.data.span, graph.data.count
+    (start, stop), count = graph.data.span, graph.data.timing.count
     if t == start and not counted:
         return graph.newton.guess
     wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf

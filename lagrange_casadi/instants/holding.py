@@ -28,9 +28,8 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.scene import Scene
 from ..equations.checks import Check
-from ..equations.derive import assembled, derive
+from ..equations.derive import as_derived, assembled, derive
 from ..equations.held_efforts import HeldEfforts, held_efforts
-from ..equations.pressing import frictions_of
 from ..equations.scene_graph import SceneGraph
 from ..errors import check_kind
 from .backends import run
@@ -59,9 +58,9 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     if not at.size:
         return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
     values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    graph = derive(assembled(scene, values, ["effort"]), ["effort"])
-    held = held_efforts(graph.scene)
-    tried, why = _tried(held, graph, _inputs(graph, solution.t, np.array([*values.values()]), at))
+    scene = assembled(scene, values, ["effort"])
+    graph, held = derive(scene, ["effort"]), held_efforts(as_derived(scene, ["effort"]))
+    tried, why = _tried(held, _inputs(graph, solution.t, np.array([*values.values()]), at))
     ranges = {}
     for name, effort in efforts.items():
         output, reasons = Output("effort", name), list(why)
@@ -91,7 +90,7 @@ def _inputs(graph: SceneGraph, t: Array, p: Array, at: npt.NDArray[np.intp]) -> 
     return [ca.DM(t[at]).T, *moved, ca.DM(z), ca.DM(p)]
 
 
-def _tried(held: HeldEfforts, graph: SceneGraph, inputs: list[Any]) -> tuple[Array, _Reasons]:
+def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
     """The columns for all choices of signs of the frictions that rest, (choices, columns, t); and where these are not enough."""
 
     def columns(signs: Array) -> Array:
@@ -102,9 +101,8 @@ def _tried(held: HeldEfforts, graph: SceneGraph, inputs: list[Any]) -> tuple[Arr
     checks = {(c.kind, str(c.part)): k for k, c in enumerate(held.columns) if isinstance(c, Check)}
     rests = {name: first[k] > 0.5 for (kind, name), k in checks.items() if kind == "rest"}
     why: _Reasons = []
-    loads = frictions_of(graph.scene.mechanism)
     for name, rest in rests.items():
-        if name in loads and (loads[name].every_way or loads[name].beside is not None):
+        if name in held.every_way:
             why.append((rest, f"friction '{name}' may hold its joint in more than one direction"))
     resting = [held.frictions.index(name) for name, rest in rests.items() if rest.any()]
     if len(resting) > _MOST:

@@ -182,7 +182,7 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     """What to say where a link's length cannot be squared in a precision."""
     numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
-    for name, body in graph.data.description(graph.data.values(p))["bodies"].items():
+    for name, body in graph.data.at(p)["bodies"].items():
         length = body["length"]
         if length is not None and not low <= length <= high:
             what = f"link '{name}' is {length:.3g} m long, and {precision} precision can only square {low:.1g} to {high:.1g} m"

@@ -78,8 +78,7 @@ class Rung:
         """Raise :class:`DeclarationError` where a graph has nothing that the rung chooses."""
         if self.newton is not None and graph.newton is None:
             raise DeclarationError(
-                f"newton: no loop of '{graph.scene.mechanism.name}' is iterated; leave newton out: "
-                "closed forms are exact and faster"
+                f"newton: no loop of '{graph.data.name}' is iterated; leave newton out: closed forms are exact and faster"
             )
 
     @property

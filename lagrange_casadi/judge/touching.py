@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.description import motions_of
-from ..declare.mechanism import Mechanism
-from ..declare.meshes import Mesh, Transmission, Wrench
-from ..geometry.vectors import Vector
 from ..instants.solution import Solution
 
 _REST = 1e-12
@@ -34,6 +32,15 @@ class Touch:
     braking: tuple[Array, Array]
     loss: tuple[float, float] = (0.0, 0.0)
     turns: tuple[tuple[int, str], ...] = ()
+
+    @classmethod
+    def of(cls, mesh: Mapping[str, Any]) -> Touch:
+        """Return a mesh as :class:`.Stated` describes it."""
+        centre, reach = (np.array(mesh[name]) for name in ("centre", "reach"))
+        along, apart, braking = ((np.array(mesh[name][0]), np.array(mesh[name][1])) for name in ("along", "apart", "braking"))
+        turns = tuple((sign, name) for sign, name in mesh["turns"])
+        first, second, carrier = mesh["bodies"]
+        return cls(first, second, carrier, centre, reach, along, apart, mesh["slack"], braking, tuple(mesh["loss"]), turns)
 
     def sense(self, solution: Solution) -> Array:
         """The sign with which the first turns on the carrier; where it turns back, that of the instants right after."""
@@ -69,31 +76,6 @@ class Placed:
     def out(self, vectors: Array) -> Array:
         """Vectors on its axes, in ground axes."""
         return np.asarray(np.einsum("tij,tj->ti", self.axes, np.broadcast_to(vectors, self.at.shape)))
-
-
-def touches_of(mechanism: Mechanism, values: Mapping[str, float], transmission: Transmission | None) -> tuple[Touch, ...]:
-    """The meshes of a transmission, for values of the parameters."""
-
-    def numbers(vector: Vector) -> Array:
-        return np.array([mechanism.number(x, values) for x in vector])
-
-    def both(wrench: Wrench | None) -> tuple[Array, Array]:
-        told = wrench or Wrench()
-        return numbers(told.force), numbers(told.couple)
-
-    def touch(mesh: Mesh, slack: float) -> Touch:
-        names = (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name)
-        wrenches = both(mesh.along), both(mesh.apart)
-        told = Touch(*names, numbers(mesh.centre), numbers(mesh.reach), *wrenches, slack, both(mesh.braking))
-        if loss is None:
-            return told
-        turns = tuple((sign, joint.name) for sign, joint in loss.turns)
-        return replace(told, loss=(mechanism.number(loss.arm, values), mechanism.number(loss.lean, values)), turns=turns)
-
-    if transmission is None:
-        return ()
-    slack, loss = mechanism.number(transmission.slack, values), transmission.loss
-    return tuple(touch(mesh, slack) for mesh in transmission.meshes)
 
 
 def actions(touch: Touch, carrier: Placed, multiplier: Array, sense: Array) -> Iterator[tuple[str, Array, Array, Array]]:

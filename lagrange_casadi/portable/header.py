@@ -73,7 +73,7 @@ def _begin(source: Source) -> str:
 def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
-    (start, stop), count = source.program.graph.data.span, source.program.graph.data.count
+    (start, stop), count = source.program.graph.data.span, source.program.graph.data.timing.count
     near = f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion" if count > 1 else ""
     return (
         f" Iterated loops are followed from the instant before, which must be near{near};\n"
@@ -82,7 +82,7 @@ def _follows(source: Source) -> str:
 
 
 def _gravity(source: Source) -> str:
-    return ", ".join(f"{component:g}" for component in source.program.graph.data.description(source.values)["gravity"])
+    return ", ".join(f"{component:g}" for component in source.program.graph.data.at([*source.values.values()])["gravity"])
 
 
 def _parameters(c: Contract) -> str:

@@ -15,7 +15,6 @@ from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.printer import print_functions
 from ..codegen.stages import controlled
-from ..declare.motion import ends_function
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
 from ..instants.cycle_table import CycleTable
@@ -62,8 +61,7 @@ def program(
     kept = [k for k in range(len(evaluated.columns)) if k not in hidden]
     columns = tuple(evaluated.columns[k] for k in kept) if read is None else graph.columns
     constants, instant = hoisted(stages.instant, kept)
-    mechanism = graph.scene.mechanism
-    symbols = mechanism.symbols
+    symbols = graph.data.symbols
     gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
     sound, positive = _sound(graph, symbols, precision)
     functions = {
@@ -77,7 +75,7 @@ def program(
         # They were checked when they were fixed.
         del functions["sound"]
         functions = {name: _fixed(function, p) for name, function in functions.items()}
-    ends = ends_function({joint: graph.scene.laws[joint] for joint in graph.driven}, symbols)
+    ends = graph.laws.beyond
     if ends is not None:
         functions["beyond"] = _fixed(ends, p) if fixed else ends
     functions["instant"] = instant
@@ -125,7 +123,7 @@ def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, 
 
     Those come first.
     """
-    both = graph.scene.demands(precision).in_order(symbols)
+    both = graph.data.margins[precision].in_order(symbols)
     positive, others = ([value for value in values if _changes(value)] for values in both)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
     return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..declare.scene import Scene, Wanted, without_fitted, without_life
+from ..declare.times import instants_of
 from ..declare.wanted_slopes import by_parameters, others
-from ..equations.derive import assembled, derive
+from ..equations.derive import as_derived, assembled, derive
 from ..equations.fingerprint import declaration
-from ..equations.scene_graph import SceneGraph
 from ..errors import CertificateError, DeclarationError
 from ..instants.determinacy import determinate
 from ..instants.from_table import drive_of, table_of
@@ -51,11 +51,13 @@ def sourced(
     p = np.array(list(values.values()))
     scene = assembled(scene, values, wanted)
     graph = derive(scene, wanted)
+    declared = declaration(as_derived(scene, scene.wanted if wanted is None else wanted), graph.wanted) or graph.dumps()
     rung.check(graph)
     if not graph.driven:
         raise DeclarationError(f"export: '{scene.mechanism.name}' has no drive, and C without inputs computes nothing; evaluate it")
-    checked_span(scene, scene.timing(), values)
-    instants = scene.instants(scene.timing(), values).t
+    scene.checked(values)
+    checked_span(graph.laws, graph.data.timing, values)
+    instants = instants_of(graph.laws, graph.data.timing, values).t
     whole, (graph, left_open) = graph, determinate(graph, instants, p, telling=table is None)
     # What elasticity tells is in the graph whole, or not at all.
     gives = scene.elastic and not left_open
@@ -77,10 +79,9 @@ def sourced(
     slopes = exported_slopes(graph, agreed, by, p, exact.t, vectors.times) if by else None
     if slopes is not None:
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
-    return Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors, slopes)
+    return Source(agreed, emitted, _hash(declared, values), guess, rung.options, values, vectors, slopes)
 
 
-def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
+def _hash(declared: str, values: Mapping[str, float]) -> str:
     """The hash of what is declared, wanted and set."""
-    declared = declaration(graph.scene, graph.wanted) or graph.dumps()
     return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]

@@ -19,10 +19,7 @@ import numpy.typing as npt
 from ..base.quantities import Output
 from ..codegen.printer import print_functions
 from ..declare.corners import Corners
-from ..declare.density import Density
-from ..declare.description import Description, numbered
-from ..declare.mechanism import Mechanism
-from ..declare.parts import Link, PointMass, RigidMass
+from ..declare.description import Description
 from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import DeclarationError
@@ -86,19 +83,20 @@ class Live:
 def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
     scene, timing = live.scene, live.timing
     values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    source = sourced(scene, scene.mechanism.name, values, live.wanted, Rung("auto", "double"), LARGEST["double"])
-    described, asked = numbered(scene.mechanism)
-    masses = _masses(scene.mechanism)
-    start, stop = timing.ends(scene.mechanism.symbols)
-    numbers = ca.densify(ca.vertcat(start, stop, *asked, *masses.values()))
-    function = ca.Function("numbers_of", [scene.mechanism.symbols], [numbers], {"cse": True})
+    source = sourced(scene, solution.case, values, live.wanted, Rung("auto", "double"), LARGEST["double"])
+    data = source.program.graph.data
+    described, asked = data.template.content, data.template.numbers(data.symbols)
+    start, stop = timing.ends(data.symbols)
+    bodies = described["bodies"]
+    numbers = ca.densify(ca.vertcat(start, stop, asked, *(data.mass(body, data.symbols) for body in bodies)))
+    function = ca.Function("numbers_of", [data.symbols], [numbers], {"cse": True})
     text = _NUMBERS.format(functions=print_functions({"numbers_of": function}, "double", prefix="live"))
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     return {
         "module": base64.b64encode(module(source, {"live.c": text}, ["live_numbers"])).decode("ascii"),
         "layout": layout(source) | {"more": numbers.numel()},
-        "defaults": [parameter.default for parameter in scene.mechanism.parameters.values()],
+        "defaults": data.defaults.tolist(),
         "loops": [places(source)["loops"], source.program.sizes["loops"]] if source.iterated else None,
         "wrapped": [k for k, member in enumerate(contract.outputs) if member.wrapped],
         "of": [
@@ -107,28 +105,14 @@ def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays:
             if names and known.keys() >= set(names)
         ],
         "poses": {body: _pose(body, solution, known) for body in solution.description["bodies"]},
-        "links": {link.name: _link(scene.mechanism, link.name, k, solution, known) for k, link in enumerate(contract.links)},
+        "links": {link.name: _link(link.name, k, solution, known) for k, link in enumerate(contract.links)},
         "forces": solution.table.forces,
         "timing": {"count": timing.count, "joint": timing.joint, "coordinate": known.get(f"motion:{timing.joint}", -1)},
         "shown": None if chosen.size == timing.count else chosen.tolist(),
         "numbers": numbers.numel(),
-        "picture": _picture(described, 2, {body: 2 + len(asked) + k for k, body in enumerate(masses)}),
+        "picture": _picture(described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}),
         "command": live.command,
     }
-
-
-def _masses(mechanism: Mechanism) -> dict[str, Any]:
-    """The masses of the bodies, as expressions."""
-    return {body.name: _mass(body) for body in mechanism.moving}
-
-
-def _mass(body: Link | PointMass) -> Any:
-    if not isinstance(body, Link):
-        return body.mass
-    if isinstance(body.mass, RigidMass):
-        return body.mass.mass
-    base, tip, _ = body.mass.ends(body.length)
-    return base + tip
 
 
 def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
@@ -139,10 +123,10 @@ def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
     return [known.get(str(Output("pose", body, member)), -1) for member in members]
 
 
-def _link(mechanism: Mechanism, link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
+def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
     """Where a link's functions along it are polynomials: the breaks of its density, loads along it, and the highest degree."""
-    density, law = mechanism.links[link].mass, solution.section(link).law
-    assert isinstance(density, Density)
+    law = solution.section(link).law
+    density = law.density
     spreads = [[known[str(Output("spread", link, member, load.name))] for member in ("width", "end")] for load in law.spreads]
     degree = max([*map(len, density.cells), *(load.powers for load in law.spreads)]) + 2
     return {"number": number, "breaks": density.breaks, "degree": degree, "spreads": spreads}

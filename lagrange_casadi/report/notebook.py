@@ -49,7 +49,7 @@ def scene_summary(scene: Scene) -> str:
     """A drawing of a scene at its first instant, where it can be assembled, and its parts: as HTML."""
     mechanism, drawing = scene.mechanism, ""
     with suppress(LagrangeCasadiError):
-        start, _ = span_of(scene.guided, scene.laws, scene.timing(), mechanism.values(scene.assembly))
+        start, _ = span_of(scene.prescribed, scene.timing(), mechanism.values(scene.assembly))
         first = evaluate(scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False)
         drawing = still(first)
     asked = scene.timing()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from ..base.quantities import Output, compared
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
 from ..codegen.stages import Stages, compensated, plain, turns_many
-from ..declare.even_points import are_even
+from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, span_of
 from ..equations.derive import assembled, derive
@@ -102,7 +102,7 @@ def shortfall(
     and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
-    start, stop = span_of(scene.guided, scene.laws, timing, scene.mechanism.values(parameters))
+    start, stop = span_of(scene.prescribed, timing, scene.mechanism.values(parameters))
     if not counts:
         raise DeclarationError("shortfall: expected at least one number of instants")
     solutions = [
@@ -168,7 +168,10 @@ def rates(graph: SceneGraph) -> ca.Function:
 
 @dataclass(frozen=True, eq=False)
 class ContinuousSolution:
-    """A solution, and what its quantities and their time derivatives are at any time of its span."""
+    """A solution, and what its quantities and their time derivatives are at any time of its span.
+
+    ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
+    """
 
     graph: SceneGraph
     stages: Stages
@@ -176,20 +179,25 @@ class ContinuousSolution:
     p: Array
     z: Array
     rows: Mapping[Output, int]
+    again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution) -> ContinuousSolution:
         """That of a solution. Raises :class:`.DeclarationError` where it is not one of this scene."""
-        mechanism = scene.mechanism
-        told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
+        told = scene.mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)
-        found = cls(graph, stages, solution, p, z, graph.outputs)
+
+        def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
+            asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
+            return cls.of(scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked))
+
+        found = cls(graph, stages, solution, p, z, graph.outputs, again)
         if not found.agrees():
-            raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
+            raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{graph.data.name}'")
         return found
 
     def agrees(self) -> bool:
@@ -213,18 +221,9 @@ class ContinuousSolution:
 
     def in_equal_steps(self, *wanted: str) -> ContinuousSolution:
         """The same, or what is ``wanted``, from as many instants in equal steps of time, between which peaks are sought."""
-        scene, solution, t = self.graph.scene, self.solution, self.solution.t
-        told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
-        even = (float(t[0]), float(t[-1]), t.size)
-        words: dict[str, Any] = {
-            "parameters": told,
-            "t": even,
-            "wanted": list(wanted) or list(dict.fromkeys(map(wanted_for, solution.outputs))),
-            "backend": "vm",
-            "certificate": False,
-            "elastic": False,
-        }
-        return ContinuousSolution.of(scene, evaluate(scene, **words))
+        t = self.solution.t
+        names = list(wanted) or list(dict.fromkeys(map(wanted_for, self.solution.outputs)))
+        return self.again((float(t[0]), float(t[-1]), t.size), names)
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""

@@ -65,7 +65,7 @@ class Sensitivities:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters."""
-        return tuple(self.scene.mechanism.parameters)
+        return tuple(self.slopes.graph.data.parameters)
 
     def array(self, name: str, parameter: str) -> Array:
         """The derivative of a quantity by a parameter over the instants, (t,), of a section force (t, xi).
@@ -206,7 +206,7 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
         raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
     mechanism, solution = scene.mechanism, solution.by_equilibrium
     if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
-        raise _other(scene, solution)
+        raise _other(mechanism.name, solution)
     told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
     wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
     values = mechanism.values(told)
@@ -215,7 +215,7 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
     if not made <= graph.outputs.keys():
-        raise _other(scene, solution)
+        raise _other(mechanism.name, solution)
     columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
     slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), rung := Rung(backend))
     found = Sensitivities(scene, solution, slopes, np.array(list(values.values())), rung)
@@ -244,8 +244,8 @@ def _refuse_other(found: Sensitivities, quantities: Sequence[Output]) -> None:
         limit = _SAME * sizes[solution.unit(output)] + NOTHING * max(sizes.values())
         agrees &= np.abs(there - solution.array(output)[some]) <= limit
     if plain and not agrees.any():
-        raise _other(found.scene, solution)
+        raise _other(found.slopes.graph.data.name, solution)
 
 
-def _other(scene: Scene, solution: Solution) -> DeclarationError:
-    return DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{scene.mechanism.name}'")
+def _other(name: str, solution: Solution) -> DeclarationError:
+    return DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{name}'")

@@ -17,9 +17,9 @@ from ..declare.corners import Corners
 from ..declare.ends import BEYOND
 from ..declare.even_points import EvenPoints, points
 from ..declare.giving import Elastic, felt, giving
-from ..declare.motion import ends_function
+from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted, checked_ratios
-from ..declare.times import Over, Times, Timing, span_of
+from ..declare.times import Over, Times, Timing, instants_of, span_of
 from ..declare.wanted_slopes import by_parameters
 from ..elastic.completing import told_errors, wanted_alone
 from ..elastic.least_energy import Completed, complete
@@ -68,7 +68,8 @@ def solve(
     """Evaluate a scene by one method: see :func:`.evaluate`."""
     values = scene.mechanism.values(parameters)
     timing = scene.timing(t, over)
-    span = checked_span(scene, timing, values)
+    scene.checked(values)
+    span = checked_span(scene.prescribed, timing, values)
     checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
@@ -77,11 +78,12 @@ def solve(
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
     asked = [*names, *felt(scene.mechanism)] if gives else wanted
-    graph = derive(assembled(scene, values, asked, elastic=bool(gives)), asked, elastic=bool(gives))
+    scene = assembled(scene, values, asked, elastic=bool(gives))
+    graph = derive(scene, asked, elastic=bool(gives))
     rung.check(graph)
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
-    instants, places = scene.instants(timing, values), points(ratios)
+    instants, places = instants_of(graph.laws, timing, values), points(ratios)
     times = instants.t
     p = np.array(list(values.values()))
     left_open: tuple[Output, ...] = ()
@@ -90,19 +92,23 @@ def solve(
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
-    Corners.of(scene).refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
+    graph.data.corners.refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
     left_open += undetermined(graph, out, p, rung)
-    description = graph.data.description(values)
+    description = graph.data.at(p)
     done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
     if done is not None:
         out, left_open = done.out, done.left_open
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
-    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
+    solution = Solution(graph.data.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
-    slopes = Derivatives(_slopes(graph, solution, p, by, rung, None if done is None else asked) if by else {})
-    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
+    slopes = {}
+    if by and done is None:
+        slopes = series_slopes(graph, solution, p, by, rung)
+    elif by:
+        slopes = _completed_slopes(derive(scene, asked), solution, p, by, rung)
+    solution = replace(solution, tolerance=tolerance(solution), sensitivities=Derivatives(slopes))
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
     if solution.resting.any():
@@ -135,17 +141,14 @@ def _certified(
     return replace(solution, certificate=residuals | _condition(graph, found), errors=named)
 
 
-def _slopes(
-    graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung, asked: Sequence[str] | None
+def _completed_slopes(
+    graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung
 ) -> dict[str, dict[Output, Array]]:
-    """Derivatives by parameters; of a solution that elasticity completed by the graph of what was ``asked`` that tells it too."""
-    if asked is None:
-        return series_slopes(graph, solution, p, by, rung)
-    telling = derive(graph.scene, asked)
-    _, left_open = determinate(telling, solution.t, p)
+    """Differentiate by parameters a solution that elasticity completed, by a graph that has what it tells."""
+    _, left_open = determinate(graph, solution.t, p)
     nothing = {output: np.full(solution.t.size, np.nan) for output in left_open}
     known = replace(solution, outputs={**solution.outputs, **nothing}, left_open=(*solution.left_open, *left_open))
-    return series_slopes(telling, known, p, by, rung)
+    return series_slopes(graph, known, p, by, rung)
 
 
 @functools.lru_cache(maxsize=32)
@@ -165,12 +168,10 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
         warn(f"{many} instants{each} take about {in_words(takes)}")
 
 
-def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
     """The first and the last of instants [s]. Raises :class:`DeclarationError` where there are none, or samples of a motion end."""
-    scene.checked(values)
-    start, stop = span_of(scene.mechanism, scene.laws, timing, values)
-    for joint, law in scene.laws.items():
-        low, high = law.span
+    start, stop = span_of(laws, timing, values)
+    for joint, (low, high) in zip(laws.joints, laws.spans, strict=True):
         if start < low or stop > high:
             raise DeclarationError(
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
@@ -186,15 +187,15 @@ def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) 
     Also where it puts into a curve what is beyond the curve's ends.
     """
     Corners.of(scene).refuse_laws(span, p)
-    ends = ends_function(scene.laws, scene.mechanism.symbols)
-    if ends is None:
+    laws = scene.prescribed
+    if laws.beyond is None:
         return
     t = np.linspace(*span, _LOOKED_AT)
-    beyond = np.argwhere(~(ends(t[None], list(p)).full() <= BEYOND["double"]).T)
+    beyond = np.argwhere(~(laws.beyond(t[None], list(p)).full() <= BEYOND["double"]).T)
     if beyond.size:
         at, joint = beyond[0]
         raise DeclarationError(
-            f"the motion of joint '{list(scene.laws)[joint]}': what is put into its curve is beyond the curve's ends at "
+            f"the motion of joint '{laws.joints[joint]}': what is put into its curve is beyond the curve's ends at "
             f"t = {t[at]:.6g} s"
         )
 
@@ -221,8 +222,7 @@ def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, wi
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
     """
-    mechanism = graph.scene.mechanism
-    equations = written(mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
+    equations = written(graph.data.stated, p)
     return certify(solution, equations, _hidden(graph, out, solution.left_open), within)
 
 

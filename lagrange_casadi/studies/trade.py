@@ -20,7 +20,7 @@ from ..base.tables import ANGLE, LENGTH
 from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.scene import Scene
-from ..declare.times import Over, Times
+from ..declare.times import Over, Times, instants_of
 from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
@@ -138,7 +138,7 @@ def trade(
     """
     told = scene.mechanism.values(parameters)
     values = np.array(list(told.values()))
-    times = scene.instants(scene.timing(t, over), told).t
+    times = instants_of(scene.prescribed, scene.timing(t, over), told).t
     scene = assembled(scene, told, wanted)
     graph = derive(scene, wanted)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))

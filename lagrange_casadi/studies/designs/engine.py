@@ -80,7 +80,6 @@ class DesignEngine:
     gives; ``columns`` those of histories. What equilibrium leaves open for a design is NaN there.
     """
 
-    scene: Scene
     rung: Rung
     times: DesignTimes
     kept: KeptOutputs
@@ -105,10 +104,16 @@ class DesignEngine:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted)
         rung.check(graph)
-        times, values = DesignTimes(scene, timing or scene.timing(t)), scene.mechanism.values()
-        checked_span(scene, times.timing, values)
+        scene.checked(scene.mechanism.values())
+        return cls.compiled(graph, timing or scene.timing(t), rung)
+
+    @classmethod
+    def compiled(cls, graph: SceneGraph, timing: Timing, rung: Rung) -> DesignEngine:
+        """Compile a graph for designs at instants that are asked for."""
+        data = graph.data
+        times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults
+        checked_span(data.laws, timing, times.values)
         instants, even = times.default
-        p = np.array(list(values.values()))
         kept = KeptOutputs.of(graph, rung)
         require("the instants of a design", (kept.reduction.rows, instants.size))
         watched = with_watched(graph, kept.sharpness)
@@ -123,16 +128,16 @@ class DesignEngine:
 
         found = compiled(rung, build)
         if found is None:
-            return cls(scene, rung, times, kept, graph, stages, None, provenance("vm", "", "", rung))
+            return cls(rung, times, kept, graph, stages, None, provenance("vm", "", "", rung))
         compiler, library = found
         backend = "lanes" if compiler.language == "c++" else "c"
         made = provenance(backend, compiler.version, " ".join(library.flags), rung)
-        return cls(scene, rung, times, kept, graph, stages, library, made)
+        return cls(rung, times, kept, graph, stages, library, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters."""
-        return tuple(self.scene.mechanism.parameters)
+        return tuple(self.graph.data.parameters)
 
     @cached_property
     def quantities(self) -> tuple[str, ...]:
@@ -253,7 +258,7 @@ class DesignEngine:
     @cached_property
     def watch(self) -> Watch:
         """What designs must hold to between their instants, if there is anything."""
-        return Watch(self.scene, self.graph)
+        return Watch(self.graph)
 
     @property
     def shared(self) -> bool:
@@ -300,7 +305,7 @@ class DesignEngine:
         """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
         if len(t) == 1 or not self.kept.sharpness.knots:
             # Of the defaults: a row of what is found must not depend on the designs beside it.
-            t, p = t[:1], np.array(list(self.scene.mechanism.values().values()))[None]
+            t, p = t[:1], self.graph.data.defaults[None]
         known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
@@ -366,11 +371,11 @@ class DesignEngine:
             slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
         return slopes
 
-    def failures(self, p: Array) -> dict[str, float]:
-        """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
+    def failures(self, p: Array, whole: SceneGraph) -> dict[str, float]:
+        """What fails of one design that has a result, (parameters,), by a graph of all outputs: see :mod:`.witness`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(self.scene, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
+        return failures(whole, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
 
     def _interpret(self, p: Array, t: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)

@@ -89,7 +89,7 @@ def tied(
 ) -> npt.NDArray[np.bool_]:
     """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
     instants, graph = times.of(p[None])[1][0], slopes.graph
-    description, table = graph.data.description(graph.data.values(p)), table_of(graph.data.space)
+    description, table = graph.data.at(p), table_of(graph.data.space)
     rows = {output: k for k, output in enumerate(outputs)}
     nowhere = np.full(instants.size, np.nan)
 

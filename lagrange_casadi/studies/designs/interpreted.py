@@ -79,7 +79,7 @@ def _signals(
     graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, evaluated: Evaluated, some: Sequence[int]
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
-    description, reduction = graph.data.description(graph.data.values(p)), kept.reduction
+    description, reduction = graph.data.at(p), kept.reduction
     sections = [one for link in kept.links for one in section_forces(description, link, graph.outputs).values()]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
     return Signals(graph, evaluated.stages, kept.sharpness, [quantities[k] for k in some], t, p, evaluated.iterated, newton)

@@ -147,9 +147,9 @@ class Prepared:
 
     def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]) -> None:
         self._engine, self._explain = engine, explain
-        self._declared = engine.scene.mechanism.parameters
+        self._declared = engine.graph.data.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
-        self._defaults = np.array(list(engine.scene.mechanism.values().values()))
+        self._defaults = engine.graph.data.defaults
         self._answers = _Answers(engine, self._defaults)
 
     @property

@@ -15,13 +15,9 @@ from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
 from ...codegen.stages import Stages, compensated, plain, turns_many
-from ...declare.density import Density
-from ...declare.mechanism import Mechanism
-from ...declare.parts import LineLoad, Link
-from ...declare.scene import Scene
 from ...equations.dead_centres import NEAR
-from ...equations.gaps import extent
 from ...equations.mobility import stations_of
+from ...equations.model_data import ModelData
 from ...equations.scene_graph import SceneGraph
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
@@ -70,8 +66,8 @@ class KeptOutputs:
     @classmethod
     def of(cls, graph: SceneGraph, rung: Rung) -> KeptOutputs:
         """What is kept of a scene's designs on a rung."""
-        mechanism, at = graph.scene.mechanism, graph.outputs
-        table = table_of(mechanism.space)
+        data, at = graph.data, graph.outputs
+        table = table_of(data.space)
         chosen: dict[Output, tuple[int, ...]] = {}
         for output, k in at.items():
             if output.along or output in graph.loop_angles:
@@ -82,14 +78,14 @@ class KeptOutputs:
                 if parts[:1] == [output] and len(parts) > 1:
                     chosen[size] = tuple(at[other] for other in parts)
             chosen[output] = (k,)
-        links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
-        names = [*chosen, *(Output("section", link.name, force) for link in links for force in table.forces)]
+        links = [link for link in data.template.content["bodies"] if Output("law", link, "n0") in at]
+        names = [*chosen, *(Output("section", link, force) for link in links for force in table.forces)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
-        units = tuple(output.unit(graph.data.kinds) for output in names)
+        units = tuple(output.unit(data.kinds) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
-        along = tuple(_along(mechanism, link, at, table) for link in links)
-        matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
+        along = tuple(_along(data, link, at, table) for link in links)
+        matter, positive, margins = _matter(data, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
         rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
         columns |= {k for row in rows for k in row if k >= 0}
@@ -113,31 +109,31 @@ class KeptOutputs:
             watches=sharpness.watches,
             knots=sharpness.knots,
         )
-        return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
+        return cls(tuple(names), units, efforts, tuple(links), reduction, sharpness)
 
 
-def _along(mechanism: Mechanism, link: Link, at: dict[Output, int], table: Table) -> Along:
-    assert isinstance(link.mass, Density)
-    stations, spreads = stations_of(at, link.name), list[tuple[int, ...]]()
+def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> Along:
+    density = data.template.content["bodies"][link]["density"]
+    sliced = "slices" in density
+    stations, spreads = stations_of(at, link), list[tuple[int, ...]]()
     marks: list[tuple[int, ...] | float] = []
-    for name, powers in spreads_of(at, link.name).items():
-        load = mechanism.loads.get(name)
-        width, end = (at[Output("spread", link.name, member, name)] for member in ("width", "end"))
-        if isinstance(load, LineLoad) and not load.whole:
+    for name, powers in spreads_of(at, link).items():
+        width, end = (at[Output("spread", link, member, name)] for member in ("width", "end"))
+        if name in data.partial:
             marks += [(end, width), (end,)]
-        directions = (*table.spread, *table.couples) if link.mass.slices else table.spread
-        terms = (at.get(Output("spread", link.name, member, name, power), -1) for member in directions for power in range(powers))
+        directions = (*table.spread, *table.couples) if sliced else table.spread
+        terms = (at.get(Output("spread", link, member, name, power), -1) for member in directions for power in range(powers))
         spreads.append((width, end, *terms))
     if spreads:
-        marks += sorted({*link.mass.jumps, *(link.mass.slices.breaks[1:-1] if link.mass.slices else ())})
+        marks += data.jumps[link]
     return Along(
-        tuple(at[Output("law", link.name, member)] for member in table.law),
-        tuple(tuple(at[Output("station", link.name, member, station)] for member in table.place_first) for station in stations),
-        link.mass.breaks,
-        max(len(cell) for cell in link.mass.cells),
+        tuple(at[Output("law", link, member)] for member in table.law),
+        tuple(tuple(at[Output("station", link, member, station)] for member in table.place_first) for station in stations),
+        tuple(density["breaks"]),
+        max(len(cell) for cell in density["cells"]),
         tuple(spreads),
         tuple(marks),
-        link.mass.slices is not None,
+        sliced,
     )
 
 
@@ -159,15 +155,14 @@ def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
 
 
 @symbolic
-def _matter(scene: Scene, links: list[Link], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
+def _matter(data: ModelData, links: list[str], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
     """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
-    mechanism = scene.mechanism
-    positive, others = scene.demands(precision).in_order(mechanism.symbols)
-    positive = [extent(mechanism), *positive]
+    symbols = data.symbols
+    positive, others = data.margins[precision].in_order(symbols)
+    positive = [data.extent(symbols), *positive]
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
-        assert isinstance(link.mass, Density)
-        scale = link.length if link.mass.per_length else 1.0
-        rest += matter_of(part, link.length, [[c * scale for c in cell] for cell in link.mass.cells])
+        length, density = data.matter(link, symbols)
+        rest += matter_of(part, length, density.cells)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
-    return ca.Function("matter_of", [mechanism.symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)
+    return ca.Function("matter_of", [symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,9 +10,9 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...declare.even_points import are_even
+from ...declare.laws import Laws
 from ...declare.reaching import Reaching
-from ...declare.scene import Scene
-from ...declare.times import Timing, reaching
+from ...declare.times import Timing, instants_of
 
 _LOOKS = 65
 """At so many times at least is a motion looked at, whether it turns back."""
@@ -19,16 +20,17 @@ _LOOKS = 65
 
 @dataclass(frozen=True, eq=False)
 class DesignTimes:
-    """How the instants of a scene's designs are asked for."""
+    """How the instants of designs are asked for, whose motions are ``laws`` and whose default parameters are ``values``."""
 
-    scene: Scene
+    laws: Laws
+    values: Mapping[str, float]
     timing: Timing
 
     @cached_property
     def law(self) -> Reaching | None:
         """The law of the drive that they go by, if any."""
         joint = self.timing.joint
-        return reaching(self.scene.mechanism, self.scene.laws[joint]) if joint else None
+        return Reaching.of(self.laws, joint) if joint else None
 
     @property
     def common(self) -> bool:
@@ -43,7 +45,7 @@ class DesignTimes:
 
         Raises :class:`.DeclarationError` where there are none.
         """
-        asked = self.scene.instants(self.timing, self.scene.mechanism.values()).t
+        asked = instants_of(self.laws, self.timing, self.values).t
         return asked, asked if are_even(asked) else np.linspace(asked[0], asked[-1], asked.size)
 
     def of(self, p: Array, *, asked: bool = True) -> tuple[Array, Array]:
@@ -71,8 +73,8 @@ class DesignTimes:
         """The first and last instants; NaN where they are none, or samples of a motion end before."""
         with np.errstate(invalid="ignore"):
             there = np.isfinite(stop - start) & ((stop == start) if self.timing.count == 1 else (stop > start))
-            for law in self.scene.laws.values():
-                there &= (start >= law.span[0]) & (stop <= law.span[1])
+            for low, high in self.laws.spans:
+                there &= (start >= low) & (stop <= high)
         return np.where(there, start, np.nan), np.where(there, stop, np.nan)
 
     def at_drive(self, t: Array, p: Array) -> Array:

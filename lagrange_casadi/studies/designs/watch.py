@@ -12,8 +12,6 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...declare.corners import Corners
 from ...declare.ends import BEYOND
-from ...declare.motion import ends_function
-from ...declare.scene import Scene
 from ...equations.scene_graph import SceneGraph
 from ...instants.refusal import Status
 
@@ -22,18 +20,17 @@ _OK = int(Status.OK)
 
 @dataclass(frozen=True, eq=False)
 class Watch:
-    """What motions and constraints of a scene must hold to for the values that parameters have in each design."""
+    """What motions and constraints of a graph must hold to for the values that parameters have in each design."""
 
-    scene: Scene
     graph: SceneGraph
 
-    @cached_property
+    @property
     def _ends(self) -> Any | None:
-        return ends_function(self.scene.laws, self.scene.mechanism.symbols)
+        return self.graph.laws.beyond
 
-    @cached_property
+    @property
     def _corners(self) -> Corners:
-        return Corners.of(self.scene)
+        return self.graph.data.corners
 
     @cached_property
     def _seen(self) -> dict[str, list[int]]:

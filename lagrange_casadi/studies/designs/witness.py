@@ -7,7 +7,7 @@ virtual machine. The certificate judges that, and what the compiled code has mad
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,9 +15,7 @@ import numpy as np
 from ...arithmetic.compensated import ROUNDING
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...declare.scene import Scene
-from ...equations.derive import derive
-from ...equations.described import described
+from ...equations.scene_graph import SceneGraph
 from ...instants.backends import run
 from ...instants.phases import phases
 from ...instants.rung import Rung
@@ -35,21 +33,24 @@ _AGREES = 1e-6
 """Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
 
 
-def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
+def wanted_whole(names: Iterable[str]) -> list[str]:
+    """Return what is to be wanted for a graph of all outputs, those of ``names`` among them."""
+    outputs = map(Output.of, names)
+    return ["all", *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED)]
+
+
+def failures(graph: SceneGraph, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
     """What fails of a design, and by how much: residuals of its certificate, and under ``agreement`` how far ``out`` is off.
 
-    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``.
+    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph`` has all outputs.
     """
-    strength = (f"{_WANTED[output.group]}:{output.part}" for output in outputs if output.group in _WANTED)
-    graph = derive(scene, ["all", *strength])
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
     followed = t if graph.newton is not None else t[some]
     table, provenance = run(graph, followed, p, Rung("vm", newton=rung.newton))
     rows = table.out[:, some] if graph.newton is not None else table.out
-    values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
     within = phases(graph, rows, t[some], p)
-    found_there, description = outputs_of(graph, rows), described(graph.scene, values)
-    whole = Solution(scene.mechanism.name, t[some], np.zeros(0), found_there, description, provenance)
+    found_there, description = outputs_of(graph, rows), graph.data.at(p)
+    whole = Solution(graph.data.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if rung.newton is None else LOOSE
     found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
     failed = {name: gap for name, gap in found.items() if not gap <= limit}

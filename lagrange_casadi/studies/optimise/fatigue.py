@@ -47,9 +47,8 @@ class Tired:
     @cached_property
     def fatigue(self) -> Fatigue:
         """Its stresses by what its law is made of."""
-        mechanism = self.graph.scene.mechanism
         members = [output for output in self.graph.outputs if output.along and output.part == self.link]
-        return Fatigue.of(mechanism, mechanism.links[self.link], members)
+        return Fatigue.of(self.graph.data, self.link, members)
 
     def points(self, look: Look) -> list[Point]:
         """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share of the swing's other instant.

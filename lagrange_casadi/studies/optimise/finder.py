@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ...declare.scene import Scene
 from ...errors import DeclarationError
 from ..designs.engine import DesignEngine
 from .descent import Descent, Told
@@ -29,20 +28,18 @@ class Errand:
 
 @dataclass(eq=False)
 class Finder:
-    """A question about a scene, ready to be answered."""
+    """A question, ready to be answered."""
 
-    scene: Scene
     question: Question
     engine: DesignEngine
     judge: Judge
     programs: dict[Any, Program] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, scene: Scene, question: Question) -> Finder:
-        """Derive and compile what the question needs."""
-        engine = question.engine(scene)
+    def of(cls, question: Question, engine: DesignEngine) -> Finder:
+        """Compile what the question needs beside its engine."""
         judge = Judge(engine, PointValues(engine.graph, engine.times), question.terms, question.transmission**2)
-        finder = cls(scene, question, engine, judge)
+        finder = cls(question, engine, judge)
         finder.program(Problem(question.objectives[0], question.constraints))  # what cannot be differentiated is told at once
         if idle := [name for name in question.box.names if not finder._matters(name)]:
             named = ", ".join(f"'{name}'" for name in idle)
@@ -54,7 +51,7 @@ class Finder:
         place = self.engine.parameters.index(name)
         for term in self.question.terms:
             if term.output is None:
-                if place in term.of_parameters(self.scene.mechanism).jac_sparsity(0, 0).get_triplet()[1]:
+                if place in term.of_parameters(self.engine.graph.data).jac_sparsity(0, 0).get_triplet()[1]:
                     return True
             elif self.judge.values.of(term.output).depends[place]:
                 return True
@@ -64,8 +61,8 @@ class Finder:
         """That of a problem, whatever its limits are."""
         known = (problem.objective, *((c.term, c.least) for c in problem.constraints))
         if known not in self.programs:
-            judge = self.judge
-            self.programs[known] = Program(judge.values, self.question.box, problem, self.engine.count, judge.least_closure)
+            judge, box, count = self.judge, self.question.box, self.engine.count
+            self.programs[known] = Program(judge.values, box, problem, count, judge.least_closure)
         return self.programs[known]
 
     def descend(self, errand: Errand, told: Told) -> Trail:

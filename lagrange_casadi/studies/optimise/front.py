@@ -110,8 +110,8 @@ class _Fronts:
 
     def _result(self) -> Front:
         points = [self._told(one) for one in _efficient(self.kept)]
-        mechanism = self.search.finder.scene.mechanism
-        case, units = mechanism.name, tuple(term.unit(mechanism) for term in self.terms)
+        data = self.search.finder.engine.graph.data
+        case, units = data.name, tuple(term.unit(data) for term in self.terms)
         told = tuple(dict.fromkeys([*self.notes, *(note for point in points for note in point.optimum.notes)]))
         return Front(case, self.terms, units, tuple(points), self.search.stopped, self.search.evaluations, told)
 

@@ -80,7 +80,7 @@ class Judge:
                     own = [*told(own, look, float(found.value[row, k]), float(found.t[row, k]), float(found.xi[row, k])), *own]
             points[term] = tuple(own)
             if term.output is None:
-                values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
+                values[term] = float(term.of_parameters(self.engine.graph.data)(p))
             elif link := tired_link(term.output):
                 forces = [k for k, name in enumerate(self.engine.quantities) if name.startswith(f"section:{link}:")]
                 values[term] = own[0][0].value if own and np.isfinite(found.value[row, forces]).all() else math.nan

@@ -118,7 +118,7 @@ class Look:
         if output.group != "section":
             rows = out[[self.graph.outputs[part] for part in output.components(table_of(data.space)) if part in self.graph.outputs]]
             return [np.zeros(self.t.size)], [rows[0] if len(rows) == 1 else size_of(rows)]
-        description = data.description(data.values(self.p))
+        description = data.at(self.p)
         with np.errstate(all="ignore"):
             force = section_forces(description, output.part, self.graph.outputs)[output.member]
             places, curves = force.curves(out)

@@ -122,9 +122,9 @@ def optimum_of(
     everything = dict(zip(engine.parameters, judged.p.tolist(), strict=True))
     excess = problem.excess(judged)
     return Optimum(
-        case=finder.scene.mechanism.name,
+        case=finder.engine.graph.data.name,
         minimised=problem.objective,
-        unit=problem.objective.unit(finder.scene.mechanism),
+        unit=problem.objective.unit(finder.engine.graph.data),
         values={name: everything[name] for name in box.names},
         parameters=everything,
         objective=judged.value(problem.objective),

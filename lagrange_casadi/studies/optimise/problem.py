@@ -14,8 +14,7 @@ from ...base.arrays import Array
 from ...base.vocabulary import Backend
 from ...declare.scene import Scene, Wanted
 from ...declare.times import Times, Timing
-from ...equations.described import described
-from ...equations.fingerprint import fingerprint, sources
+from ...equations.fingerprint import sources
 from ...errors import DeclarationError, UnknownNameError, check_kind
 from ...instants.rung import Rung
 from ..designs.engine import DesignEngine
@@ -172,7 +171,7 @@ class Question:
         engine = DesignEngine.of(scene, self.wanted, rung=self.rung, timing=self.timing)
         for term in self.terms:
             if term.output is None:
-                term.of_parameters(scene.mechanism)
+                term.of_parameters(engine.graph.data)
             if term.kind == "peak" and (link := tired_link(term.output)):
                 Wanted.of(scene.mechanism, [f"safety:{link}"])
                 continue
@@ -181,18 +180,17 @@ class Question:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
         return engine
 
-    def words(self, scene: Scene, engine: DesignEngine) -> dict[str, Any]:
+    def words(self, engine: DesignEngine) -> dict[str, Any]:
         """What every number of a search follows from beside its starts, for JSON: no clock, no path."""
-        made, wanted = engine.provenance, Wanted.of(scene.mechanism, self.wanted)
-        box = self.box
+        made, graph, box = engine.provenance, engine.graph, self.box
         told = {
-            "case": scene.mechanism.name,
+            "case": graph.data.name,
             "versions": made.versions,
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.rung}",
-            "scene": fingerprint(scene, wanted) or "cannot be told",
-            "mechanism": described(scene, scene.mechanism.values()),
-            "t": self.timing.words(scene.mechanism.symbols),
+            "scene": graph.identity or "cannot be told",
+            "mechanism": graph.data.at(graph.data.defaults),
+            "t": self.timing.words(graph.data.symbols),
             "minimise": list(map(str, self.objectives)),
             "subject_to": [c.words for c in self.constraints],
             "over": {name: [float(a), float(b)] for name, a, b in zip(box.names, box.low, box.high, strict=True)},

@@ -192,7 +192,7 @@ class Program:
         for number, term in enumerate(held):
             output, (limit, over) = term.term.output, (limits[0, number], limits[1, number])
             if output is None or term.term.averaged:
-                of_parameters = term.term.of_parameters(self.values.graph.scene.mechanism) if output is None else None
+                of_parameters = term.term.of_parameters(self.values.graph.data) if output is None else None
                 value = self._average(term.term, p, guesses) if of_parameters is None else of_parameters(p)
                 row = (-value if term.least else value) * over - limit
                 best = value * over if number == 0 else best

@@ -99,7 +99,7 @@ def optimise(
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`; a cluster needs a case, for its workers load it too.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they are sent what is derived.
     minimise
         ``peak:QUANTITY``, the largest size of a quantity over the whole motion; ``max:QUANTITY``, its largest value; ``mean:`` or
         ``rms:`` of an effort or an output; or a parameter's name. A list of them asks for a :class:`.Front`: designs of which none
@@ -146,13 +146,13 @@ def optimise(
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
-    hands = _hired(dask, scene)
-    finder = Finder.of(own, question)
+    hands: Hands = Here() if dask is None else method("optimise.dask")(dask)
+    finder = Finder.of(question, question.engine(own))
     target = None if out is None else Path(out)
     if target is not None:
         check_target(target, SCHEMA)
     told = {"starts": starts if isinstance(starts, int) else [dict(start) for start in starts], "screen": screen}
-    with kept(target, {**question.words(own, finder.engine), **told}, resume=resume, force=force) as journal:
+    with kept(target, {**question.words(finder.engine), **told}, resume=resume, force=force) as journal:
         search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
@@ -169,13 +169,3 @@ def optimise(
             except KeyboardInterrupt:  # it came when there was nothing left to interrupt
                 pass
     return found
-
-
-def _hired(dask: str | None, scene: Scene | Case) -> Hands:
-    """Who goes ways. Raises :class:`DeclarationError` for a cluster without a case."""
-    if dask is None:
-        return Here()
-    if not isinstance(scene, Case):
-        raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
-    cluster: Hands = method("optimise.dask")(dask, scene)
-    return cluster

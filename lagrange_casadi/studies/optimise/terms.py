@@ -13,9 +13,7 @@ import casadi as ca
 from ...arguments import public
 from ...base.numerals import real
 from ...base.quantities import AVERAGED, Output
-from ...declare.kinds import kinds_of
-from ...declare.masses import mass_of
-from ...declare.mechanism import Mechanism
+from ...equations.model_data import ModelData
 from ...errors import DeclarationError
 from .fatigue import tired_link
 
@@ -80,20 +78,18 @@ class Term:
         """The quantity, None of a parameter and of a mass."""
         return None if self.kind in ("parameter", MASS) else Output.of(self.name)
 
-    def of_parameters(self, mechanism: Mechanism) -> Any:
+    def of_parameters(self, data: ModelData) -> Any:
         """A parameter or a mass as a function of all parameters. Raises :class:`.UnknownNameError` for what is none."""
-        found = (
-            mass_of(mechanism, self.name) if self.kind == MASS else mechanism.symbols[list(mechanism.parameters).index(self.name)]
-        )
-        return ca.Function("of_parameters", [mechanism.symbols], [found])
+        found = data.mass(self.name, data.symbols) if self.kind == MASS else data.parameters[self.name].symbol
+        return ca.Function("of_parameters", [data.symbols], [found])
 
-    def unit(self, mechanism: Mechanism) -> str:
+    def unit(self, data: ModelData) -> str:
         """Its unit."""
         if self.kind == MASS:
             return "kg"
         if tired_link(self.output):
             return "1"
-        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(kinds_of(mechanism))
+        return data.parameters[self.name].unit if self.output is None else self.output.unit(data.kinds)
 
     def __str__(self) -> str:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"

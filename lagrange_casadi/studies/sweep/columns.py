@@ -18,9 +18,9 @@ from ...base.arrays import Array
 from ...base.quantities import Output, quotient
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
-from ...declare.kinds import kinds_of
-from ...declare.mechanism import Mechanism
 from ...declare.wanted_slopes import SENSITIVITY
+from ...equations.model_data import ModelData
+from ...equations.scene_graph import SceneGraph
 from ...errors import DeclarationError, UnknownNameError
 from ...instants.refusal import Status
 from ...instants.statistics import of_counted
@@ -67,11 +67,14 @@ def check_keep(keep: str) -> None:
 class Harvest:
     """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty.
 
+    ``data`` are those of the mechanism; by the ``whole`` graph designs are looked at closely.
+
     ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the derivatives of peaks are kept too.
     """
 
     engine: Engine
-    mechanism: Mechanism
+    data: ModelData
+    whole: SceneGraph
     keep: Keep
     axis: InstantAxis
     xi: Array
@@ -95,7 +98,7 @@ class Harvest:
             found += self._peak(name)
         for name in engine.efforts:
             output = Output.of(name)
-            unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
+            unit, words = output.unit(self.data.kinds), output.meant(self._table).attributes
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
@@ -111,7 +114,7 @@ class Harvest:
         for name in self._series:
             output = Output.of(name)
             words = output.meant(self._table).attributes | self._open(name)
-            found.append(Column(f"history:{name}", output.unit(kinds_of(self.mechanism)), words, over, (self.axis.values.size,)))
+            found.append(Column(f"history:{name}", output.unit(self.data.kinds), words, over, (self.axis.values.size,)))
         if self._own_times:
             found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
         if self.keep == "histories" and self.xi.size:
@@ -145,7 +148,7 @@ class Harvest:
         if not there.size:
             return
         chosen = int(there[there.size // 2])
-        if self.engine.failures(p[chosen]):
+        if self.engine.failures(p[chosen], self.whole):
             whole[0][chosen] = Status.UNCERTIFIED
             for column in whole[1:]:
                 column[chosen] = np.nan
@@ -165,7 +168,7 @@ class Harvest:
             found += [outcome.mean[:, k], outcome.rms[:, k]]
         if self.by:
             peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
-            for number in map(list(self.mechanism.parameters).index, self.by):
+            for number in map(list(self.data.parameters).index, self.by):
                 found += [*np.moveaxis(peaks[:, :, number], 1, 0)]
                 found += [means[:, k, e, number] for k in range(len(_MEANS)) for e in range(len(self.engine.efforts))]
         largest, whole = self._along_links(outcome, p)
@@ -186,7 +189,7 @@ class Harvest:
     @property
     def _table(self) -> Table:
         """What its quantities mean."""
-        return table_of(self.mechanism.space)
+        return table_of(self.data.space)
 
     @cached_property
     def strength(self) -> Kept:
@@ -194,7 +197,7 @@ class Harvest:
         engine = self.engine
         doubtful = {output.part for output in map(Output.of, engine.doubtful) if output.group == "section"}
         made = (engine.quantities, engine.columns, engine.provenance.precision)
-        return Kept(self.mechanism, self.safety, self.life, *made, doubtful)
+        return Kept(self.data, self.safety, self.life, *made, doubtful)
 
     @property
     def _histories(self) -> bool:
@@ -240,7 +243,7 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         output, open_ = Output.of(name), self._open(name)
-        unit, words = output.unit(kinds_of(self.mechanism)), output.meant(self._table).attributes
+        unit, words = output.unit(self.data.kinds), output.meant(self._table).attributes
         what = words["long_name"]
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
@@ -256,7 +259,7 @@ class Harvest:
     def _slope(self, parameter: str, kind: str, name: str) -> Column:
         """The column of the derivative of a peak, or of a mean."""
         output = Output.of(name)
-        unit = quotient(output.unit(kinds_of(self.mechanism)), self.mechanism.parameters[parameter].unit)
+        unit = quotient(output.unit(self.data.kinds), self.data.parameters[parameter].unit)
         what = f"derivative by {parameter} of the {SLOPES_OF[kind]}: {output.meant(self._table).long_name}"
         return Column(f"{SENSITIVITY}:{parameter}:{kind}:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
 
@@ -278,7 +281,7 @@ class Harvest:
         assert series is not None
         largest, whole = [], []
         for link in self._links:
-            matter = Matter.of(self.mechanism, link, self.engine.provenance.precision)
+            matter = Matter.of(self.data, link, self.engine.provenance.precision)
             every = enumerate(map(Output.of, self.engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result

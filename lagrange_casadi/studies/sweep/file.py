@@ -90,7 +90,7 @@ def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Cal
 def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], None]) -> None:
     """Scales and attributes."""
     grid = file.create_group("grid", track_order=True)
-    parameters = plan.scene.mechanism.parameters
+    parameters = plan.graph.data.parameters
     designs = plan.designs
     if not isinstance(designs, Grid):
         scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64, breathe)
@@ -115,7 +115,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():
         file.attrs[key] = json.dumps(value) if key in WORDS else value
-    file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.scene.mechanism.space).conventions
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.graph.data.space).conventions
     file.attrs["parameters"] = json.dumps(dict(plan.values))
     file.attrs["columns"] = len(plan.columns)
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.tables import ANGLE, LENGTH
 from ...declare.even_points import points
-from ...declare.scene import Scene
-from ...declare.times import Timing
+from ...declare.times import Timing, instants_of
+from ...equations.model_data import ModelData
 
 OVER, CYCLE = "over", "cycle"
 """Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""
@@ -36,12 +35,12 @@ class InstantAxis:
     drive_unit: str = ""
 
     @classmethod
-    def of(cls, scene: Scene, timing: Timing) -> InstantAxis:
-        """That of a scene's designs."""
+    def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
+        """That of a mechanism's designs."""
         if timing.shared:
-            return cls("t", "s", "time", scene.instants(timing, scene.mechanism.values()).t)
+            return cls("t", "s", "time", instants_of(data.laws, timing, data.values(data.defaults)).t)
         joint = timing.joint
-        unit = "" if not joint else LENGTH if scene.guided.coordinates[joint][1].kind == "slide" else ANGLE
+        unit = timing.unit if joint else ""
         if joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))

@@ -11,7 +11,7 @@ import casadi as ca
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...declare.density import Density
-from ...declare.mechanism import Mechanism
+from ...equations.model_data import ModelData
 from ...instants.laws import law_of
 from ...instants.section_law import SectionLaw
 
@@ -29,13 +29,12 @@ class Matter:
     precision: str
 
     @classmethod
-    def of(cls, mechanism: Mechanism, name: str, precision: str) -> Matter:
+    def of(cls, data: ModelData, name: str, precision: str) -> Matter:
         """That of a link."""
-        link = mechanism.links[name]
-        assert isinstance(link.mass, Density)
-        cells = [c for cell in link.mass.cells for c in cell]
-        numbers = ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)])
-        return cls(name, link.mass, numbers, precision)
+        length, density = data.matter(name, data.symbols)
+        cells = [c for cell in density.cells for c in cell]
+        numbers = ca.Function("matter", [data.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), length, *cells))])
+        return cls(name, density, numbers, precision)
 
     def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
         """The law from its coefficients and loads, (t,), of a design (parameters,).

@@ -23,11 +23,13 @@ from ...declare.times import Over, Times, Timing
 from ...declare.wanted_slopes import SENSITIVITY, by_parameters
 from ...equations.derive import derive
 from ...equations.described import described
-from ...equations.fingerprint import fingerprint, sources
+from ...equations.fingerprint import sources
+from ...equations.scene_graph import SceneGraph
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ...instants.rung import Rung
 from ...instants.solution import Provenance
 from ..designs.engine import DesignEngine
+from ..designs.witness import wanted_whole
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .column import Column
@@ -80,40 +82,39 @@ _TIMES = 4
 class Task:
     """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves.
 
-    ``assembly`` are parameters with which it is assembled, where its defaults cannot be.
+    ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which derivatives are.
     """
 
-    wanted: tuple[str, ...]
     timing: Timing
     xi: EvenPoints | None
     keep: Keep
     rung: Rung
-    assembly: tuple[tuple[str, float], ...] = ()
+    safety: tuple[str, ...] = ()
+    life: tuple[str, ...] = ()
+    by: tuple[str, ...] = ()
 
-    def scene(self, scene: Scene) -> Scene:
-        """The scene, assembled with the task's own parameters where it has some."""
-        return dataclasses.replace(scene, assembly=dict(self.assembly)) if self.assembly else scene
-
-    def harvest(self, scene: Scene) -> Harvest:
-        """The scene compiled, and what is kept of its outcomes."""
+    def harvest(self, graph: SceneGraph, whole: SceneGraph | None = None) -> Harvest:
+        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all outputs."""
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine = compiled(scene, self.wanted, self.timing, self.rung)
-        named = [name for name in self.wanted if name != "all"]
-        safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
-        by = by_parameters(scene.mechanism, self.wanted)
-        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi, safety, life, by)
+        engine, data = compiled(graph, self.timing, self.rung), graph.data
+        axis = InstantAxis.of(data, self.timing)
+        return Harvest(engine, data, whole or graph, self.keep, axis, xi, self.safety, self.life, self.by)
 
 
-def compiled(scene: Scene, wanted: Sequence[str], timing: Timing, rung: Rung) -> Engine:
-    """The engine of a scene."""
-    return DesignEngine.of(scene, wanted, rung=rung, timing=timing)
+def compiled(graph: SceneGraph, timing: Timing, rung: Rung) -> Engine:
+    """The engine of a graph."""
+    return DesignEngine.compiled(graph, timing, rung)
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their defaults."""
+    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their defaults.
 
-    scene: Scene
+    ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these values.
+    """
+
+    graph: SceneGraph
+    description: Description
     designs: Designs
     values: Mapping[str, float]
     task: Task
@@ -147,15 +148,21 @@ class Plan:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
-        task = Task(names, scene.timing(t, over), ratios, keep, rung, _assembly(scene, designs, values, names))
-        scene = task.scene(scene)
-        harvest = task.harvest(scene)
+        named = [name for name in names if name != "all"]
+        safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
+        task = Task(scene.timing(t, over), ratios, keep, rung, safety, life, tuple(by_parameters(scene.mechanism, names)))
+        scene = _assembled(scene, designs, values, names)
+        graph = derive(scene, names)
+        rung.check(graph)
+        scene.checked(scene.mechanism.values())
+        whole = derive(scene, wanted_whole(map(str, graph.outputs)))
+        harvest = task.harvest(graph, whole)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
             size = f"{largest.width / 2**30:.3g} GiB"
             raise SizeError(f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer instants or ratios")
         require("a design and what it is made from", (_TIMES, sum(column.width for column in harvest.columns) // 8))
-        return cls(scene, designs, values, task, harvest)
+        return cls(graph, described(scene, values), designs, values, task, harvest)
 
     @property
     def size(self) -> int:
@@ -216,22 +223,17 @@ class Plan:
         """The first version of the schema that has all of it."""
         if self.harvest.by:
             return SCHEMA_VERSION
-        if self.scene.mechanism.space:
+        if self.graph.data.space:
             return _WITHOUT_SLOPES
         return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
-
-    @property
-    def description(self) -> Description:
-        """The mechanism, the swept parameters at their defaults."""
-        return described(self.scene, self.values)
 
     @cached_property
     def identity(self) -> dict[str, Any]:
         """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
         words = {
             "schema_version": self._version,
-            "case": self.scene.mechanism.name,
-            **signature(self.scene, self.task, self.harvest.engine.provenance),
+            "case": self.graph.data.name,
+            **signature(self.graph, self.task, self.harvest.engine.provenance),
             "mechanism": self.description,
             "grid": self.designs.describe(),
         }
@@ -239,8 +241,8 @@ class Plan:
         return told
 
 
-def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> tuple[tuple[str, float], ...]:
-    """Parameters to assemble a scene with: none where its own serve, else those of the first of some designs that can be assembled.
+def _assembled(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> Scene:
+    """Return a scene; where its own parameters cannot be assembled, with those of the first of some designs that can be.
 
     Raises what :func:`.derive` does for the scene's own where there is none.
     """
@@ -254,9 +256,9 @@ def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wante
                 derive(tried, wanted)
             except (AssemblyError, DeclarationError, ParameterError):
                 continue
-            return tuple(tried.assembly.items())
+            return tried
         raise
-    return ()
+    return scene
 
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
@@ -273,9 +275,8 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 
-def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:
+def signature(graph: SceneGraph, task: Task, provenance: Provenance) -> dict[str, Any]:
     """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
-    wanted, by = Wanted.of(scene.mechanism, task.wanted), by_parameters(scene.mechanism, task.wanted)
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
         "sources": sources(),
@@ -284,11 +285,11 @@ def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any
         "compiler": provenance.compiler,
         "flags": provenance.flags,
         "rung": provenance.rung,
-        "wanted": dataclasses.asdict(wanted) | ({SENSITIVITY: by} if by else {}),
-        "t": task.timing.words(scene.mechanism.symbols),
+        "wanted": dataclasses.asdict(graph.wanted) | ({SENSITIVITY: task.by} if task.by else {}),
+        "t": task.timing.words(graph.data.symbols),
         "xi": task.xi,
         "keep": task.keep,
-        "scene": fingerprint(scene, wanted) or "cannot be told",
+        "scene": graph.identity or "cannot be told",
     }
     told: dict[str, Any] = json.loads(json.dumps(words))
     return told

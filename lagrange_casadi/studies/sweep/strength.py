@@ -23,10 +23,11 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...beams.beam import Notch
 from ...beams.material import Material
-from ...declare.masses import ALL, mass_of
-from ...declare.mechanism import Mechanism
+from ...beams.told import beam_told
+from ...declare.masses import ALL
 from ...declare.parts import Link
 from ...equations.checks import Column
+from ...equations.model_data import ModelData
 from ...equations.strength import FORCES, Loaded
 from ...instants.statistics import counted
 from ...strength.fatigue import FEW, damage_score, factor, factor_score, felt, loaded, strengths
@@ -68,18 +69,21 @@ class Fatigue:
     axes: tuple[int, ...]
 
     @classmethod
-    def of(cls, mechanism: Mechanism, link: Link, members: Sequence[Output]) -> Fatigue:
+    def of(cls, data: ModelData, name: str, members: Sequence[Output]) -> Fatigue:
         """That of a link whose law is made of ``members``."""
         symbols = ca.SX.sym("members", len(members))
         columns: dict[Column, Any] = dict(zip(members, ca.vertsplit(symbols), strict=True))
-        body = Loaded(mechanism, link, columns)
+        p = data.symbols
+        link = data.link(name, p)
+        body = Loaded(data.space, link, columns)
         normal, shears = list[Any](), list[list[Any]]()
         for cell, u, middle, notch in _places(body, link):
             forces = {place: body.force_at(name, u, middle) * _scale(notch, name) for name, place in FORCES[body.space].items()}
-            p = body.properties(cell, u)
+            section = body.properties(cell, u)
             for fibre in body.alone[cell]:
                 values = [
-                    ca.SX(sum(number * forces[k] for k, number in enumerate(row) if k in forces)) for row in p.rows(p.fibres[fibre])
+                    ca.SX(sum(number * forces[k] for k, number in enumerate(row) if k in forces))
+                    for row in section.rows(section.fibres[fibre])
                 ]
                 normal.append(values[0])
                 shears.append(values[1:])
@@ -92,7 +96,7 @@ class Fatigue:
         slopes[:, acting] = ca.jacobian(every, symbols[acting])
         still = [k for k in range(len(members)) if ca.depends_on(slopes, symbols[k])]
         # Rows of the matrix one after another, as numbers lie in memory.
-        found = ca.Function("rows", [symbols, mechanism.symbols], [ca.vec(ca.densify(slopes.T))], {"cse": True})
+        found = ca.Function("rows", [symbols, p], [ca.vec(ca.densify(slopes.T))], {"cse": True})
         return cls(tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp), axes)
 
     def stands(self, members: Array) -> npt.NDArray[np.bool_]:
@@ -142,7 +146,7 @@ class Kept:
     ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that lack it for some designs.
     """
 
-    mechanism: Mechanism
+    data: ModelData
     safety: tuple[str, ...]
     life: tuple[str, ...]
     quantities: tuple[str, ...]
@@ -158,7 +162,7 @@ class Kept:
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which something is kept, in the order of declaration."""
-        return tuple(name for name in self.mechanism.links if name in (*self.safety, *self.life))
+        return tuple(name for name in self.data.template.content["bodies"] if name in (*self.safety, *self.life))
 
     @cached_property
     def columns(self) -> tuple[Dataset, ...]:
@@ -211,8 +215,7 @@ class Kept:
         return [link for link in self.life if self._tires(link)]
 
     def _tires(self, link: str) -> bool:
-        beam = self.mechanism.links[link].beam
-        return beam is not None and tires(beam.material)
+        return link in self.data.materials and tires(self.data.materials[link])
 
     def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
@@ -235,16 +238,15 @@ class Kept:
         self, link: str, there: Any, members: Array, whole: tuple[Any, ...], names: Mapping[str, int], share: Array, lives: Array
     ) -> None:
         """Fill in utilisations and lives of designs that are ``there``, of which the same instants count."""
-        (series, times, moving, p), fatigue, beam = whole, self._fatigue[link], self.mechanism.links[link].beam
-        assert beam is not None
+        (series, times, moving, p), fatigue, material = whole, self._fatigue[link], self.data.materials[link]
         stands = fatigue.stands(members)
         some, standing = there[stands], members[stands]
         many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
         for start in range(0, some.size, many):
             few = slice(start, start + many)
-            share[some[few]] = worst(fatigue, *fatigue.stresses(standing[few], p[some[few]]), beam.material)
+            share[some[few]] = worst(fatigue, *fatigue.stresses(standing[few], p[some[few]]), material)
         for i in there.tolist():
-            endless = share[i] <= 1.0 and beam.material.endless
+            endless = share[i] <= 1.0 and material.endless
             if np.isnan(share[i]) or (link in self.life and not endless):
                 found, cycles = self._slowly(link, series[i][:, moving], times[min(i, len(times) - 1)][moving], p[i], names)
                 share[i] = found if np.isnan(share[i]) else share[i]
@@ -254,13 +256,10 @@ class Kept:
 
     def _slowly(self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]) -> tuple[float, float]:
         """The same of one design, as of a solution."""
-        mechanism, own = self.mechanism, self.mechanism.links[link]
-        values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
         members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
-        assert own.beam is not None
-        beam = own.beam.mapped(lambda _, x: mechanism.number(x, values))
-        law = Matter.of(mechanism, link, self.precision).law(members, p)
-        member = Member(link, beam, law, t, np.linspace(0.0, 1.0, FEW), mechanism.space)
+        beam = beam_told(self.data.at(p)["bodies"][link]["beam"])
+        law = Matter.of(self.data, link, self.precision).law(members, p)
+        member = Member(link, beam, law, t, np.linspace(0.0, 1.0, FEW), self.data.space)
         stress, material = Stress(member), beam.material
         (least, *_), *_ = search(stress, factor_score(material, _CRITERION))
         if link not in self.life or (least >= 1.0 and material.endless):
@@ -273,14 +272,14 @@ class Kept:
         found = {}
         for name in self.links:
             members = [output for output in map(Output.of, self.series) if output.along and output.part == name]
-            found[name] = Fatigue.of(self.mechanism, self.mechanism.links[name], members)
+            found[name] = Fatigue.of(self.data, name, members)
         return found
 
     @cached_property
     def _masses(self) -> Any:
-        mechanism = self.mechanism
-        found = [mass_of(mechanism, part) for part in (*self.links, ALL)]
-        return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
+        p = self.data.symbols
+        found = [self.data.mass(part, p) for part in (*self.links, ALL)]
+        return ca.Function("masses", [p], [ca.densify(ca.vertcat(*found))])
 
 
 def tires(material: Material) -> bool:

@@ -55,7 +55,7 @@ def sweep(
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`; a cluster needs a case, for its workers load it too.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they are sent what is derived.
     grid
         A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or a :class:`.Range`; or a
         :class:`.Listed` of designs, as :func:`.read_designs` reads it from CSV.
@@ -89,7 +89,6 @@ def sweep(
     :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
-    case = scene if isinstance(scene, Case) else None
     own = scene.scene if isinstance(scene, Case) else scene
     if not isinstance(own, Scene):
         raise DeclarationError(f"sweep: expected a Scene or a Case, got {own!r}")
@@ -107,7 +106,7 @@ def sweep(
     )
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
-    hands = hired(workers, dask, case)
+    hands = hired(workers, dask)
     seen = carry_out(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
     return Sweep.open(target, keeper, seen)
 
@@ -120,15 +119,13 @@ class _Temporary:
         weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
 
 
-def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
-    """Who evaluates. Raises :class:`DeclarationError` for a count that no machine has, both, or a cluster without a case."""
+def hired(workers: int | None, dask: str | None) -> Workers:
+    """Choose who evaluates. Raises :class:`DeclarationError` for a count that no machine has, and for both."""
     if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_THREADS):
         raise DeclarationError(f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}")
     if dask is None:
         return Threads(workers)
     if workers is not None:
         raise DeclarationError("workers and dask exclude each other: a cluster has workers of its own")
-    if case is None:
-        raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
-    cluster: Workers = method("sweep.dask")(dask, case)
+    cluster: Workers = method("sweep.dask")(dask)
     return cluster

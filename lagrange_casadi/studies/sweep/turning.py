@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...declare.kinds import kinds_of
 from ...declare.scene import Scene
 from ...declare.times import Timing
 from ...declare.turned import note
@@ -24,4 +25,4 @@ def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, fl
     columns = [list(values).index(name) for name in designs.names]
     for row, number in zip(p, numbers.tolist(), strict=True):
         row[columns] = designs.block(number, number + 1)[0]
-    return note(scene, timing, p)
+    return note(scene.prescribed, kinds_of(scene.guided), timing, p)
