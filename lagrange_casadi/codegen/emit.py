@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import resources
 from typing import Any
 
 import casadi as ca
@@ -21,6 +22,7 @@ from ..base.vocabulary import Precision
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
 from .calls import Call
+from .compiler import Compiler
 from .split import split
 from .stages import Stages, plain
 from .tables import with_tables
@@ -73,6 +75,9 @@ START = f"""\
 #define lanes_pack lanes_real
 #define lanes_choose(where, a) ((where) ? (a) : 0)
 #define lanes_sign(x) ((x) < 0 ? -1 : (x) > 0 ? 1 : (x))
+#define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
+#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
+#define lanes_where_less(x, y) ((x) < (y))
 #endif
 #ifdef __GNUC__
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))
@@ -362,6 +367,13 @@ def dump(name: str, functions: list[ca.Function]) -> str:
 def opened(text: str) -> str:
     """CasADi's C without the signs that kept its simplifications out: see :func:`.closed`."""
     return _OWN_SIGN.sub(lambda found: "" if found[1] == found[2] else f"  {found[1]}={found[2]};\n", text)
+
+
+def packed(text: str, compiler: Compiler) -> str:
+    """An emitted file as a compiler takes it: for C++ with packs before it."""
+    if compiler.language == "c":
+        return text
+    return text.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
 
 
 def work(prefix: str, *functions: ca.Function) -> dict[str, int]:

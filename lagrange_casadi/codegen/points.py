@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy.typing as npt
@@ -12,7 +11,7 @@ import numpy.typing as npt
 from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, WIDE, dump, work
+from .emit import START, WIDE, dump, packed, work
 
 POINTS = Call(
     "lagrange_casadi_points",
@@ -106,9 +105,7 @@ def emit_points(function: Any) -> str:
 
 def load_points(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> PointsLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
-    source = emit_points(function)
-    if compiler.language == "c++":
-        source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
+    source = packed(emit_points(function), compiler)
     library = loaded(source, compiler, tuple(extra))
     try:
         return PointsLibrary(POINTS.declare(getattr(library, _ENTRY)))
