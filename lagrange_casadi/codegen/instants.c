@@ -61,27 +61,22 @@ static casadi_int designs_near(const designs_now* now, double t) {
   return i < now->n ? i : now->n - 1;
 }
 
-/* Curves, their places and what is watched at count times, into rows that are so far apart: what the search asks for. */
+/* Curves, their places and what is watched at up to LANES times, into rows that are as far apart: what the search asks for. */
 static int designs_asked(void* of, long long count, const double* t, unsigned long long need, designs_real* out, long long apart) {
   const designs_now* now = (const designs_now*) of;
   casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)];
   double times[LANES];
-  casadi_int near[LANES], i, many;
-  size_t size;
+  casadi_int near[LANES];
   int j, k;
-  for (i = 0; i < count; i += LANES) {
-    many = count - i < LANES ? count - i : LANES;
-    size = (size_t) many*sizeof *out;
-    for (j = 0; j < LANES; ++j) {
-      times[j] = t[i + (j < many ? j : many - 1)];
-      near[j] = designs_near(now, times[j]);
-    }
-    designs_at(now, times, near, y);
-    designs_curves(y, now->matter, need, value, place);
-    for (k = 0; k < DESIGNS_CURVES; ++k) memcpy(out + k*apart + i, value + k, size);
-    for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(out + (DESIGNS_CURVES + k)*apart + i, place + k, size);
-    for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(out + (DESIGNS_CHECKED + k)*apart + i, y + DESIGNS_OUTPUTS + k, size);
+  for (j = 0; j < LANES; ++j) {
+    times[j] = t[j < count ? j : count - 1];
+    near[j] = designs_near(now, times[j]);
   }
+  designs_at(now, times, near, y);
+  designs_curves(y, now->matter, need, value, place);
+  for (k = 0; k < DESIGNS_CURVES; ++k) memcpy(out + k*apart, value + k, sizeof *value);
+  for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(out + (DESIGNS_CURVES + k)*apart, place + k, sizeof *place);
+  for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(out + (DESIGNS_CHECKED + k)*apart, y + DESIGNS_OUTPUTS + k, sizeof *y);
   return 0;
 }
 

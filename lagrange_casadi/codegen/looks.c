@@ -49,7 +49,7 @@ static void search_look(search_now* now, double step, const double* times, const
       j = now->link[curves[k]];
       if (lane[k] >= first && lane[k] < first + together && j >= 0) need |= 1ull << (j < 63 ? j : 63);
     }
-    search_evaluate(now, t + first, apart - first < together ? apart - first : together, need);
+    search_evaluate(now, t + first, apart - first < together ? apart - first : together, need, now->found, together);
     for (k = 0; k < many; ++k) {
       j = lane[k] - first;
       if (j < 0 || j >= together) continue;

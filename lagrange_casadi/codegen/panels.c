@@ -65,9 +65,9 @@ static double search_spacing(const search_panel* panel) {
 /* How many rows there are: of curves, of their places, of what is watched. */
 static int search_rows(const search_now* now) { return now->curves->curves + now->curves->places + now->curves->watches; }
 
-/* Evaluate at up to as many times as go together: row k of what is found begins at found + k*together. need tells links by bits. */
-static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need) {
-  if (now->stopped || now->call->at(now->call->of, many, t, need, now->found, now->call->together)) now->stopped = 1;
+/* Evaluate at up to as many times as go together, into rows that are so far apart. need tells links by bits. */
+static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need, search_real* rows, long long apart) {
+  if (now->stopped || now->call->at(now->call->of, many, t, need, rows, apart)) now->stopped = 1;
 }
 
 static search_real search_found(const search_now* now, int k, int j) { return now->found[k*now->call->together + j]; }

@@ -165,7 +165,7 @@ static void search_list_steps(search_now* now, const search_panel* panel, int cu
 
 /* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
    it; where that is towards zero, its neighbours are larger, and known. */
-static void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
+SEARCH_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
   const search_real* row = search_row(panel, curve);
   const long long n = panel->n;
   lanes_pack here, before, after, twice[SEARCH_CHUNK], most;
@@ -208,7 +208,7 @@ static void search_edge(const search_now* now, const search_panel* panel) {
 }
 
 /* Search a panel. */
-static void search_panel_of(search_now* now, const search_panel* panel, int depth) {
+SEARCH_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth) {
   const signed char *step, *const steps = panel->hiding + panel->n - 1;
   search_list list;
   search_real limit;
@@ -352,8 +352,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_c
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
    told. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most are the largest sizes of
    curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
-   steps something is known to hide; it has twice stride values. at evaluates: rows of its out are together values apart, for as many
-   times at most; what it returns ends the search unless it is 0. */
+   steps something is known to hide; it has twice stride values. at evaluates up to so many times together, and may
+   write as many values of each row of its out; what it returns ends the search unless it is 0. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
   const lagrange_casadi_curves* curves = call->curves;
   search_now now;

@@ -3,7 +3,7 @@
 #define SEARCH_TRIALS 3
 #define SEARCH_WATCHED 2
 
-static void search_panel_of(search_now* now, const search_panel* panel, int depth);
+SEARCH_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth);
 
 /* What a panel has at a time: a column of its rows. */
 static void search_column(const search_now* now, const search_panel* panel, long long i, search_real* column) {
@@ -18,7 +18,7 @@ static void search_columns_at(search_now* now, const double* t, int many, search
   const int together = now->call->together, rows = search_rows(now);
   int i, j, k;
   for (i = 0; i < many; i += together) {
-    search_evaluate(now, t + i, many - i < together ? many - i : together, ~0ull);
+    search_evaluate(now, t + i, many - i < together ? many - i : together, ~0ull, now->found, together);
     for (j = i; j < many && j < i + together; ++j) {
       for (k = 0; k < rows; ++k) columns[j*rows + k] = search_found(now, k, j - i);
     }
@@ -33,7 +33,7 @@ static void search_part(search_now* now, double start, double stop, const search
   signed char hiding[SEARCH_WITHIN], kinks[SEARCH_WITHIN];
   search_panel within;
   search_real *row, best;
-  int i, j, k, lacks, many, beyond;
+  int i, j, k, many, beyond;
   for (k = 0; now->call->rests && !now->sought && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
     if (search_lacks(now, k, (start + stop)/2)) return;
   }
@@ -48,17 +48,15 @@ static void search_part(search_now* now, double start, double stop, const search
   for (j = 0; j < SEARCH_WITHIN; ++j) t[j] = j <= SEARCH_INNER ? start + j*width : stop;
   for (i = 1; i <= SEARCH_INNER; i += together) {
     many = SEARCH_INNER + 1 - i < together ? SEARCH_INNER + 1 - i : together;
-    search_evaluate(now, t + i, many, ~0ull);
-    for (k = 0; k < rows; ++k) {
-      row = within.rows + k*SEARCH_STRIDE;
-      for (j = 0; j < many; ++j) row[i + j] = search_found(now, k, j);
-      if (k >= curves) continue;
+    search_evaluate(now, t + i, many, ~0ull, within.rows + i, SEARCH_STRIDE);
+    for (k = 0; k < curves; ++k) {
+      row = search_row(&within, k);
       best = now->peaks[now->quantity[k]].best;
       beyond = 0;
       for (j = i; j < i + many; ++j) beyond |= !(search_magnitude(row[j]) <= best);
-      lacks = beyond && search_lacks(now, k, (start + stop)/2);
-      for (j = i; beyond && !lacks && j < i + many; ++j) {
-        if (search_magnitude(row[j]) > now->peaks[now->quantity[k]].best) search_note(now, k, row[j], t[j], search_found_ratio(now, k, j - i));
+      if (!beyond || search_lacks(now, k, (start + stop)/2)) continue;
+      for (j = i; j < i + many; ++j) {
+        if (search_magnitude(row[j]) > now->peaks[now->quantity[k]].best) search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
         /* What has no value is nothing, and hides what is beside it. */
         if (row[j] - row[j] == 0) continue;
         hiding[j - 1] = hiding[j] = SEARCH_HIDES;
