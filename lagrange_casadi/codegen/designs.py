@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -125,7 +124,9 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
-    text += interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+    text += (
+        interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+    )
     text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
     text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, reduction.matter), drive=parts.drive)
     text += _curves(reduction)

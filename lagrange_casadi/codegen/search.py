@@ -24,8 +24,7 @@ from ..base.vocabulary import Precision
 from ..summits import between, panels
 from ..summits import search as reference
 from ..summits.between import Flags
-from ..summits.panels import CurveSource, Samples
-from ..summits.search import Curves, Peaks
+from ..summits.panels import Curves, CurveSource, Peaks, Samples
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
 from .compiler import Compiler, broken, loaded
@@ -55,7 +54,10 @@ kind and the ``watch_first`` of the numbers ``watch_at``."""
 
 BASE, TIP, OFF = -1, -2, -3
 
-AT = "typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need, real* out, long long apart);\n"
+AT = """\
+typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need, real* out,
+                               long long apart);
+"""
 """What evaluates curves: at so many times, of the links that ``need`` tells by bits, into rows that lie ``apart``: of curves, of
 their places, of what is watched. It returns 0, or another number to end the search."""
 
@@ -174,7 +176,7 @@ def _macros(precision: Precision) -> dict[str, object]:
         "SPACING": f"{panels.SPACING:.17g}",
         "SIDE": f"{_SIDE[precision]:.17g}",
         "RATE": f"{between.RATE:.17g}",
-        "INNER": reference.INNER,
+        "INNER": panels.INNER,
         "DEEPEST": _DEEPEST[precision],
         "FINEST": _FINEST[precision],
         "BESIDE_REST": reference.BESIDE_REST,
@@ -218,7 +220,7 @@ class Tables:
         struct = CURVES.made(
             quantities=len(units),
             curves=len(quantity),
-            places=1 + max(0, *placed, -1) if max(placed) >= 0 else 0,
+            places=1 + max(-1, *placed),
             watches=len(watches),
             knots=len(knots),
             units=max(units) + 1,
@@ -256,10 +258,15 @@ class Search:
         along = np.flatnonzero(np.isfinite(places).any(axis=1))
         placed = np.full(count, OFF)
         placed[along] = np.arange(along.size)
-        tables = Tables.of([(q, -1, k) for q, k in zip(curves.quantities, placed.tolist(), strict=True)], curves.units, curves.watches, curves.knots)
+        tables = Tables.of(
+            [(q, -1, k) for q, k in zip(curves.quantities, placed.tolist(), strict=True)],
+            curves.units,
+            curves.watches,
+            curves.knots,
+        )
         # What is before the first value and beyond the last is the search's to write; packs go on beyond the last.
         rows = np.zeros((count + along.size + len(watched), n + 4 * _LINE))
-        own = rows[:, _LINE:-2 * _LINE]
+        own = rows[:, _LINE : -2 * _LINE]
         own[:] = np.pad(np.concatenate([values, places[along], watched]), ((0, 0), (0, _LINE)), mode="edge")
         scales = np.zeros(max(curves.units) + 1)
         scales[: len(curves.scales)] = curves.scales
