@@ -150,7 +150,7 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
 
 
 def searching(backend: str) -> codegen.Search | None:
-    """The compiled search for peaks of what a backend has evaluated; None for that of the virtual machine, and without a compiler."""
+    """The compiled search for peaks of what a backend has evaluated; None for the virtual machine, and without a compiler."""
     for language in () if backend == "vm" else _LANGUAGES["auto"]:
         compiler = codegen.find_compiler(language)
         with suppress(CompilerError):
