@@ -100,8 +100,8 @@ static void designs_timed(designs_now* now, const double* t) {
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
    for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
-   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. Of the room there are
-   DESIGNS_ROOM rows of stride values, of which the first is zero; of the status stride integers that are zero, and of hiding twice as
+   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. The room is rows of
+   stride values, of times, iterated coordinates, curves, their places, what is checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as
    many. find searches for peaks, by a search of which tables and room are set. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
   const casadi_int n = call->n, stride = call->stride;

@@ -1,4 +1,4 @@
-/* What is known of each quantity, and looks at curves where polynomials say that they are largest. */
+/* Looks at curves where polynomials say that they are largest. */
 #define SEARCH_SUMMITS 64
 #define SEARCH_ENTRIES (4*SEARCH_SUMMITS)
 #define SEARCH_LOOKS (5*SEARCH_SUMMITS)

@@ -108,7 +108,6 @@ static int search_resting(const search_now* now, long long step, signed char* re
 
 /* Search all steps beside rest. One that rests at both ends may move in its middle. */
 static void search_beside_rest(search_now* now) {
-  const int rows = search_rows(now);
   signed char *resting = now->resting, *group = resting + now->curves->curves;
   search_real* middle = now->columns;
   double t;
@@ -127,5 +126,4 @@ static void search_beside_rest(search_now* now) {
       break;
     }
   }
-  (void) rows;
 }

@@ -254,6 +254,7 @@ class Search:
     def peaks(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
         """The same as :func:`..summits.search.peaks`; what ``source`` raises is raised."""
         values, places, watched = samples
+        t = np.ascontiguousarray(t, float)
         n, count, quantities = t.size, len(values), len(curves.units)
         along = np.flatnonzero(np.isfinite(places).any(axis=1))
         placed = np.full(count, OFF)
