@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import Compiler, broken, loaded
-from .emit import START, dump, packed, work
+from .compiler import Compiler, broken, loaded, packed
+from .emit import START, dump, work
 
 _ENTRY = "lagrange_casadi_batch"
 

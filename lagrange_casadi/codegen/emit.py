@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import casadi as ca
@@ -22,7 +21,7 @@ from ..base.vocabulary import Precision
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
 from .calls import Call
-from .compiler import Compiler
+from .compiler import LANES_PLACE
 from .split import split
 from .stages import Stages, plain
 from .tables import with_tables
@@ -57,8 +56,6 @@ INSTANTS = Call(
 
 OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 """Status of an instant."""
-
-LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 
 START = f"""\
 {LANES_PLACE}#include <string.h>
@@ -367,13 +364,6 @@ def dump(name: str, functions: list[ca.Function]) -> str:
 def opened(text: str) -> str:
     """CasADi's C without the signs that kept its simplifications out: see :func:`.closed`."""
     return _OWN_SIGN.sub(lambda found: "" if found[1] == found[2] else f"  {found[1]}={found[2]};\n", text)
-
-
-def packed(text: str, compiler: Compiler) -> str:
-    """An emitted file as a compiler takes it: for C++ with packs before it."""
-    if compiler.language == "c":
-        return text
-    return text.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
 
 
 def work(prefix: str, *functions: ca.Function) -> dict[str, int]:

@@ -15,9 +15,9 @@ import numpy.typing as npt
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
 from .calls import Call
-from .compiler import Compiler, broken, loaded, statements
+from .compiler import Compiler, broken, loaded, packed, statements
 from .designs import CALL, DESIGNS, Reduction
-from .emit import EVALUATE, FOLLOW, INSTANTS, packed
+from .emit import EVALUATE, FOLLOW, INSTANTS
 from .search import Search, Tables, load_search
 
 Array = npt.NDArray[Any]

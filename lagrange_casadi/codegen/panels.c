@@ -113,7 +113,7 @@ static int search_lacks(const search_now* now, int curve, double t) {
   return search_rests(now, curve, i < now->n - 2 ? i : now->n - 2);
 }
 
-/* Take in what a curve is at a time. */
+/* Take in what a curve is at a time; what is nothing has its peak at an instant. */
 static void search_note(search_now* now, int curve, search_real value, double t, search_real place) {
   search_peak* peak = now->peaks + now->quantity[curve];
   const search_real size = search_magnitude(value);
@@ -121,7 +121,7 @@ static void search_note(search_now* now, int curve, search_real value, double t,
   if (size > peak->best) {
     search_grow(now, now->quantity[curve], size);
     if (peak->size >= size - peak->rounding && peak->t < t - now->half) return;
-  } else if (!(size >= peak->best - peak->rounding && t < peak->t - now->half)) {
+  } else if (!(peak->limit <= SEARCH_LARGEST && size >= peak->best - peak->rounding && t < peak->t - now->half)) {
     return;
   }
   peak->size = size;

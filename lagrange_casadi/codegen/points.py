@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import Compiler, broken, loaded
-from .emit import START, WIDE, dump, packed, work
+from .compiler import Compiler, broken, loaded, packed
+from .emit import START, WIDE, dump, work
 
 POINTS = Call(
     "lagrange_casadi_points",

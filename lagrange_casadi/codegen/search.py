@@ -27,8 +27,8 @@ from ..summits.between import Flags
 from ..summits.panels import Curves, CurveSource, Peaks, Samples
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
-from .compiler import Compiler, broken, loaded
-from .emit import START, packed
+from .compiler import Compiler, broken, loaded, packed
+from .emit import START
 
 FUNCTION = "lagrange_casadi_search"
 _ROOM = "lagrange_casadi_search_room"

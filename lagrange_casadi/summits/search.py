@@ -124,7 +124,7 @@ class _Search:
         return np.asarray(limit[self.quantity])
 
     def note(self, curve: int, value: float, t: float, xi: float) -> None:
-        """Take in what a curve is at a time."""
+        """Take in what a curve is at a time; what is nothing has its peak at an instant."""
         q, size = self.quantity[curve], abs(value)
         rounding = float(self.rounding[q])
         if not math.isfinite(size) or self.lacks(t)[curve]:
@@ -133,7 +133,8 @@ class _Search:
             self.best[q] = size
             taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
         else:
-            taken = size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
+            there = self.best[q] > NOTHING * self.scale[q]
+            taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
 
