@@ -11,12 +11,14 @@ from lagrange_casadi import codegen, derive
 from lagrange_casadi.codegen.calls import Call
 from lagrange_casadi.codegen.designs import CALL as DESIGNS
 from lagrange_casadi.codegen.emit import INSTANTS
+from lagrange_casadi.codegen.search import CALL as SEARCH
+from lagrange_casadi.codegen.search import CURVES, interface
 from lagrange_casadi.instants.cycle_table import INTERPOLATE
 from lagrange_casadi.instants.grids import GRID, LARGEST
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
-CALLS = (INSTANTS, DESIGNS, GRID, LARGEST, INTERPOLATE)
+CALLS = (INSTANTS, CURVES, SEARCH, DESIGNS, GRID, LARGEST, INTERPOLATE)
 UNEVEN = Call("uneven", {"a": "int", "b": "const real*", "c": "int", "d": "int", "e": "long long", "f": "int"})
 
 
@@ -35,7 +37,8 @@ def test_structs_lie_alike_in_c_and_python(language, real, tmp_path):
             lines += [f"offsetof({call.name}, {name})", f"sizeof(((const {call.name}*) 0)->{name})"]
     source = tmp_path / ("layout.c" if language == "c" else "layout.cpp")
     printed = "".join(f'  printf("%lu\\n", (unsigned long) ({line}));\n' for line in lines)
-    types = "".join(call.text(real) for call in (*CALLS, UNEVEN))
+    of_search = interface("double" if real == "double" else "single")
+    types = of_search + "".join(call.text(real) for call in (*CALLS, UNEVEN) if call not in (CURVES, SEARCH))
     source.write_text(f"#include <stddef.h>\n#include <stdio.h>\n{types}int main(void) {{\n{printed}  return 0;\n}}\n")
     subprocess.run([*compiler.command, source, "-o", tmp_path / "layout"], check=True)
     told = subprocess.run([tmp_path / "layout"], capture_output=True, text=True, check=True).stdout
@@ -49,7 +52,7 @@ def test_the_emitted_c_has_the_structs():
     engine = DesignEngine.of(slider_crank(), rung=Rung("vm"))
     source = codegen.emit_designs(engine.graph, engine.stages, None, engine.kept.reduction)
     assert INSTANTS.text() in source
-    assert DESIGNS.text() in source
+    assert interface("double") + DESIGNS.text() in source
 
 
 def test_members_are_set_by_name_and_none_is_forgotten():

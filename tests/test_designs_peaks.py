@@ -9,12 +9,13 @@ import pytest
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of, values
 from mechanisms import crank_and_rod, lobes, pendulum
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case, motion
+from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, load_case, motion
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import forces, refine
+from lagrange_casadi.studies.peaks import ContinuousSolution, forces, refine
+from lagrange_casadi.summits.panels import Curves, Samples
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
@@ -183,3 +184,55 @@ def test_a_bar_held_at_rest_has_told_peaks():
     for found in (true, *others):
         assert found.status.tolist() == [Status.OK]
         np.testing.assert_allclose(found.value, true.value, rtol=1e-11, atol=1e-13)
+
+
+def lift(law, count):
+    """A cage that is held, goes up and is held again, and rubs on its mast."""
+    m = Mechanism("lift")
+    cage = m.link("cage", length=0.2, mass=5.0, centre=(0.0, 0.0), inertia=0.01)
+    m.friction("rub", m.prismatic("mast", m.ground, cage, axis=(0, 1)), mu=0.2, length=0.1)
+    m.force("wind", cage, x=30.0)
+    way = motion.moves([motion.dwell(0.1), motion.move(0.5, time=0.3, law=law), motion.dwell(0.2)])
+    return Scene(m, {"mast": way}, t=(0.0, 0.6, count), wanted=["effort"])
+
+
+@pytest.mark.parametrize("backend", ["lanes", "vm"])
+@pytest.mark.parametrize("law", ["trapezoid", "cycloidal"])
+@pytest.mark.parametrize("count", [3, 4, 7, 8])
+def test_steps_that_begin_or_end_at_rest_are_searched(law, count, backend):
+    """The effort is m (g + a) and what rubs, from the moment when the cage moves: largest right then, or between two instants."""
+    times = np.linspace(0.1, 0.4, 3001)[1:-1]
+    way = derive(lift(law, 61)).motion
+    largest = max(abs(5.0 * (9.81 + float(way(t, [])[2])) + 0.2 * 30.0) for t in times)
+    designs = DesignEngine.of(lift(law, count), rung=Rung(backend))
+    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:mast"]
+    assert value == pytest.approx(largest, rel=1e-5)
+    assert value >= largest * (1 - 1e-9)
+    assert 0.1 < t < 0.4 or t == pytest.approx(0.1, abs=1e-12)
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("law", ["trapezoid", "cycloidal"])
+def test_refined_peaks_are_those_of_the_reference(law):
+    """By the compiled search as by NumPy, also beside rest, and what the evaluation raises comes through it."""
+    scene = lift(law, 8)
+    solution = evaluate(scene, backend="c", certificate=False)
+    sampled = [solution.peak(name) for name in forces(solution)]
+    found, expected = (ContinuousSolution.of(scene, solution, backend).peaks(sampled) for backend in ("c", "vm"))
+    for one, other in zip(found, expected, strict=True):
+        assert one.value == pytest.approx(other.value, rel=1e-12)
+        assert one.t == pytest.approx(other.t, abs=1e-7) or abs(one.value) == pytest.approx(abs(other.value), rel=1e-13)
+
+
+def test_what_an_evaluation_raises_ends_the_search():
+    """An interrupt too: it passes through C as a number."""
+
+    class Broken:
+        def at(self, t):
+            raise KeyboardInterrupt
+
+    t = np.linspace(0.0, 1.0, 21)
+    samples = Samples(np.sin(9 * t)[None], np.full((1, 21), np.nan), np.zeros((0, 21)))
+    compiler = codegen.find_compiler("c")
+    with pytest.raises(KeyboardInterrupt):
+        codegen.load_search(compiler).peaks(Broken(), Curves((0,), (0,)), t, samples, np.ones(20, bool))

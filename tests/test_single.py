@@ -12,8 +12,7 @@ from compiled import HEADER, PEDANTIC, SCENES
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
-from lagrange_casadi.codegen.compiler import FLAGS
-from lagrange_casadi.codegen.emit import LANES_PLACE
+from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
 from lagrange_casadi.codegen.stages import compensated, plain
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import SizeError

@@ -14,8 +14,8 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import refine
-from lagrange_casadi.summits.panels import Samples
-from lagrange_casadi.summits.search import Curves, peaks
+from lagrange_casadi.summits.panels import Curves, Samples
+from lagrange_casadi.summits.search import peaks
 from lagrange_casadi.summits.sharpness import Kind, Watch
 
 STEP = 0.04

@@ -6,6 +6,7 @@ from .designs import emit_designs
 from .emit import emit
 from .library import DesignsLibrary, Library, load, load_designs
 from .points import PointsLibrary, load_points
+from .search import Search, load_search
 
 __all__ = [
     "BatchLibrary",
@@ -14,6 +15,7 @@ __all__ = [
     "Language",
     "Library",
     "PointsLibrary",
+    "Search",
     "emit",
     "emit_designs",
     "find_compiler",
@@ -21,4 +23,5 @@ __all__ = [
     "load_batch",
     "load_designs",
     "load_points",
+    "load_search",
 ]

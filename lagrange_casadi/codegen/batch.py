@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START
+from .compiler import Compiler, broken, loaded, packed
+from .emit import START
 from .printer import print_functions
 
 _ENTRY = "lagrange_casadi_batch"
@@ -72,9 +71,7 @@ def emit_batch(function: Any) -> str:
 
 def load_batch(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> BatchLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
-    source = emit_batch(function)
-    if compiler.language == "c++":
-        source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
+    source = packed(emit_batch(function), compiler)
     library, call = loaded(source, compiler, tuple(extra)), _call(function)
     try:
         return BatchLibrary(function, call, call.declare(getattr(library, _ENTRY)))

@@ -21,6 +21,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 from typing import Literal
 
@@ -37,6 +38,8 @@ FLAGS: dict[Language, tuple[str, ...]] = {
 }
 """No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call.
 No start files: those that gcc links in where -ffast-math is asked for make the whole process flush to zero what is subnormal."""
+
+LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 
 _LINE = 300
 """Characters of a compiler's message that are quoted at most."""
@@ -135,6 +138,13 @@ def _version(command: tuple[str, ...]) -> str | None:
 
 def _silent(error: subprocess.TimeoutExpired) -> str:
     return f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER} times as many"
+
+
+def packed(text: str, compiler: Compiler) -> str:
+    """An emitted file as a compiler takes it: for C++ with packs before it."""
+    if compiler.language == "c":
+        return text
+    return text.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
 
 
 def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctypes.CDLL:

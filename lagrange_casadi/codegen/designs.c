@@ -1,4 +1,33 @@
 /* Many designs, one after another. */
+/* The peak of every quantity, its time and its place; whether all are told. */
+static int designs_peaks(designs_now* now, double* value, double* t, double* xi) {
+  lagrange_casadi_search_call search = *now->call->search;
+  signed char open[DESIGNS_QUANTITIES], told[DESIGNS_QUANTITIES];
+  int all = 1, k;
+  memset(open, 0, sizeof open);
+  for (k = 0; k < DESIGNS_DOUBTS; ++k) open[designs_doubtful[k]] |= (signed char) designs_is_open(now, designs_doubted[k]);
+  memcpy(now->call->hiding, now->bent, (size_t) now->n);
+  search.n = now->n;
+  search.stride = now->stride;
+  search.t = now->t;
+  search.rows = now->rows + LANES;
+  search.watched = search.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1)*now->stride;
+  search.most = now->most;
+  search.open = open;
+  search.rests = now->rests;
+  search.together = LANES;
+  search.hiding = now->call->hiding;
+  search.at = designs_asked;
+  search.of = now;
+  search.value = value;
+  search.peak_t = t;
+  search.xi = xi;
+  search.told = told;
+  now->call->find(&search);
+  for (k = 0; k < DESIGNS_QUANTITIES; ++k) all &= told[k];
+  return all;
+}
+
 /* Everything of one design; a design without a result leaves nothing but why. */
 static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
                        double* rms, double* history) {
@@ -71,9 +100,9 @@ static void designs_timed(designs_now* now, const double* t) {
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
    for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
-   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
-   panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
-   twice as many. */
+   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. The room is rows of
+   stride values, of times, iterated coordinates, curves, their places, what is checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as
+   many. find searches for peaks, by a search of which tables and room are set. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
   const casadi_int n = call->n, stride = call->stride;
   const double* p = call->p;
@@ -86,9 +115,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
   now.times = room;
   now.z = room + DESIGNS_NT*stride;
   now.rows = now.z + DESIGNS_NZ*stride;
-  now.inner = now.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + DESIGNS_WATCHES)*stride;
   now.status = call->statuses;
-  now.hiding = call->hiding;
+  now.call = call;
   for (d = 0; d < call->designs; ++d) {
     double* values = call->value ? call->value + d*DESIGNS_QUANTITIES : 0;
     double *times = values ? call->peak_t + d*DESIGNS_QUANTITIES : 0, *places = values ? call->xi + d*DESIGNS_QUANTITIES : 0;

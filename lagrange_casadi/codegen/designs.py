@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -16,13 +14,12 @@ from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
-from ..summits import between, panels
-from ..summits import search as summits
-from ..summits.sharpness import Kind, Watch
+from ..summits.sharpness import Watch
 from .calls import Call
 from .emit import FOLLOW, Parts, emit, following
 from .link_curves import Along, along, turning
 from .printer import function_name, print_functions
+from .search import BASE, OFF, TIP, Tables, interface
 from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
@@ -41,6 +38,8 @@ CALL = Call(
         "room": "real*",
         "statuses": "int*",
         "hiding": "signed char*",
+        "search": "const lagrange_casadi_search_call*",
+        "find": "lagrange_casadi_find*",
         "status": "signed char*",
         "value": "double*",
         "peak_t": "double*",
@@ -61,27 +60,8 @@ what is left of their laws, and whether one is at rest."""
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
 
-ROUNDING: dict[Precision, float] = {"double": summits.ROUNDING, "single": 1e-6}
-"""By how much of itself a peak may be off: less is not worth another look."""
-
-NOISE: dict[Precision, float] = {"double": summits.NOISE, "single": 1e-2}
-"""Of itself: how far rounding may throw a quantity and be no more than that."""
-
-DEEPEST: dict[Precision, int] = {"double": summits.DEEPEST, "single": 8}
-"""Panels within each other."""
-
-FINEST: dict[Precision, int] = {"double": summits.FINEST, "single": 5}
-"""Of these, the one in whose steps nothing hides but beside a pole."""
-
-SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
-"""Of a step between instants: how near to a kink or a jump its sides are."""
-
-STRIDE = 64
-"""Values of a row of a panel inside a step: its times, and two packs beside them."""
-
-_STRETCH: dict[Precision, float] = {"double": summits.STRETCH, "single": 1e-2}
-_LAST: dict[Precision, float] = {"double": summits.LAST, "single": 1e-5}
-_FILES = ("instants.c", "between.c", "fits.c", "looks.c", "within.c", "summits.c", "designs.c")
+_FILES = ("instants.c", "designs.c")
+_PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,13 +91,13 @@ class Reduction:
     knots: tuple[float, ...]
 
     @property
-    def curves(self) -> list[tuple[int, int, int | str]]:
-        """Of each curve: its quantity, its link or -1, and where along that it is: a row of places, ``BASE``, ``TIP``, ``OFF``."""
-        found: list[tuple[int, int, int | str]] = [(q, -1, "OFF") for q in range(len(self.quantities))]
+    def curves(self) -> list[tuple[int, int, int]]:
+        """Of each curve: its quantity, its link or -1, and its place, as in :data:`.search.CURVES`."""
+        found = [(q, -1, OFF) for q in range(len(self.quantities))]
         q, first = len(self.quantities), 0
         for k, link in enumerate(self.links):
             for places in link.places:
-                found += [(q, k, place if isinstance(place, str) else first + place) for place in places]
+                found += [(q, k, _PLACES[place] if isinstance(place, str) else first + place) for place in places]
                 q += 1
             first += link.rows
         return found
@@ -130,12 +110,11 @@ class Reduction:
     @property
     def rows(self) -> int:
         """Rows of one design that are kept while it is evaluated, beside those of times and iterated coordinates."""
-        return self.inner + len(self.checks) + 1
+        return len(self.curves) + self.places + len(self.checks) + 1 + len(self.watches)
 
-    @property
-    def inner(self) -> int:
-        """Rows of a panel inside a step."""
-        return len(self.curves) + self.places + len(self.watches)
+    def tables(self, precision: Precision) -> Tables:
+        """The curves as the search takes them."""
+        return Tables.of(self.curves, self.units, self.watches, self.knots, precision)
 
 
 def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction) -> str:
@@ -145,7 +124,9 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
     text += print_functions({"matter_of": reduction.matter}, stages.precision, prefix="matter", packs=True)
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
-    text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+    text += (
+        interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+    )
     text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
     text += _WORK.format(**parts.sizes, drive=parts.drive)
     text += _curves(reduction)
@@ -167,7 +148,6 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Re
         "LEAP": _real(LEAP),
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
-        "LEAST": _real(float(numbers.tiny)),
         **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
         "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
         "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
@@ -180,52 +160,17 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Re
         "CHECKED": curves + reduction.places,
         "WATCHES": len(reduction.watches),
         "OUTPUTS": sizes["columns"] - len(reduction.watches),
-        "KNOTS": len(reduction.knots),
-        "AT_BASE": -1,
-        "AT_TIP": -2,
-        "AT_OFF": -3,
         "CHECKS": checks,
         "DOUBTS": len(reduction.doubts),
-        "UNITS": max(reduction.units) + 1,
         "EFFORTS": len(reduction.efforts),
         "NEAR": _real(reduction.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
-        **{name: _real(value) for name, value in _numbers(precision).items()},
-        "INNER": summits.INNER,
-        "STRIDE": STRIDE,
-        "DEEPEST": DEEPEST[precision],
-        "FINEST": FINEST[precision],
-        "PANELS": summits.PANELS,
-        "SPACING": f"{panels.SPACING:.17g}",
-        "SIDE": f"{SIDE[precision]:.17g}",
-        "RATE": f"{between.RATE:.17g}",
-        **{f"IS_{kind.name}": int(kind) for kind in Kind},
+        "END": _real(END[precision]),
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
         "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
         **reduction.statuses,
-    }
-
-
-def _numbers(precision: Precision) -> dict[str, float]:
-    """What the search takes for small, and for far."""
-    return {
-        "ROUNDING": ROUNDING[precision],
-        "NOISE": NOISE[precision],
-        "LAST": _LAST[precision],
-        "END": END[precision],
-        "STRETCH": _STRETCH[precision],
-        "BESIDE": summits.BESIDE,
-        "NOTHING": summits.NOTHING,
-        "ENDLESS": summits.ENDLESS,
-        "RAGGED": summits.RAGGED,
-        "TURN": math.tau,
-        "DIP": between.DIP,
-        "CHANGE": between.CHANGE,
-        "RISE": between.RISE,
-        "STRAIGHT": between.STRAIGHT,
-        "NEGLIGIBLE": between.NEGLIGIBLE,
     }
 
 
@@ -239,8 +184,6 @@ def _defined(macros: Mapping[str, object]) -> str:
 
 def _tables(reduction: Reduction) -> str:
     columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("CLOSURE",), (0.0,))
-    quantities, on, places = zip(*reduction.curves, strict=True)
-    firsts = [quantities.index(q) for q in range(quantities[-1] + 1)] + [len(quantities)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
     return "".join(
@@ -248,15 +191,6 @@ def _tables(reduction: Reduction) -> str:
             _table("int", "designs_checked", columns),
             _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
-            _table("int", "designs_unit", reduction.units),
-            _table("int", "designs_first", firsts),
-            _table("int", "designs_of", quantities),
-            _table("int", "designs_link_of", on),
-            _table("int", "designs_placed", (place if isinstance(place, int) else f"DESIGNS_AT_{place}" for place in places)),
-            _table("int", "designs_watch", (int(watch.kind) for watch in reduction.watches or (Watch(Kind.RATE),))),
-            _table("int", "designs_watch_first", itertools.accumulate((len(watch.at) for watch in reduction.watches), initial=0)),
-            _table("DESIGNS_REAL", "designs_watch_at", [_number(x) for watch in reduction.watches for x in watch.at] or (0,)),
-            _table("double", "designs_knot", [_number(x) for x in reduction.knots] or (0,)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
             _table("int", "designs_doubtful", [quantity for _, quantity in reduction.doubts] or (0,)),

@@ -17,6 +17,7 @@ from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.scene_graph import SceneGraph
 from .calls import Call
+from .compiler import LANES_PLACE
 from .printer import function_name, literal, print_functions
 from .stages import Stages, plain
 
@@ -51,8 +52,6 @@ INSTANTS = Call(
 OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 """Status of an instant."""
 
-LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
-
 START = f"""\
 {LANES_PLACE}#include <math.h>
 #include <string.h>
@@ -73,6 +72,9 @@ START = f"""\
 #define lanes_pack lanes_real
 #define lanes_choose(where, a) ((where) ? (a) : 0)
 #define lanes_sign(x) ((x) < 0 ? -1 : (x) > 0 ? 1 : (x))
+#define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
+#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
+#define lanes_where_less(x, y) ((x) < (y))
 #endif
 #ifdef __GNUC__
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))

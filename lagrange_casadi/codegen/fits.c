@@ -1,48 +1,48 @@
 /* Curves through a few values at equal steps of time, and where they are largest. */
-#define DESIGNS_FIT 7
+#define SEARCH_FIT 7
 /* What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more, its slope may be off by other things
    as well. */
-#define DESIGNS_TRUST ((designs_real) 1e-5)
-#define DESIGNS_TRUST_ASIDE ((designs_real) 1e-6)
+#define SEARCH_TRUST ((search_real) 1e-5)
+#define SEARCH_TRUST_ASIDE ((search_real) 1e-6)
 /* Of its curve: how large the sixth difference of a polynomial may be that is believed. */
-#define DESIGNS_ROUGH ((designs_real) 0.1)
+#define SEARCH_ROUGH ((search_real) 0.1)
 /* How far from a kink, in steps, both its sides are looked at. */
-#define DESIGNS_ASIDE ((designs_real) 1e-2)
+#define SEARCH_ASIDE ((search_real) 1e-2)
 
 /* Seven values at equal steps, where to begin, and bounds, in steps from the middle one; then what a polynomial through them says. */
 typedef struct {
-  designs_real y[DESIGNS_FIT][LANES], x[LANES], low[LANES], high[LANES];
-  designs_real size[LANES], slope[LANES], curve[LANES], steep[LANES], rough[LANES];
-} designs_fit;
+  search_real y[SEARCH_FIT][LANES], x[LANES], low[LANES], high[LANES];
+  search_real size[LANES], slope[LANES], curve[LANES], steep[LANES], rough[LANES];
+} search_fit;
 
 /* A value of a panel beside which a curve may rise: where to look, and what is expected there: its size, and the size's slope and
    curve by steps of time. What a polynomial misses there bends its slope by steep times that; its sixth difference tells how rough it
    is. kink_t and kink_size are the times at which to look for a kink, if any, and the sizes expected there. */
 typedef struct {
   int curve, closed, again, kinked;
-  casadi_int at;
+  long long at;
   double t, kink_t[3];
-  designs_real sign, size, slope, curve_there, steep, rough, trust, kink_size[3];
-} designs_summit;
+  search_real sign, size, slope, curve_there, steep, rough, trust, kink_size[3];
+} search_summit;
 
-static void designs_solve(designs_fit* fit) {
-  casadi_real y[DESIGNS_FIT], a[DESIGNS_FIT], d[4], o[4], x, low, high, slope, curve, square;
+static void search_solve(search_fit* fit) {
+  lanes_pack y[SEARCH_FIT], a[SEARCH_FIT], d[4], o[4], x, low, high, slope, curve, square;
   int k, trial;
   memcpy(y, fit->y, sizeof y);
   memcpy(&x, fit->x, sizeof x);
   memcpy(&low, fit->low, sizeof x);
   memcpy(&high, fit->high, sizeof x);
   for (k = 1; k < 4; ++k) {
-    d[k] = DESIGNS_HALF*(y[3 + k] + y[3 - k]) - y[3];
-    o[k] = DESIGNS_HALF*(y[3 + k] - y[3 - k]);
+    d[k] = SEARCH_HALF*(y[3 + k] + y[3 - k]) - y[3];
+    o[k] = SEARCH_HALF*(y[3 + k] - y[3 - k]);
   }
   a[0] = y[3];
-  a[1] = (45*o[1] - 9*o[2] + o[3])*((designs_real) 1/30);
-  a[2] = (270*d[1] - 27*d[2] + 2*d[3])*((designs_real) 1/180);
-  a[3] = (8*o[2] - 13*o[1] - o[3])*((designs_real) 1/24);
-  a[4] = (12*d[2] - 39*d[1] - d[3])*((designs_real) 1/72);
-  a[5] = (5*o[1] - 4*o[2] + o[3])*((designs_real) 1/120);
-  a[6] = (15*d[1] - 6*d[2] + d[3])*((designs_real) 1/360);
+  a[1] = (45*o[1] - 9*o[2] + o[3])*((search_real) 1/30);
+  a[2] = (270*d[1] - 27*d[2] + 2*d[3])*((search_real) 1/180);
+  a[3] = (8*o[2] - 13*o[1] - o[3])*((search_real) 1/24);
+  a[4] = (12*d[2] - 39*d[1] - d[3])*((search_real) 1/72);
+  a[5] = (5*o[1] - 4*o[2] + o[3])*((search_real) 1/120);
+  a[6] = (15*d[1] - 6*d[2] + d[3])*((search_real) 1/360);
   for (trial = 0;; ++trial) {
     slope = a[1] + x*(2*a[2] + x*(3*a[3] + x*(4*a[4] + x*(5*a[5] + x*(6*a[6])))));
     curve = 2*a[2] + x*(6*a[3] + x*(12*a[4] + x*(20*a[5] + x*(30*a[6]))));
@@ -59,18 +59,18 @@ static void designs_solve(designs_fit* fit) {
   memcpy(fit->slope, &slope, sizeof x);
   memcpy(fit->curve, &curve, sizeof x);
   memcpy(fit->steep, y + 1, sizeof x);
-  y[2] = designs_size(720*a[6]);
+  y[2] = search_size(720*a[6]);
   memcpy(fit->rough, y + 2, sizeof x);
 }
 
 /* The first of seven values around value j of count, as far in the middle as there are. */
-static casadi_int designs_window(casadi_int j, casadi_int count) {
-  return j < 3 ? 0 : j > count - 4 ? count - DESIGNS_FIT : j - 3;
+static long long search_window(long long j, long long count) {
+  return j < 3 ? 0 : j > count - 4 ? count - SEARCH_FIT : j - 3;
 }
 
 /* Begin at value j of count, around which the first of the seven is told; an end keeps a little inside. */
-static void designs_begin(designs_fit* fit, int lane, casadi_int j, casadi_int first, casadi_int count) {
-  const designs_real from = (designs_real) (j - first - 3), off = (designs_real) 1e-5;
+static void search_begin(search_fit* fit, int lane, long long j, long long first, long long count) {
+  const search_real from = (search_real) (j - first - 3), off = (search_real) 1e-5;
   fit->x[lane] = from;
   fit->low[lane] = j == 0 ? from + off : from - 1;
   fit->high[lane] = j == count - 1 ? from - off : from + 1;
@@ -78,18 +78,18 @@ static void designs_begin(designs_fit* fit, int lane, casadi_int j, casadi_int f
 
 /* What a polynomial through seven values, of which the first is that at an end, says of the step there: its value in the middle, and
    the least size of its slope, by steps, at both ends and there: zero where it turns. */
-static designs_real designs_stretch(const designs_real* end, int inward, designs_real* middle) {
-  static const designs_real weights[DESIGNS_FIT][4] = {
-    {(designs_real) 231/1024, (designs_real) -147/60, (designs_real) -1627/1920, (designs_real) -1/6},
-    {(designs_real) 1386/1024, (designs_real) 6, (designs_real) 633/1920, (designs_real) -77/60},
-    {(designs_real) -1155/1024, (designs_real) -7.5, (designs_real) 2360/1920, (designs_real) 2.5},
-    {(designs_real) 924/1024, (designs_real) 400/60, (designs_real) -2350/1920, (designs_real) -100/60},
-    {(designs_real) -495/1024, (designs_real) -3.75, (designs_real) 1365/1920, (designs_real) 50/60},
-    {(designs_real) 154/1024, (designs_real) 1.2, (designs_real) -443/1920, (designs_real) -0.25},
-    {(designs_real) -21/1024, (designs_real) -1/6, (designs_real) 62/1920, (designs_real) 2/60}};
-  designs_real sum[4] = {0, 0, 0, 0}, y;
+static search_real search_stretch(const search_real* end, int inward, search_real* middle) {
+  static const search_real weights[SEARCH_FIT][4] = {
+    {(search_real) 231/1024, (search_real) -147/60, (search_real) -1627/1920, (search_real) -1/6},
+    {(search_real) 1386/1024, (search_real) 6, (search_real) 633/1920, (search_real) -77/60},
+    {(search_real) -1155/1024, (search_real) -7.5, (search_real) 2360/1920, (search_real) 2.5},
+    {(search_real) 924/1024, (search_real) 400/60, (search_real) -2350/1920, (search_real) -100/60},
+    {(search_real) -495/1024, (search_real) -3.75, (search_real) 1365/1920, (search_real) 50/60},
+    {(search_real) 154/1024, (search_real) 1.2, (search_real) -443/1920, (search_real) -0.25},
+    {(search_real) -21/1024, (search_real) -1/6, (search_real) 62/1920, (search_real) 2/60}};
+  search_real sum[4] = {0, 0, 0, 0}, y;
   int k, j;
-  for (j = 0; j < DESIGNS_FIT; ++j) {
+  for (j = 0; j < SEARCH_FIT; ++j) {
     y = end[j*inward];
     for (k = 0; k < 4; ++k) sum[k] += weights[j][k]*y;
   }
@@ -103,12 +103,12 @@ static designs_real designs_stretch(const designs_real* end, int inward, designs
 
 /* Where two parabolas through three sizes on either side of value j meet in a tip, if they do, and their sizes there; and a little
    before it and after it, for only there does each show what it is worth. */
-static void designs_kink(const designs_real* row, designs_summit* summit, double t, double step) {
-  const designs_real s = summit->sign;
-  const designs_real a1 = s*(row[-1] - row[-2]), a2 = s*(row[-1] - 2*row[-2] + row[-3])/2;
-  const designs_real b1 = s*(row[1] - row[2]), b2 = s*(row[1] - 2*row[2] + row[3])/2;
-  const designs_real bend = 2*((a2 < 0 ? -a2 : a2) + (b2 < 0 ? -b2 : b2));
-  designs_real left, right, up, down, x = 0;
+static void search_kink(const search_real* row, search_summit* summit, double t, double step) {
+  const search_real s = summit->sign;
+  const search_real a1 = s*(row[-1] - row[-2]), a2 = s*(row[-1] - 2*row[-2] + row[-3])/2;
+  const search_real b1 = s*(row[1] - row[2]), b2 = s*(row[1] - 2*row[2] + row[3])/2;
+  const search_real bend = 2*((a2 < 0 ? -a2 : a2) + (b2 < 0 ? -b2 : b2));
+  search_real left, right, up, down, x = 0;
   int trial, k;
   summit->kinked = 0;
   if (!(a1 + (a2 < 0 ? a2 : 5*a2) > bend && b1 + (b2 < 0 ? b2 : 5*b2) > bend)) return;
@@ -125,7 +125,7 @@ static void designs_kink(const designs_real* row, designs_summit* summit, double
   if (!(up > bend && down > bend && x > -1 && x < 1 && left >= s*row[0])) return;
   summit->kinked = 1;
   for (k = 0; k < 3; ++k) {
-    const designs_real at = k == 0 ? x : k == 1 ? x - DESIGNS_ASIDE : x + DESIGNS_ASIDE;
+    const search_real at = k == 0 ? x : k == 1 ? x - SEARCH_ASIDE : x + SEARCH_ASIDE;
     summit->kink_t[k] = t + step*(double) at;
     summit->kink_size[k] = k < 2 ? s*row[-1] + (at + 1)*(a1 + (at + 2)*a2) : s*row[1] + (1 - at)*(b1 + (2 - at)*b2);
   }

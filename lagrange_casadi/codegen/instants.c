@@ -4,28 +4,16 @@
    designs_columns, designs_quantities, tables, and sizes as macros. */
 typedef DESIGNS_REAL designs_real;
 
-/* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
-   its sign, its time and its ratio xi/l. going is its size where it grows on and no end of that is found. What equilibrium leaves
-   open is not searched. */
 typedef struct {
-  double t;
-  designs_real best, rounding, limit, sampled, size, place, sign, going;
-  int open;
-} designs_peak;
-
-typedef struct {
-  casadi_int n, stride, left, hidden;
+  const lagrange_casadi_designs_call* call;
+  casadi_int n, stride;
   const double* t;
   const designs_real* p;
-  designs_real *times, *rows, *z, *inner, *scale;
-  designs_peak* peaks;
+  designs_real *times, *rows, *z, most[DESIGNS_CURVES];
   double half;
-  int *status, untold, rests;
+  int *status, rests;
   const signed char* bent;
-  signed char zigzags[DESIGNS_CURVES];
-  signed char* hiding;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
-  casadi_real most[DESIGNS_CURVES];
 } designs_now;
 
 static designs_real designs_lane(const casadi_real* pack, int lane) {
@@ -66,15 +54,42 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   designs_columns(now->parameters, now->constants, now->p, at, y);
 }
 
+/* The instant that is nearest to a time. */
+static casadi_int designs_near(const designs_now* now, double t) {
+  const double x = (t - now->t[0])/(2*now->half) + 0.5;
+  const casadi_int i = x > 0 ? (casadi_int) x : 0;
+  return i < now->n ? i : now->n - 1;
+}
+
+/* Curves, their places and what is watched at up to LANES times, into rows that are as far apart: what the search asks for. */
+static int designs_asked(void* of, long long count, const double* t, unsigned long long need, designs_real* out, long long apart) {
+  const designs_now* now = (const designs_now*) of;
+  casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)];
+  double times[LANES];
+  casadi_int near[LANES];
+  int j, k;
+  for (j = 0; j < LANES; ++j) {
+    times[j] = t[j < count ? j : count - 1];
+    near[j] = designs_near(now, times[j]);
+  }
+  designs_at(now, times, near, y);
+  designs_curves(y, now->matter, need, value, place);
+  for (k = 0; k < DESIGNS_CURVES; ++k) memcpy(out + k*apart, value + k, sizeof *value);
+  for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(out + (DESIGNS_CURVES + k)*apart, place + k, sizeof *place);
+  for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(out + (DESIGNS_CHECKED + k)*apart, y + DESIGNS_OUTPUTS + k, sizeof *y);
+  return 0;
+}
+
 /* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
    watched. */
 static void designs_sample(designs_now* now, double* history) {
   casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+  casadi_real most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   designs_real* row;
   casadi_int i, j;
   int k;
-  for (k = 0; k < DESIGNS_CURVES; ++k) now->most[k] = 0;
+  for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
     for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
@@ -83,7 +98,7 @@ static void designs_sample(designs_now* now, double* history) {
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
       memcpy(row, value + k, sizeof *value);
-      now->most[k] = designs_larger(now->most[k], designs_size(value[k]));
+      most[k] = designs_larger(most[k], designs_size(value[k]));
     }
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
@@ -100,6 +115,10 @@ static void designs_sample(designs_now* now, double* history) {
         for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);
       }
     }
+  }
+  for (k = 0; k < DESIGNS_CURVES; ++k) {
+    now->most[k] = 0;
+    for (j = 0; j < LANES; ++j) now->most[k] = designs_lane(most + k, (int) j) > now->most[k] ? designs_lane(most + k, (int) j) : now->most[k];
   }
 }
 

@@ -7,7 +7,6 @@ import functools
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -16,9 +15,10 @@ import numpy.typing as npt
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
 from .calls import Call
-from .compiler import Compiler, broken, loaded, statements
-from .designs import CALL, DEEPEST, DESIGNS, STRIDE, Reduction
-from .emit import EVALUATE, FOLLOW, INSTANTS, LANES_PLACE
+from .compiler import Compiler, broken, loaded, packed, statements
+from .designs import CALL, DESIGNS, Reduction
+from .emit import EVALUATE, FOLLOW, INSTANTS
+from .search import Search, Tables, load_search
 
 Array = npt.NDArray[Any]
 """Of the precision that the code was emitted in."""
@@ -118,7 +118,8 @@ class DesignsLibrary:
     reduction: Reduction
     count: int
     guess: npt.NDArray[np.float64]
-    precision: Precision
+    search: Search
+    tables: Tables
 
     def evaluate(
         self,
@@ -164,15 +165,17 @@ class DesignsLibrary:
         do not depend on other rows.
         """
         stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
-        inner = DEEPEST[self.precision] * self.reduction.inner * STRIDE
         hidden = np.zeros((len(bent), stride), np.int8)
         hidden[:, : bent.shape[1]] = bent
-        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
+        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, DTYPES[self.search.precision])
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
         arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room, **results}
         arrays |= {"statuses": status, "hiding": hiding}
+        search, within = self.search.call(self.tables, _CUT)
         call = CALL.made(
+            search=ctypes.addressof(search),
+            find=self.search.address,
             designs=p.shape[0],
             n=self.count,
             stride=stride,
@@ -181,7 +184,7 @@ class DesignsLibrary:
             **{name: None if array is None else array.ctypes.data for name, array in arrays.items()},
         )
         # The arrays live as long as what reads and writes them.
-        return functools.partial(_enter, self.entry, call, arrays)
+        return functools.partial(_enter, self.entry, call, (arrays, search, within))
 
 
 def _enter(entry: Any, call: Any, arrays: object) -> None:
@@ -193,7 +196,7 @@ def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: in
 
     ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises :class:`CompilerError`.
     """
-    library = _loaded(source, compiler, extra)
+    library = loaded(packed(source, compiler), compiler, extra)
     entry, follow = _entry(library, compiler, EVALUATE, INSTANTS), None
     if hasattr(library, FOLLOW):
         follow = _entry(library, compiler, FOLLOW, INSTANTS)
@@ -211,15 +214,11 @@ def load_designs(
     precision: Precision,
 ) -> DesignsLibrary:
     """The same of a file for many designs over ``count`` instants, whose iterated loops begin from ``guess``."""
-    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, CALL)
+    search = load_search(compiler, extra, precision)
+    entry = _entry(loaded(packed(source, compiler), compiler, extra), compiler, DESIGNS, CALL)
     share = max(1, _WORTH_A_THREAD // (statements(source) * count))
-    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, reduction, count, guess, precision)
-
-
-def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:
-    if compiler.language == "c++":
-        source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
-    return loaded(source, compiler, extra)
+    flags = (*compiler.flags(source), *extra)
+    return DesignsLibrary(entry, flags, share, reduction, count, guess, search, reduction.tables(precision))
 
 
 def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, call: Call) -> Any:

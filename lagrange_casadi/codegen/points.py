@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy.typing as npt
 
 from ..base.arrays import Array
 from .calls import Call
-from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, WIDE
+from .compiler import Compiler, broken, loaded, packed
+from .emit import START, WIDE
 from .printer import print_functions
 
 POINTS = Call(
@@ -104,9 +103,7 @@ def emit_points(function: Any) -> str:
 
 def load_points(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> PointsLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
-    source = emit_points(function)
-    if compiler.language == "c++":
-        source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
+    source = packed(emit_points(function), compiler)
     library = loaded(source, compiler, tuple(extra))
     try:
         return PointsLibrary(POINTS.declare(getattr(library, _ENTRY)))

@@ -9,10 +9,6 @@
 #define DESIGNS_INLINE LANES_INLINE
 #else
 #define DESIGNS_INLINE static inline
-#define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
-#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
-#define lanes_where_less(x, y) ((x) < (y))
-#define lanes_any_nan(x) ((x) != (x))
 #endif
 
 DESIGNS_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }

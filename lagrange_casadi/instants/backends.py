@@ -6,6 +6,7 @@ import functools
 import math
 import shlex
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -145,6 +146,16 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
         warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly")
+    return None
+
+
+def searching(backend: str) -> codegen.Search | None:
+    """The compiled search for peaks of what a backend has evaluated; None for the virtual machine, and without a compiler."""
+    for language in () if backend == "vm" else _LANGUAGES["auto"]:
+        compiler = codegen.find_compiler(language)
+        with suppress(CompilerError):
+            if compiler is not None:
+                return codegen.load_search(compiler)
     return None
 
 

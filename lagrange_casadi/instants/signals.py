@@ -14,13 +14,14 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import table_of
 from ..codegen.emit import NOT_CONVERGED
+from ..codegen.search import Search
 from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
 from ..equations.scene_graph import SceneGraph
 from ..summits.between import Flags
-from ..summits.panels import Samples
-from ..summits.search import Curves, Peaks, peaks
+from ..summits.panels import Curves, Peaks, Samples
+from ..summits.search import peaks
 from ..summits.sharpness import Sharpness, bent
 from .backends import follow
 from .laws import law_of
@@ -87,10 +88,11 @@ class Signals:
     newton: int | None = None
     turned: Mapping[int, Array] = field(default_factory=dict)
 
-    def peaks(self, units: Sequence[int], scales: Sequence[float] = ()) -> Peaks:
+    def peaks(self, units: Sequence[int], scales: Sequence[float] = (), search: Search | None = None) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
-        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it.
+        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it. ``search`` is the
+        compiled search; without it the reference serves.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
@@ -99,7 +101,8 @@ class Signals:
         quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
         curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
         with np.errstate(all="ignore"):
-            return peaks(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p))
+            find = peaks if search is None else search.peaks
+            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p))
 
     def at(self, t: Array) -> Samples:
         """All curves at times; NaN where iterated loops do not close."""

@@ -28,12 +28,12 @@ from ..equations.derive import assembled, derive
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..instants.backends import follow
+from ..instants.backends import follow, searching
 from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..summits.search import Peaks
+from ..summits.panels import Peaks
 from ..summits.sharpness import Sharpness
 from .evaluate import evaluate
 
@@ -180,22 +180,27 @@ class ContinuousSolution:
     z: Array
     rows: Mapping[Output, int]
     again: Callable[[EvenPoints, Sequence[str]], ContinuousSolution]
+    backend: str
 
     @classmethod
-    def of(cls, scene: Scene, solution: Solution) -> ContinuousSolution:
-        """That of a solution. Raises :class:`.DeclarationError` where it is not one of this scene."""
+    def of(cls, scene: Scene, solution: Solution, backend: str = "") -> ContinuousSolution:
+        """That of a solution, searched as its backend does, or another one.
+
+        Raises :class:`.DeclarationError` where it is not one of this scene.
+        """
         told = scene.mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)
+        searched = backend or solution.provenance.backend
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
             asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
-            return cls.of(scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked))
+            return cls.of(scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked), searched)
 
-        found = cls(graph, stages, solution, p, z, graph.outputs, again)
+        found = cls(graph, stages, solution, p, z, graph.outputs, again, searched)
         if not found.agrees():
             raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{graph.data.name}'")
         return found
@@ -240,7 +245,7 @@ class ContinuousSolution:
         turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
-        searched = signals.peaks(units, scales)
+        searched = signals.peaks(units, scales, searching(self.backend))
         value, t, xi = self.timed(signals, sought, searched)
         for k, output in enumerate(sought):
             peak = found[output]

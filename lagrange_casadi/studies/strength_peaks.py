@@ -17,6 +17,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
+from ..instants.backends import searching
 from ..instants.solution import Solution
 from ..strength.buckling import Column
 from ..strength.member import Member
@@ -118,7 +119,7 @@ class _Searched:
             stress = Stress(member)
             return stress.largest_at_notches(kind) if sampled.notch else np.abs(stress.largest(kind).value)
 
-        found = self.over_time.signals([self._along(size)], {}).peaks([0])
+        found = self.over_time.signals([self._along(size)], {}).peaks([0], search=searching(self.over_time.backend))
         peak = Stress(self.at(float(found.t[0]))).peak(kind, notches=sampled.notch)
         best = max(sampled, peak, key=lambda one: abs(one.value))
         return best if found.told[0] else replace(best, value=math.nan, least=abs(best.value))

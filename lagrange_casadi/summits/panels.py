@@ -1,4 +1,4 @@
-"""A panel: equal steps of time with the values at their ends, what gives more of these, and what is looked at in it."""
+"""What is searched, and a panel of it: equal steps of time with the values at their ends, and what gives more of these."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import beyond, passed
+from .between import Flags, beyond, passed
 from .sharpness import Watch
 
 SIDE = 2e-13
@@ -19,7 +19,39 @@ SIDE = 2e-13
 SPACING = 4 * float(np.finfo(float).eps)
 """Of the time: the shortest step."""
 
+INNER = 8
+"""Times inside a step that becomes a panel."""
+
 _TRIALS, _WATCHED = 3, 2
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Of which quantity each curve is, which unit each quantity has, and what is watched.
+
+    The peak of a quantity is that of the curve of its own that goes furthest: those of a section force are the force at the link's
+    ends and stations, and where it turns along the link. ``scales`` are of each unit how large others are, ``knots`` times of
+    kinks.
+    """
+
+    quantities: tuple[int, ...]
+    units: tuple[int, ...]
+    scales: tuple[float, ...] = ()
+    watches: tuple[Watch, ...] = ()
+    knots: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where it is, and whether it is told.
+
+    A peak that is not told is at least this, which was found.
+    """
+
+    value: Array
+    t: Array
+    xi: Array
+    told: Flags
 
 
 class Samples(NamedTuple):
@@ -32,6 +64,11 @@ class Samples(NamedTuple):
     def some(self, which: slice) -> Samples:
         """At some of the times."""
         return Samples(*(rows[:, which] for rows in self))
+
+
+def joined(*parts: Samples) -> Samples:
+    """What is at some times and at others, one after another."""
+    return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
 
 
 class CurveSource(Protocol):

@@ -7,25 +7,24 @@ where it is known when in it a kink or a jump is, of steps a ninth as long, and 
 nothing but a jump, a kink or a pole is left in them. Where that takes too many panels, or a quantity grows on slowly without an
 end, its peak is not told.
 
-The emitted C does the same for many designs (``codegen/summits.c``, ``looks.c``, ``within.c``), and is tested against this.
+Where friction at rest leaves a curve open at an instant, the steps beside it are searched by themselves from where, or up to
+where, it is a number.
+
+The C does the same (``codegen/search.c`` and its neighbours), and is tested against this, which serves where no compiler is.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
-from .panels import SIDE, SPACING, CurveSource, Panel, Samples, Summit, sides
-from .sharpness import Watch
-
-INNER = 8
-"""Times inside a step that becomes a panel."""
+from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Panel, Peaks, Samples, Summit, joined, sides
+from .rests import pieces
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -74,47 +73,19 @@ ROUGH = 0.1
 """Of its curve: how large the sixth difference of a polynomial may be that is believed."""
 
 
-@dataclass(frozen=True, eq=False)
-class Curves:
-    """Of which quantity each curve is, which unit each quantity has, and what is watched.
-
-    The peak of a quantity is that of the curve of its own that goes furthest: those of a section force are the force at the link's
-    ends and stations, and where it turns along the link. ``scales`` are of each unit how large others are, ``knots`` times of
-    kinks.
-    """
-
-    quantities: tuple[int, ...]
-    units: tuple[int, ...]
-    scales: tuple[float, ...] = ()
-    watches: tuple[Watch, ...] = ()
-    knots: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class Peaks:
-    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where it is, and whether it is told.
-
-    A peak that is not told is at least this, which was found.
-    """
-
-    value: Array
-    t: Array
-    xi: Array
-    told: Flags
-
-
 def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
 
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
-    that are as large but for rounding the first is told, for else rounding would choose their sign. A curve that is no number at an
-    instant, as friction at rest leaves it, is not sought in the steps beside it; a quantity that is none at all has no peak.
+    that are as large but for rounding the first is told, for else rounding would choose their sign. A quantity that is no number at
+    any instant, as friction at rest leaves it, has no peak.
     """
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
     search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
+        search.beside_rest(t, given)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
@@ -126,6 +97,7 @@ class _Search:
 
     def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags) -> None:
         self.lacking, self.begin = lacking, float(t[0])
+        self.sought: Flags | None = None
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -152,22 +124,25 @@ class _Search:
         return np.asarray(limit[self.quantity])
 
     def note(self, curve: int, value: float, t: float, xi: float) -> None:
-        """Take in what a curve is at a time."""
+        """Take in what a curve is at a time; what is nothing has its peak at an instant."""
         q, size = self.quantity[curve], abs(value)
         rounding = float(self.rounding[q])
-        if not math.isfinite(size) or self.lacking[curve, self.step_of(t)]:
+        if not math.isfinite(size) or self.lacks(t)[curve]:
             return
         if size > self.best[q]:
             self.best[q] = size
             taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
         else:
-            taken = size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
+            there = self.best[q] > NOTHING * self.scale[q]
+            taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
 
-    def step_of(self, t: float) -> int:
-        """The step between instants in which a time is."""
-        return int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))
+    def lacks(self, t: float) -> Flags:
+        """Which curves are not sought at a time: in steps beside rest those that are open there are sought by themselves."""
+        if self.sought is not None:
+            return ~self.sought
+        return np.asarray(self.lacking[:, int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))])
 
     def found(self, t: Array, samples: Samples) -> Peaks:
         """The peaks; of those at instants, only now the first is sought, among those at which there is a number."""
@@ -233,14 +208,13 @@ class _Search:
 
     def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
         """Search what is between two times as a panel; beside rest, where what switches is no number, only so deep."""
-        lacks = self.lacking[:, self.step_of((a + b) / 2)]
-        if depth >= BESIDE_REST and lacks.any():
+        lacks = self.lacks((a + b) / 2)
+        if self.sought is None and depth >= BESIDE_REST and lacks.any():
             return
         t = np.append(a + np.arange(INNER + 1) * ((b - a) / (INNER + 1)), b)
         samples = self.source.at(t[1:-1])
-        joined = (np.concatenate(rows, axis=1) for rows in zip(first, samples, last, strict=True))
         # What has no value is nothing, and hides what is beside it.
-        values, places, watched = joined
+        values, places, watched = joined(first, samples, last)
         values[lacks] = 0.0
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
@@ -248,6 +222,20 @@ class _Search:
             for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
+
+    def beside_rest(self, t: Array, samples: Samples) -> None:
+        """Search what there is of the steps that begin or end at rest, for the curves that are open there."""
+        for piece in pieces(self.source, t, samples, SIDE * self.step):
+            self.sought = piece.curves
+            for time, column in ((piece.start, piece.first), (piece.stop, piece.last)):
+                for curve in np.flatnonzero(piece.curves).tolist():
+                    self.note(curve, column.values[curve, 0], time, column.places[curve, 0])
+            if self.left <= 0:
+                self.told[self.quantity[piece.curves]] = False
+            elif piece.stop - piece.start > 2 * piece.beside:
+                self.left -= 1
+                self.part(piece.start, piece.stop, piece.first, piece.last, 0)
+        self.sought = None
 
     def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
         """What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end."""

@@ -1,0 +1,131 @@
+/* What is searched: curves over time, by their values at equal steps, and at more times where these leave it open. What curves there
+   are, and how they are evaluated, is told by who calls: lagrange_casadi_curves and lagrange_casadi_search_call. */
+/* Times inside a step that becomes a panel, and with its ends; values of a row of such a panel, two packs beside them. */
+#define SEARCH_WITHIN (SEARCH_INNER + 2)
+#define SEARCH_STRIDE 64
+/* What has no place along a link, and what is at its ends. */
+enum { SEARCH_AT_BASE = -1, SEARCH_AT_TIP = -2 };
+
+/* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
+   its sign, its time and its ratio xi/l. going is its size where it grows on and no end of that is found. What is open is not
+   searched, and untold what would take too many panels. */
+typedef struct {
+  double t;
+  search_real best, rounding, limit, sampled, size, place, sign, going;
+  int open, untold;
+} search_peak;
+
+/* So many instants, or times inside a step, t, with a row for every curve, its place, and what is watched. hiding becomes, of each
+   step, whether something may hide in it, and then whether it was searched. */
+typedef struct {
+  long long n, stride;
+  const double* t;
+  search_real *rows, *watched;
+  signed char *hiding, *kinks;
+} search_panel;
+
+enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
+
+/* A search. left are panels that it may still take, hidden steps in which something may hide. sought, unless it is NULL, tells which
+   curves are sought; none which are no number at any instant. inner are rows of panels within each other, columns what such panels
+   have at their ends, found what was evaluated last. */
+typedef struct {
+  const lagrange_casadi_search_call* call;
+  const lagrange_casadi_curves* curves;
+  const int *quantity, *link, *placed;
+  long long n, left, hidden;
+  const double* t;
+  double half;
+  search_panel all;
+  search_peak* peaks;
+  search_real *scale, *inner, *columns, *found;
+  signed char *zigzags, *none, *resting;
+  const signed char* sought;
+  int stopped;
+} search_now;
+
+static search_real search_magnitude(search_real x) { return x < 0 ? -x : x; }
+
+static search_real search_upper(search_real x, search_real y) { return x > y ? x : y; }
+
+static search_real search_lower(search_real x, search_real y) { return x < y ? x : y; }
+
+static search_real* search_row(const search_panel* panel, int k) { return panel->rows + k*panel->stride; }
+
+static search_real* search_watched(const search_panel* panel, int k) { return panel->watched + k*panel->stride; }
+
+static double search_width(const search_panel* panel) { return (panel->t[panel->n - 1] - panel->t[0])/(double) (panel->n - 1); }
+
+/* The shortest step, so far from zero. */
+static double search_spacing(const search_panel* panel) {
+  const double ago = -panel->t[0], late = panel->t[panel->n - 1];
+  return SEARCH_SPACING*(ago > late ? ago : late);
+}
+
+/* How many rows there are: of curves, of their places, of what is watched. */
+static int search_rows(const search_now* now) { return now->curves->curves + now->curves->places + now->curves->watches; }
+
+/* Evaluate at up to as many times as go together, into rows that are so far apart. need tells links by bits. */
+static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need, search_real* rows, long long apart) {
+  if (now->stopped || now->call->at(now->call->of, many, t, need, rows, apart)) now->stopped = 1;
+}
+
+static search_real search_found(const search_now* now, int k, int j) { return now->found[k*now->call->together + j]; }
+
+/* The ratio xi/l of a curve, of rows of places that begin so and are so far apart. */
+static search_real search_ratio(const search_now* now, int curve, const search_real* places, long long apart) {
+  const int k = now->placed[curve];
+  return k >= 0 ? places[k*apart] : k == SEARCH_AT_BASE ? 0 : k == SEARCH_AT_TIP ? 1 : (search_real) NAN;
+}
+
+static search_real search_found_ratio(const search_now* now, int curve, int j) {
+  return search_ratio(now, curve, now->found + now->curves->curves*now->call->together + j, now->call->together);
+}
+
+static search_real search_ratio_in(const search_now* now, const search_panel* panel, int curve, long long i) {
+  return search_ratio(now, curve, search_row(panel, now->curves->curves) + i, panel->stride);
+}
+
+/* A quantity's largest size becomes this; what is nothing beside others of its unit has no limit that a curve could rise above. */
+static void search_grow(const search_now* now, int q, search_real best) {
+  search_peak* peak = now->peaks + q;
+  const search_real scale = now->scale[now->curves->unit[q]];
+  peak->best = best;
+  peak->rounding = SEARCH_ROUNDING*(best + SEARCH_BESIDE*scale);
+  peak->limit = best > SEARCH_NOTHING*scale && !peak->open ? best + peak->rounding : (search_real) INFINITY;
+}
+
+/* Where friction at rest leaves a curve open at an instant, its row holds a zero with a minus sign, which no other value of it has. */
+static int search_nothing(search_real x) { return x == 0 && 1/x < 0; }
+
+/* Whether friction at rest leaves a curve open at an end of a step between instants. */
+static int search_rests(const search_now* now, int curve, long long i) {
+  const search_real* row = search_row(&now->all, curve) + i;
+  return search_nothing(row[0]) || search_nothing(row[1]);
+}
+
+/* Whether a curve is not sought at a time: in steps beside rest those that are open there are sought by themselves. */
+static int search_lacks(const search_now* now, int curve, double t) {
+  const double x = (t - now->t[0])/(2*now->half);
+  long long i = x > 0 ? (long long) x : 0;
+  if (now->sought) return !now->sought[curve];
+  if (!now->call->rests || now->n < 2) return 0;
+  return search_rests(now, curve, i < now->n - 2 ? i : now->n - 2);
+}
+
+/* Take in what a curve is at a time; what is nothing has its peak at an instant. */
+static void search_note(search_now* now, int curve, search_real value, double t, search_real place) {
+  search_peak* peak = now->peaks + now->quantity[curve];
+  const search_real size = search_magnitude(value);
+  if (!(size - size == 0) || search_lacks(now, curve, t)) return;
+  if (size > peak->best) {
+    search_grow(now, now->quantity[curve], size);
+    if (peak->size >= size - peak->rounding && peak->t < t - now->half) return;
+  } else if (!(peak->limit <= SEARCH_LARGEST && size >= peak->best - peak->rounding && t < peak->t - now->half)) {
+    return;
+  }
+  peak->size = size;
+  peak->t = t;
+  peak->place = place;
+  peak->sign = value < 0 ? -1 : 1;
+}

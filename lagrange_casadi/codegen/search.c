@@ -1,0 +1,400 @@
+/* What is largest of each quantity, at the instants and between them: the same search as in summits/search.py, which is the
+   reference: tests hold this to it.
+
+   A panel is a row of equal steps with the values at their ends. In each step every curve is bounded; what could rise above the largest
+   size so far is looked at, a pack at once: a polynomial through seven values says where, and what it misses there says whether it is to
+   be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own. */
+/* Packs that are screened at once. */
+#ifndef SEARCH_CHUNK
+#define SEARCH_CHUNK 8
+#endif
+
+/* What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end. */
+static void search_end(search_now* now, const search_panel* panel, int curve, long long step, int deepest) {
+  const search_real* row = search_row(panel, curve);
+  search_peak* peak = now->peaks + now->quantity[curve];
+  search_real size[3], first, second;
+  long long at, endless = -1;
+  int side, along, k;
+  for (k = 0; k < 4; ++k) {
+    side = k % 2;
+    along = (k < 2) == side ? 1 : -1;
+    at = step + side;
+    if (along > 0 ? at + 2 >= panel->n : at < 2) continue;
+    size[0] = search_magnitude(row[at]);
+    size[1] = search_magnitude(row[at + along]);
+    size[2] = search_magnitude(row[at + 2*along]);
+    /* Towards a pole both steps grow, of two beside this one or of this one and the next; at a jump at most one does. */
+    first = size[0] - size[1];
+    second = size[1] - size[2];
+    if (!(size[0] >= peak->best/2)) continue;
+    if (size[2] > SEARCH_NOISE*size[0] && first > SEARCH_ENDLESS*size[0] && second > SEARCH_ENDLESS*size[1]) endless = at;
+    if (k < 2 && deepest && first > SEARCH_LAST*peak->best && second > SEARCH_LAST*peak->best) {
+      peak->going = search_upper(peak->going, size[0]);
+    }
+  }
+  if (endless < 0) return;
+  search_grow(now, now->quantity[curve], (search_real) INFINITY);
+  peak->size = peak->best;
+  peak->t = panel->t[endless];
+  peak->place = search_ratio_in(now, panel, curve, endless);
+  peak->sign = row[endless] < 0 ? -1 : 1;
+}
+
+/* Search a step that a curve leaves open, or, of no curve's number, all may, once. Without panels that are left it is not told. */
+static void search_enter(search_now* now, const search_panel* panel, int curve, long long step, int depth) {
+  int k;
+  if (panel->hiding[step] & SEARCH_DONE || now->stopped) return;
+  if (depth == SEARCH_DEEPEST || search_width(panel) <= search_spacing(panel)) {
+    panel->hiding[step] |= SEARCH_DONE;
+    for (k = 0; panel->n >= SEARCH_FIT && k < now->curves->curves; ++k) {
+      if (!(search_furthest(search_row(panel, k), step, panel->n) > now->peaks[now->quantity[k]].limit)) continue;
+      search_end(now, panel, k, step, depth == SEARCH_DEEPEST);
+    }
+  } else if (now->left > 0) {
+    panel->hiding[step] |= SEARCH_DONE;
+    --now->left;
+    search_inside(now, panel, step, depth);
+  } else if (curve >= 0) {
+    now->peaks[now->quantity[curve]].untold = 1;
+  } else {
+    for (k = 0; k < now->curves->quantities; ++k) now->peaks[k].untold = 1;
+  }
+}
+
+/* Look for the summits that are listed, and search the steps that this leaves open, those first in which a curve may rise furthest. */
+static void search_flush(search_now* now, const search_panel* panel, search_list* list, int depth) {
+  search_real rise, most, best;
+  int j, chosen;
+  if (list->looks || list->ends) search_settle(now, panel, list);
+  while (list->open) {
+    chosen = 0;
+    most = -1;
+    for (j = 0; j < list->open; ++j) {
+      const search_entry* entry = list->entries + j;
+      best = now->peaks[now->quantity[entry->curve]].best;
+      rise = (entry->bound - now->peaks[now->quantity[entry->curve]].limit)/(best > SEARCH_LEAST ? best : SEARCH_LEAST);
+      if (rise > most) {
+        most = rise;
+        chosen = j;
+      }
+    }
+    if (!(most > 0)) break;
+    search_enter(now, panel, list->entries[chosen].curve, list->entries[chosen].step, depth);
+    list->entries[chosen] = list->entries[--list->open];
+  }
+  list->open = 0;
+}
+
+/* Whether a curve is, all around a step, what others of its quantity are: as one that turns only beyond its link's end. */
+static int search_told_before(const search_now* now, const search_panel* panel, int curve, long long step) {
+  const search_real *row = search_row(panel, curve), rounding = now->peaks[now->quantity[curve]].rounding, *other;
+  long long i;
+  int k, same = 1;
+  for (i = step > 0 ? step - 1 : 0; same && i < panel->n && i < step + 3; ++i) {
+    same = 0;
+    for (k = curve - 1; k >= 0 && now->quantity[k] == now->quantity[curve]; --k) {
+      other = search_row(panel, k);
+      same |= search_magnitude(other[i] - row[i]) <= rounding;
+    }
+  }
+  return same;
+}
+
+/* Whether a polynomial goes straight on through an end step; then the middle of that is to be looked at. */
+static int search_list_stretch(const search_now* now, const search_panel* panel, int curve, long long step, search_list* list) {
+  const search_real *row = search_row(panel, curve), rounding = now->peaks[now->quantity[curve]].rounding;
+  const int inward = step == 0 ? 1 : -1;
+  search_stretched* end = list->stretches + list->ends;
+  search_real least, rough;
+  if ((step > 0 && step < panel->n - 2) || search_kinked(now, panel, step)) return 0;
+  if (step > 0) row += panel->n - 1;
+  least = search_stretch(row, inward, &end->middle);
+  rough = row[0] + row[6*inward] - 6*(row[inward] + row[5*inward]) + 15*(row[2*inward] + row[4*inward]) - 20*row[3*inward];
+  if (!(least > 0 && search_magnitude(rough) <= rounding + SEARCH_ROUGH*least)) return 0;
+  end->curve = curve;
+  end->step = step;
+  end->off = search_upper(rounding, SEARCH_STRETCH*least);
+  ++list->ends;
+  return 1;
+}
+
+/* List what of a step may rise above what is known: a summit beside it, or the step itself. */
+static void search_list_step(search_now* now, const search_panel* panel, int curve, long long step, search_list* list) {
+  const search_real *row = search_row(panel, curve);
+  search_real size[4];
+  long long i;
+  int k, topped = 0;
+  if (search_told_before(now, panel, curve, step) || search_list_stretch(now, panel, curve, step, list)) return;
+  for (k = 0; k < 4; ++k) {
+    i = step - 1 + k;
+    size[k] = i < 0 || i >= panel->n ? -1 : row[i] < 0 ? -row[i] : row[i];
+  }
+  for (k = 1; k < 3; ++k) {
+    i = step - 1 + k;
+    if (!(size[k - 1] < size[k] && size[k] >= size[k + 1])) continue;
+    topped = 1;
+    if (list->looks && list->summits[list->looks - 1].curve == curve && list->summits[list->looks - 1].at == i) continue;
+    list->summits[list->looks].curve = curve;
+    list->summits[list->looks].at = i;
+    list->summits[list->looks++].sign = row[i] < 0 ? -1 : 1;
+  }
+  if (!topped) search_open(now, panel, list, curve, step, 0);
+}
+
+/* List where a curve may rise above what is known, beside the values of a pack that say so. */
+static void search_list_steps(search_now* now, const search_panel* panel, int curve, long long first, unsigned where,
+                               search_list* list, int depth) {
+  const search_real* row = search_row(panel, curve);
+  const long long n = panel->n;
+  search_real limit = now->peaks[now->quantity[curve]].limit;
+  long long i, step;
+  int j;
+  for (j = 0; j < LANES && first + j < n; ++j) {
+    if (!(where >> j & 1)) continue;
+    i = first + j;
+    for (step = i > 0 && !(j > 0 && where >> (j - 1) & 1) ? i - 1 : i; step <= i && step < n - 1; ++step) {
+      if (!(search_furthest(row, step, n) > limit)) continue;
+      search_list_step(now, panel, curve, step, list);
+      if (list->looks < SEARCH_SUMMITS - 1 && list->ends < SEARCH_SUMMITS && list->open < SEARCH_SUMMITS) continue;
+      search_flush(now, panel, list, depth);
+      limit = now->peaks[now->quantity[curve]].limit;
+    }
+  }
+}
+
+/* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
+   it; where that is towards zero, its neighbours are larger, and known. */
+SEARCH_INLINE void search_screen(search_now* now, const search_panel* panel, int curve, search_real limit, search_list* list, int depth) {
+  const search_real* row = search_row(panel, curve);
+  const long long n = panel->n;
+  lanes_pack here, before, after, twice[SEARCH_CHUNK], most;
+  unsigned where;
+  long long i;
+  int k, many;
+  for (i = 0; i < n; i += SEARCH_CHUNK*LANES) {
+    many = n - i < SEARCH_CHUNK*LANES ? (int) ((n - i + LANES - 1)/LANES) : SEARCH_CHUNK;
+    most = 0;
+    for (k = 0; k < many; ++k) {
+      memcpy(&before, row + i + k*LANES - 1, sizeof before);
+      memcpy(&here, row + i + k*LANES, sizeof here);
+      memcpy(&after, row + i + k*LANES + 1, sizeof after);
+      twice[k] = search_size(4*here - (before + after));
+      most = search_larger(most, twice[k]);
+    }
+    if (!lanes_where_less(2*limit, most)) continue;
+    for (k = 0; k < many; ++k) {
+      where = lanes_where_less(2*limit, twice[k]);
+      if (where) search_list_steps(now, panel, curve, i + k*LANES, where, list, depth);
+    }
+  }
+}
+
+/* Beside an end, what bends a row there away from zero, twice as much as it is bent at the next value. */
+static search_real search_beyond_end(search_real end, search_real next, search_real third) {
+  const search_real bend = 2*search_magnitude(2*next - end - third);
+  return 2*end - next - (end < 0 ? -bend : bend);
+}
+
+static void search_edge(const search_now* now, const search_panel* panel) {
+  const long long n = panel->n;
+  search_real* row;
+  int k;
+  for (k = 0; k < now->curves->curves; ++k) {
+    row = search_row(panel, k);
+    row[-1] = search_beyond_end(row[0], row[1], row[2]);
+    row[n] = search_beyond_end(row[n - 1], row[n - 2], row[n - 3]);
+  }
+}
+
+/* Search a panel. */
+SEARCH_INLINE void search_panel_of(search_now* now, const search_panel* panel, int depth) {
+  const signed char *step, *const steps = panel->hiding + panel->n - 1;
+  search_list list;
+  search_real limit;
+  long long i;
+  int q, k;
+  list.looks = list.ends = list.open = 0;
+  if (panel->n < SEARCH_FIT) {
+    for (i = 0; i < panel->n - 1; ++i) panel->hiding[i] = SEARCH_HIDES;
+  } else {
+    search_edge(now, panel);
+    search_hide(now, panel, depth);
+    if (depth == 0) for (i = 0; i < panel->n - 1; ++i) now->hidden += panel->hiding[i] & SEARCH_HIDES;
+    for (q = 0; q < now->curves->quantities; ++q) {
+      limit = now->peaks[q].limit;
+      for (k = now->curves->first[q]; limit < SEARCH_LARGEST && k < now->curves->first[q + 1]; ++k) {
+        /* Nowhere does a curve reach further than three times its size. */
+        if (depth == 0 && !(limit < 3*now->call->most[k])) continue;
+        search_screen(now, panel, k, limit, &list, depth);
+      }
+    }
+    search_flush(now, panel, &list, depth);
+  }
+  for (step = panel->hiding; (step = (const signed char*) memchr(step, SEARCH_HIDES, (size_t) (steps - step))) != 0; ++step) {
+    search_enter(now, panel, -1, step - panel->hiding, depth);
+  }
+}
+
+/* Leave out what friction at rest leaves open; a curve that is open at all instants has no number. */
+static void search_leave_out(search_now* now) {
+  const long long padded = (now->n + LANES - 1)/LANES*LANES;
+  search_real most;
+  search_real* row;
+  long long i;
+  int k;
+  for (k = 0; k < now->curves->curves; ++k) {
+    row = search_row(&now->all, k);
+    most = 0;
+    now->none[k] = 1;
+    for (i = 0; i < padded; ++i) {
+      now->none[k] &= row[i] != row[i];
+      row[i] = row[i] != row[i] ? -(search_real) 0 : row[i] == 0 ? 0 : row[i];
+      most = search_upper(most, search_magnitude(row[i]));
+    }
+    now->call->most[k] = most;
+  }
+}
+
+/* The largest size of every quantity over the instants, and of every unit. */
+static void search_largest(search_now* now) {
+  const lagrange_casadi_curves* curves = now->curves;
+  int j, k, q;
+  memset(now->none, 0, (size_t) curves->curves);
+  if (now->call->rests) search_leave_out(now);
+  for (k = 0; k < curves->units; ++k) now->scale[k] = now->call->scales ? now->call->scales[k] : 0;
+  memset(now->zigzags, -1, (size_t) curves->curves);
+  for (q = 0; q < curves->quantities; ++q) {
+    search_peak* peak = now->peaks + q;
+    peak->best = 0;
+    peak->size = -1;
+    peak->t = INFINITY;
+    peak->place = (search_real) NAN;
+    peak->sign = 1;
+    peak->going = 0;
+    peak->untold = 0;
+    peak->open = now->call->open && now->call->open[q];
+    for (j = now->call->rests, k = curves->first[q]; k < curves->first[q + 1]; ++k) {
+      j &= now->none[k];
+      peak->best = search_upper(now->call->most[k], peak->best);
+    }
+    peak->open |= j;
+    peak->sampled = peak->best;
+    if (!peak->open) now->scale[curves->unit[q]] = search_upper(peak->best, now->scale[curves->unit[q]]);
+  }
+  for (q = 0; q < curves->quantities; ++q) search_grow(now, q, now->peaks[q].best);
+}
+
+/* The first instant at which a quantity has a number, as large as its peak but for rounding, if it is before what was found. */
+static void search_sampled(search_now* now, int q) {
+  const search_panel* all = &now->all;
+  search_peak* peak = now->peaks + q;
+  const search_real least = peak->best - peak->rounding, under = least - SEARCH_CLOSE*least - SEARCH_LEAST;
+  const search_real* row;
+  search_real size = -1, x;
+  lanes_pack pack, most;
+  long long i, first = all->n;
+  int k, j, curve = -1;
+  if (peak->sampled < least) return;
+  for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
+    if (!(under < now->call->most[k])) continue;
+    row = search_row(all, k);
+    for (i = 0; i <= first && i < all->n; i += SEARCH_CHUNK*LANES) {
+      most = 0;
+      for (j = 0; j < SEARCH_CHUNK && i + j*LANES < all->n; ++j) {
+        memcpy(&pack, row + i + j*LANES, sizeof pack);
+        most = search_larger(most, search_size(pack));
+      }
+      if (!lanes_where_less(under, most)) continue;
+      for (j = 0; j < SEARCH_CHUNK*LANES && i + j < all->n && i + j <= first; ++j) {
+        x = search_magnitude(row[i + j]);
+        if (!(x >= least) || (i + j == first && !(x > size)) || (now->call->rests && search_nothing(row[i + j]))) continue;
+        first = i + j;
+        size = x;
+        curve = k;
+      }
+    }
+  }
+  if (curve < 0 || !(peak->size < least || all->t[first] < peak->t - now->half)) return;
+  peak->t = all->t[first];
+  peak->place = search_ratio_in(now, all, curve, first);
+  peak->sign = search_row(all, curve)[first] < 0 ? -1 : 1;
+}
+
+static char* search_take(char** room, long long count, size_t size) {
+  char* here = *room;
+  *room += ((size_t) count*size + 63)/64*64;
+  return here;
+}
+
+/* Lay a search into its room, and say how many bytes that takes. */
+static long long search_lay(search_now* now, const lagrange_casadi_search_call* call) {
+  const lagrange_casadi_curves* curves = call->curves;
+  const long long rows = curves->curves + curves->places + curves->watches;
+  char* room = call->room;
+  now->peaks = (search_peak*) search_take(&room, curves->quantities, sizeof *now->peaks);
+  now->scale = (search_real*) search_take(&room, curves->units, sizeof *now->scale);
+  now->inner = (search_real*) search_take(&room, SEARCH_DEEPEST*rows*SEARCH_STRIDE, sizeof *now->inner);
+  now->columns = (search_real*) search_take(&room, (5*SEARCH_DEEPEST + SEARCH_AROUND + 2 + SEARCH_INNER)*rows, sizeof *now->columns);
+  now->found = (search_real*) search_take(&room, call->together*rows, sizeof *now->found);
+  now->zigzags = (signed char*) search_take(&room, curves->curves, 1);
+  now->none = (signed char*) search_take(&room, curves->curves, 1);
+  now->resting = (signed char*) search_take(&room, 2*curves->curves, 1);
+  return room - call->room;
+}
+
+/* How many bytes of room a search takes. */
+LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_call* call) {
+  search_now now;
+  call->size = search_lay(&now, call);
+}
+
+/* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
+   told. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most are the largest sizes of
+   curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
+   steps something is known to hide; it has twice stride values. at evaluates up to so many times together, and may
+   write as many values of each row of its out; what it returns ends the search unless it is 0. */
+LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
+  const lagrange_casadi_curves* curves = call->curves;
+  search_now now;
+  search_peak* peak;
+  int q, told;
+  search_lay(&now, call);
+  now.call = call;
+  now.curves = curves;
+  now.quantity = curves->quantity;
+  now.link = curves->link;
+  now.placed = curves->placed;
+  now.n = call->n;
+  now.t = call->t;
+  now.half = call->n > 1 ? (call->t[call->n - 1] - call->t[0])/(double) (2*(call->n - 1)) : 1;
+  now.left = SEARCH_PANELS + 4*call->n;
+  now.hidden = now.stopped = 0;
+  now.sought = 0;
+  now.all.n = call->n;
+  now.all.stride = call->stride;
+  now.all.t = call->t;
+  now.all.rows = call->rows;
+  now.all.watched = call->watched;
+  now.all.hiding = call->hiding;
+  now.all.kinks = call->hiding + call->stride;
+  search_largest(&now);
+  if (call->n > 1) search_panel_of(&now, &now.all, 0);
+  if (call->n > 1 && call->rests) search_beside_rest(&now);
+  for (q = 0; q < curves->quantities; ++q) {
+    peak = now.peaks + q;
+    call->told[q] = 1;
+    if (peak->open) {
+      call->value[q] = call->peak_t[q] = call->xi[q] = NAN;
+      continue;
+    }
+    if (peak->best - peak->best == 0) {
+      told = !(peak->untold || now.stopped || peak->going > peak->best/2);
+      call->told[q] = (signed char) told;
+      search_sampled(&now, q);
+    }
+    call->value[q] = peak->sign*peak->best;
+    call->peak_t[q] = peak->t;
+    call->xi[q] = peak->place;
+  }
+}
