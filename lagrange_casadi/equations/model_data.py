@@ -13,6 +13,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
 from ..beams.material import Material
 from ..declare.density import Density
 from ..declare.description import Description, Template
@@ -20,8 +21,10 @@ from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
+from .checks import Column
 from .described import template
 from .gaps import extent
+from .section_function import Section
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,10 @@ class ModelData(Graphs):
         body, numbers = self.template.content["bodies"][link], self.template.numbers(p)
         cells = tuple(tuple(numbers[int(place)] for place in cell) for cell in body["density"]["cells"])
         return numbers[int(body["length"])], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
+
+    def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
+        """The section forces of a link, of columns and parameters ``p`` that are expressions."""
+        return Section(link, table_of(self.space), columns, *self.matter(link, p))
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""

@@ -22,7 +22,7 @@ $laws
   bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
   /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
      by rounding. */
-  near = xi < $slack ? $slack : xi > 1 - $slack ? 1 - $slack : xi;
+  near = xi + $slack < 1 - $slack ? xi + $slack : 1 - $slack;
   for (k = 0; k < 4*stations; k += 4) {
     if (near < acting[k]) {
       axial = axial + acting[k + 1];

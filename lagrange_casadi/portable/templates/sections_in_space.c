@@ -26,7 +26,7 @@ $laws
   bending_y = law[10] - law[7]*(l*(1 - xi)) - law[8]*(l*T[1]) - law[9]*(l*l*(xi*T[1] + T[2]));
   /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
      by rounding. */
-  near = xi < $slack ? $slack : xi > 1 - $slack ? 1 - $slack : xi;
+  near = xi + $slack < 1 - $slack ? xi + $slack : 1 - $slack;
   for (k = 0; k < 7*stations; k += 7) {
     if (near < acting[k]) {
       arm = acting[k] - xi;
