@@ -11,6 +11,7 @@ link that grids are filled from (:mod:`..instants.basis`) all come from here.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +21,8 @@ import casadi as ca
 import numpy as np
 
 from ..base.quantities import Output
-from ..base.tables import Table, Terms, table_of
+from ..base.symbolic import symbolic
+from ..base.tables import PLANE, Table, Terms, table_of
 from ..declare.density import Density
 from .checks import Column
 from .mobility import stations_of
@@ -156,18 +158,51 @@ class SectionInputs:
         return SectionInputs(law, acting)
 
 
-def section(inputs: SectionInputs, breaks: Sequence[float], sizes: Sequence[int], slack: float, side: Side = "tip") -> Any:
+def section(
+    inputs: SectionInputs,
+    breaks: Sequence[float],
+    sizes: Sequence[int],
+    slack: float,
+    side: Side = "tip",
+    name: str = "section",
+) -> Any:
     """``section(law, acting, matter, xi) -> forces`` of a link, whose density has so many coefficients in each cell.
 
-    ``matter`` are its length and these coefficients, per unit of the ratio.
+    ``matter`` are its length and these coefficients, per unit of the ratio. The function has a ``name``.
     """
-    law, acting = (ca.SX.sym(name, len(rows)) for name, rows in (("law", inputs.law), ("acting", inputs.acting)))
+    law, acting = ca.SX.sym("law", len(inputs.law)), ca.SX.sym("acting", len(inputs.acting))
     matter, xi = ca.SX.sym("matter", 1 + sum(sizes)), ca.SX.sym("xi")
     columns: dict[Column, Any] = dict(zip((*inputs.law, *inputs.acting), (*ca.vertsplit(law), *ca.vertsplit(acting)), strict=True))
     length, *terms = ca.vertsplit(matter)
     coefficients = iter(terms)
     density = Density(tuple(breaks), tuple(tuple(next(coefficients) for _ in range(size)) for size in sizes), per_length=False)
     link = Section(inputs.law[0].part, inputs.table, columns, length, density)
-    forces = ca.vertcat(*(link.at(name, Place(xi, side=side), slack) for name in inputs.table.forces))
+    forces = ca.vertcat(*(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces))
     given, names = [law, acting, matter, xi], ["law", "acting", "matter", "xi"]
-    return ca.Function("section", given, [ca.densify(forces)], names, ["forces"], {"cse": True})
+    return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
+
+
+@symbolic
+@functools.cache
+def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool) -> Any:
+    """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a moment, go with.
+
+    First are those of the law, then those of loads along the link, which have so many ``powers``; ``spans`` are width and end of
+    each. Where it ``bends`` it is the moment. Other forces have the same rows: a shear force those of an axial one, a moment that has an arm of -1 the same but for
+    the sign, and the couples of slices those of a force.
+    """
+    coefficient = "qf" if bends else "qn"
+    acting = [
+        Output("spread", "", member, str(load), power)
+        for load, many in enumerate(powers)
+        for member, power in (("width", None), ("end", None), *((coefficient, power) for power in range(many)))
+    ]
+    function = section(SectionInputs(tuple(Output("law", "", member) for member in PLANE.law), tuple(acting)), breaks, sizes, 0.0)
+    law, loads, matter, xi = function.sx_in()
+    terms = PLANE.sections["bending" if bends else "axial"].coefficients
+    spans = [k for k, output in enumerate(acting) if output.power is None]
+    given = [*(law[PLANE.law.index(term)] for term in terms), *(loads[k] for k in range(len(acting)) if k not in spans)]
+    force = function(law, loads, matter, xi)[PLANE.forces.index("bending" if bends else "axial")]
+    rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
+    inputs = [matter, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]
+    return ca.Function("along", inputs, [rows], ["matter", "spans", "xi"], ["rows"], {"cse": True})

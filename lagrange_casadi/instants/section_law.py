@@ -25,7 +25,7 @@ from ..declare.density import NumericDensity
 from ..declare.limits import END
 from ..equations.section_function import SIDES, Side, edge
 from . import grids
-from .basis import Basis, by_force
+from .basis import Basis
 from .sizes import growth_of_size, size_of, slope_of_size
 from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
@@ -62,7 +62,7 @@ class SectionLaw(Brief):
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
-        return Basis.of(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
+        return Basis(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
 
     def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
@@ -303,21 +303,11 @@ class SectionLaw(Brief):
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
-        if self._thick:
-            return basis.of_thick(terms, columns, self.spreads)
-        if terms.spread:
-            columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
-        return basis.of_force(terms, columns)
+        return basis.of(terms, columns, self.spreads)
 
     def _smooth(self, force: str, u: Array) -> Array:
-        terms = self.table.sections[force]
-        if terms.arm or self.spreads:
-            columns, rows = self._terms(force, self.basis(u))
-            return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
-        # The whole basis takes one moment more of the matter.
-        plain = [self.coefficients[name] for name in terms.coefficients]
-        matter = by_force(u, self.length, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
-        return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
+        columns, rows = self._terms(force, self.basis(u))
+        return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]

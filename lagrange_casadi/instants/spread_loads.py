@@ -58,19 +58,6 @@ class SpreadLoad:
         lever = length if arm else 1.0
         return sum((np.abs(c)[:, None] * (length * lever / (j + 1)) for j, c in enumerate(self.terms.get(direction, ()))), 0.0)
 
-    def rows(self, u: Array, length: Array | float) -> tuple[list[Array], list[Array]]:
-        """What sections at ratios ``u`` feel of a unit of each coefficient: force, and moment.
-
-        Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
-        """
-        x, reach, lever = self._seen(u, length)
-        forces, moments, power = [], [], x
-        for j in range(self.powers):
-            forces.append(reach * power / (j + 1))
-            moments.append(forces[-1] * (reach * x / (j + 2) + lever))
-            power = power * x
-        return forces, moments
-
     def _seen(self, u: Array, length: Array | float) -> tuple[Array, Array, Array]:
         """Of sections at ratios: x, L and a of :mod:`..equations.spreads`."""
         width, end = self.width[..., :1], self.end[..., :1]

@@ -47,7 +47,7 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
-        sections = functions(self.contract, self.program, self._number, self._function("sqrt")) if self.contract.links else ""
+        sections = functions(self.contract, self.program) if self.contract.links else ""
         if self.slopes is not None:
             sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(

@@ -16,6 +16,15 @@ typedef press_real casadi_real;
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
 
+static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>y ? x : y;
+#else
+  return fmax(x, y);
+#endif
+}
+
 static void law(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2;
   a0=1.5707963267948967e-02;
@@ -213,6 +222,67 @@ static void instant(const casadi_real** arg, casadi_real** res) {
   res[0][9]=a00;
 }
 
+static void section_of_0(const casadi_real** arg, casadi_real** res) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13;
+  a00=arg[0][0];
+  a01=arg[0][1];
+  a02=arg[2][1];
+  a03=1.;
+  a04=arg[3][0];
+  a03=(a03-a04);
+  a05=0.;
+  a06=casadi_fmax(a03,a05);
+  a07=(-a04);
+  a07=casadi_fmax(a07,a05);
+  a05=(a06-a07);
+  a08=(a02*a05);
+  a01=(a01*a08);
+  a00=(a00+a01);
+  a01=arg[0][2];
+  a09=arg[2][0];
+  a10=(a04*a08);
+  a11=(a06+a07);
+  a12=(a05*a11);
+  a13=2.;
+  a12=(a12/a13);
+  a12=(a02*a12);
+  a10=(a10+a12);
+  a10=(a09*a10);
+  a01=(a01*a10);
+  a00=(a00+a01);
+  res[0][0]=a00;
+  a00=arg[0][3];
+  a01=arg[0][4];
+  a08=(a01*a08);
+  a08=(a00+a08);
+  a13=arg[0][5];
+  a10=(a13*a10);
+  a08=(a08+a10);
+  res[0][1]=a08;
+  a08=arg[0][6];
+  a03=(a09*a03);
+  a00=(a00*a03);
+  a08=(a08+a00);
+  a00=(a09*a12);
+  a01=(a01*a00);
+  a08=(a08+a01);
+  a09=casadi_sq(a09);
+  a04=(a04*a12);
+  a11=(a11*a06);
+  a07=casadi_sq(a07);
+  a11=(a11+a07);
+  a05=(a05*a11);
+  a11=3.;
+  a05=(a05/a11);
+  a02=(a02*a05);
+  a04=(a04+a02);
+  a09=(a09*a04);
+  a13=(a13*a09);
+  a08=(a08+a13);
+  res[0][2]=a08;
+}
+
 /* ---- Written by lagrange_casadi ---- */
 
 #define SEAL <seal>
@@ -375,66 +445,23 @@ press_status press_batch(press_model* model, long many, const press_inputs* inpu
   }
   return first;
 }
-
-/* How the density of each link is given: how many cells, and where in these lists their breaks and numbers of coefficients begin. */
-static const casadi_real breaks[] = {0.0, 1.0};
-static const int sizes[] = {1};
-static const struct {
-  int cells, first_break, first_size;
-} shapes[] = {
-  {1, 0, 0}
-};
-
-/* Moments of the material from a ratio u to the tip: T[k] is the integral of the density times the distance to the power k, per
-   unit of the ratio. density holds, of each cell between breaks, so many coefficients of a polynomial. */
-static void tails(casadi_real u, int link, const casadi_real* density, casadi_real* T) {
-  const casadi_real* at = breaks + shapes[link].first_break;
-  const int* many = sizes + shapes[link].first_size;
-  casadi_real parts[1 + 2], high, low, width, total, power, shifted, term;
-  int i, j, k, n, choose;
-  for (k = 0; k < 3; ++k) T[k] = 0;
-  for (i = 0; i < shapes[link].cells; ++i) {
-    high = at[i + 1] - u > 0 ? at[i + 1] - u : 0;
-    low = at[i] - u > 0 ? at[i] - u : 0;
-    width = high - low;
-    total = 1;
-    power = low;
-    for (n = 0; n < many[i] + 2; ++n) {
-      parts[n] = width*total;
-      total = total*high + power;
-      power = power*low;
-    }
-    for (j = 0; j < many[i]; ++j) {
-      shifted = 0;
-      for (n = j; n < many[i]; ++n) {
-        choose = 1;
-        for (k = 0; k < j; ++k) choose = choose*(n - k)/(k + 1);
-        term = density[n]*(casadi_real) choose;
-        power = 1;
-        for (k = 0; k < n - j; ++k) power = power*u;
-        shifted = shifted + term*power;
-      }
-      for (k = 0; k < 3; ++k) T[k] = T[k] + shifted*parts[j + k]/(casadi_real) (j + k + 1);
-    }
-    density += many[i];
-  }
-}
-
 static void no_forces(press_forces* forces) {
   forces->axial = forces->shear = forces->bending = nothing;
 }
 
 press_status press_section(const press_model* model, const press_outputs* outputs, press_link link, press_real xi, press_forces* forces) {
-  casadi_real law[7], acting[4], T[3], l, first, near, axial, shear, bending;
-  const casadi_real* matter_of;
-  int k, stations = 0;
+  casadi_real law[7], found[3];
+  const casadi_real* arg[4];
+  casadi_real* res[1];
   no_forces(forces);
   if (model->seal != SEAL) return PRESS_NOT_PREPARED;
   if (!(xi >= 0 && xi <= 1)) return PRESS_BAD_RATIO;
+  arg[0] = law;
+  arg[1] = 0;
+  arg[3] = &xi;
+  res[0] = found;
   switch (link) {
   case PRESS_LINK_ROD:
-    matter_of = model->matter + 1;
-    stations = 0;
     law[0] = outputs->section_rod_n0;
     law[1] = outputs->section_rod_n1;
     law[2] = outputs->section_rod_n2;
@@ -442,30 +469,16 @@ press_status press_section(const press_model* model, const press_outputs* output
     law[4] = outputs->section_rod_f1;
     law[5] = outputs->section_rod_f2;
     law[6] = outputs->section_rod_m0;
+    arg[2] = model->matter + 1;
+    section_of_0(arg, res);
     break;
   default:
     return PRESS_NO_LINK;
   }
-  l = matter_of[0];
-  tails(xi, (int) link, matter_of + 1, T);
-  first = l*(xi*T[0] + T[1]);
-  axial = law[0] + law[1]*T[0] + law[2]*first;
-  shear = law[3] + law[4]*T[0] + law[5]*first;
-  bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
-  /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
-     by rounding. */
-  near = xi < 9.9999999999999998e-13 ? 9.9999999999999998e-13 : xi > 1 - 9.9999999999999998e-13 ? 1 - 9.9999999999999998e-13 : xi;
-  for (k = 0; k < 4*stations; k += 4) {
-    if (near < acting[k]) {
-      axial = axial + acting[k + 1];
-      shear = shear + acting[k + 2];
-      bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));
-    }
-  }
-  if (!is_finite(axial + shear + bending)) return PRESS_NOT_FINITE;
-  forces->axial = axial;
-  forces->shear = shear;
-  forces->bending = bending;
+  if (!all_finite(found, 3)) return PRESS_NOT_FINITE;
+  forces->axial = found[0];
+  forces->shear = found[1];
+  forces->bending = found[2];
   return PRESS_OK;
 }
 
