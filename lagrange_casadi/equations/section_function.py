@@ -187,9 +187,9 @@ def section(
 def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool) -> Any:
     """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a moment, go with.
 
-    First are those of the law, then those of loads along the link, which have so many ``powers``; ``spans`` are width and end of
-    each. Where it ``bends`` it is the moment. Other forces have the same rows: a shear force those of an axial one, a moment that has an arm of -1 the same but for
-    the sign, and the couples of slices those of a force.
+    First are those of the law, then those of loads along the link, which have so many ``powers``; ``spans`` are width and end
+    of each. It ``bends`` where the moment is meant. Other forces have the same rows: a shear force those of an axial one, a
+    moment that has an arm of -1 the same but for the sign, and the couples of slices those of a force.
     """
     coefficient = "qf" if bends else "qn"
     acting = [

@@ -47,8 +47,10 @@ class Basis:
         # Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
         spans = [values[..., :1] for load in self.spreads for values in (load.width, load.end)]
         (rows,) = interpret(function, [matter, spans, [self.u]], _NUMPY)
-        shape = np.broadcast_shapes(np.shape(self.length), self.u.shape, *map(np.shape, rows))
-        return np.stack([np.broadcast_to(row, shape) for row in rows])
+        found = np.empty((len(rows), *np.broadcast_shapes(np.shape(self.length), self.u.shape)))
+        for row, values in zip(found, rows, strict=True):
+            row[...] = values
+        return found
 
     def of(self, terms: Terms, law: Sequence[Array], spreads: Sequence[SpreadLoad]) -> tuple[list[Array], Array]:
         """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along the link.
@@ -57,7 +59,10 @@ class Basis:
         same rows: where signs differ, columns have them.
         """
         sign, plain, own = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
-        columns, rows, first = [*law[:1], *(sign * column for column in law[1:])], [*plain[: len(law)]], 0
+        columns = [*law[:1], *(-column for column in law[1:])] if sign < 0 else list(law)
+        if not spreads:
+            return columns, plain[: len(law)]
+        rows, first = [*plain[: len(law)]], 0
         for load in spreads:
             for values, there in (
                 ([sign * value for value in load.terms.get(terms.spread, ())], plain[own + first :]),

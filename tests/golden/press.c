@@ -16,15 +16,6 @@ typedef press_real casadi_real;
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
 
-static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
-/* Pre-c99 compatibility */
-#if __STDC_VERSION__ < 199901L
-  return x>y ? x : y;
-#else
-  return fmax(x, y);
-#endif
-}
-
 static void law(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2;
   a0=1.5707963267948967e-02;
@@ -223,64 +214,54 @@ static void instant(const casadi_real** arg, casadi_real** res) {
 }
 
 static void section_of_0(const casadi_real** arg, casadi_real** res) {
-  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  casadi_real a12, a13;
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10;
   a00=arg[0][0];
   a01=arg[0][1];
   a02=arg[2][1];
   a03=1.;
   a04=arg[3][0];
   a03=(a03-a04);
-  a05=0.;
-  a06=casadi_fmax(a03,a05);
-  a07=(-a04);
-  a07=casadi_fmax(a07,a05);
-  a05=(a06-a07);
-  a08=(a02*a05);
-  a01=(a01*a08);
+  a05=(a02*a03);
+  a01=(a01*a05);
   a00=(a00+a01);
   a01=arg[0][2];
-  a09=arg[2][0];
-  a10=(a04*a08);
-  a11=(a06+a07);
-  a12=(a05*a11);
-  a13=2.;
-  a12=(a12/a13);
-  a12=(a02*a12);
-  a10=(a10+a12);
-  a10=(a09*a10);
-  a01=(a01*a10);
+  a06=arg[2][0];
+  a07=(a04*a05);
+  a08=casadi_sq(a03);
+  a09=2.;
+  a09=(a08/a09);
+  a09=(a02*a09);
+  a07=(a07+a09);
+  a07=(a06*a07);
+  a01=(a01*a07);
   a00=(a00+a01);
   res[0][0]=a00;
   a00=arg[0][3];
   a01=arg[0][4];
-  a08=(a01*a08);
-  a08=(a00+a08);
-  a13=arg[0][5];
-  a10=(a13*a10);
-  a08=(a08+a10);
-  res[0][1]=a08;
-  a08=arg[0][6];
-  a03=(a09*a03);
-  a00=(a00*a03);
-  a08=(a08+a00);
-  a00=(a09*a12);
+  a05=(a01*a05);
+  a05=(a00+a05);
+  a10=arg[0][5];
+  a07=(a10*a07);
+  a05=(a05+a07);
+  res[0][1]=a05;
+  a05=arg[0][6];
+  a07=(a06*a03);
+  a00=(a00*a07);
+  a05=(a05+a00);
+  a00=(a06*a09);
   a01=(a01*a00);
-  a08=(a08+a01);
-  a09=casadi_sq(a09);
-  a04=(a04*a12);
-  a11=(a11*a06);
-  a07=casadi_sq(a07);
-  a11=(a11+a07);
-  a05=(a05*a11);
-  a11=3.;
-  a05=(a05/a11);
-  a02=(a02*a05);
+  a05=(a05+a01);
+  a06=casadi_sq(a06);
+  a04=(a04*a09);
+  a03=(a03*a08);
+  a08=3.;
+  a03=(a03/a08);
+  a02=(a02*a03);
   a04=(a04+a02);
-  a09=(a09*a04);
-  a13=(a13*a09);
-  a08=(a08+a13);
-  res[0][2]=a08;
+  a06=(a06*a04);
+  a10=(a10*a06);
+  a05=(a05+a10);
+  res[0][2]=a05;
 }
 
 /* ---- Written by lagrange_casadi ---- */
