@@ -64,8 +64,8 @@ class Density:
         scale = length if self.per_length else 1.0
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            beyond = [1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)]
-            parts = _differences(*beyond, len(cell) + 2)
+            high, low = 1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)
+            parts = _differences(high, low, len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
                 for k in range(3):
                     found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
