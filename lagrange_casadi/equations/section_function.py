@@ -182,8 +182,8 @@ def section(
     return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
 
 
-@symbolic
 @functools.cache
+@symbolic
 def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool) -> Any:
     """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a moment, go with.
 

@@ -47,7 +47,7 @@ class Basis:
         # Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
         spans = [values[..., :1] for load in self.spreads for values in (load.width, load.end)]
         (rows,) = interpret(function, [matter, spans, [self.u]], _NUMPY)
-        found = np.empty((len(rows), *np.broadcast_shapes(np.shape(self.length), self.u.shape)))
+        found = np.empty((len(rows), *np.broadcast(self.length, self.u).shape))
         for row, values in zip(found, rows, strict=True):
             row[...] = values
         return found
