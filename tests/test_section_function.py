@@ -1,8 +1,10 @@
 """The forces inside a link in every form that has them, against quadrature of what is beyond a section."""
 
+import json
 import subprocess
+from importlib import resources
 
-import casadi as ca
+import alive
 import numpy as np
 import pytest
 from compiled import PEDANTIC, cc
@@ -17,6 +19,9 @@ from lagrange_casadi.equations.section_function import SIDES, SectionInputs, sec
 from lagrange_casadi.instants import grids
 from lagrange_casadi.instants.laws import law_of
 from lagrange_casadi.motion import harmonic
+from lagrange_casadi.report.sections import section_entries
+
+chromium = alive.chromium
 
 SLACK, INSTANTS = END["double"], 2
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -219,11 +224,26 @@ def test_opposite_loads_at_one_place_are_felt_by_no_section():
     assert np.abs(link.law.extreme("bending")[1]).max() < 1e-14
 
 
-def test_derivatives_of_the_function_are_those_of_its_terms():
-    """In the coefficients it is linear, whatever acts along the link."""
-    link = links(1)[1]
-    function = link.function()
-    law, acting, matter, xi = function.sx_in()
-    by_law = ca.Function("by_law", [law, acting, matter, xi], [ca.jacobian(function(law, acting, matter, xi)[:3], law)])
-    rows = link.rows(0)
-    np.testing.assert_array_equal(by_law(*rows, link.matter, 0.4), by_law(np.zeros(len(rows[0])), rows[1], link.matter, 0.4))
+class Numbers(list):
+    """Arrays of a page as lists."""
+
+    def add(self, values, *_):
+        self.append(values.tolist())
+        return len(self) - 1
+
+
+@alive.NEEDS_BROWSER
+def test_a_page_has_the_same_forces_beside_load_points(chromium):
+    found, numbers = loaded(0.1, [0.5]), Numbers()
+    entries = list(section_entries(found, np.arange(2), numbers))
+    law, places = found.section("bar").law, [0.0, 0.1, 1 / 3, 0.1 / 0.3, 1 / 3 - 3e-12, 1 / 3 + 3e-12, 0.7, 1.0]
+    asked = [(force, u, side) for force in PLANE.forces for u in places for side in SIDES]
+    text = resources.files("lagrange_casadi.report").joinpath("assets", "law.js").read_text()
+    forces = chromium.run(f"""(() => {{
+        const contents = {{ sections: {json.dumps(entries)} }};
+        const array = (number) => {json.dumps(numbers)}[number];
+        {text}
+        return {json.dumps(asked)}.map(([force, u, side]) => sectionForceAt(sections[0], force, 0, u, side));
+    }})()""")
+    expected = [law.at(force, np.full((2, 1), u), side)[0, 0] for force, u, side in asked]
+    np.testing.assert_allclose(forces, expected, rtol=0, atol=1e-11)

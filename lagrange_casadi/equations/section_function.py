@@ -1,9 +1,9 @@
-"""The forces inside a link as one function of the ratio xi/l: ``section(law, acting, p, xi)``.
+"""The forces inside a link as one function of the ratio xi/l: ``section(law, acting, matter, xi)``.
 
 ``law`` are the coefficients of the link's law, in the order of :attr:`.Table.law`. ``acting`` is what acts on it: of each
 load point the members of :attr:`.Table.place_first`, then of each load along it ``width``, ``end`` and, power by power, its
-coefficients. ``p`` are the parameters; :func:`section` takes ``matter`` in their place: the length, and the coefficients of
-the density. The result are the forces of :attr:`.Table.forces`, resultants last.
+coefficients. ``matter`` is what parameters say of the link (:meth:`.ModelData.matter`): its length, and the coefficients of
+its density per unit of the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
 
 A section feels what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C and the functions along a
 link that grids are filled from (:mod:`..instants.basis`) all come from here.
