@@ -37,7 +37,8 @@ def drawn(generator, table, loaded):
     many = int(generator.integers(1, 4))
     breaks = (0.0, *map(float, sorted(generator.choice([0.2, 0.45, 0.5, 0.7], many - 1, replace=False))), 1.0)
     cells = tuple(tuple(generator.uniform(0.1, 2.0, int(generator.integers(1, 5))).tolist()) for _ in range(many))
-    stations = generator.choice([0.0, 1e-15, 0.25, 0.3, 0.75, 0.8, 0.95, 1.0 - 1e-15], int(generator.integers(0, 4)), replace=False)
+    places = [0.0, 1e-15, 0.25, 1 / 3, 0.1 / 0.3, 0.8, 0.95, 1.0 - 1e-15]
+    stations = generator.choice(places, int(generator.integers(0, 4)), replace=False)
     of = StationLoad if table is PLANE else SpatialStationLoad
     loads = tuple(of("", np.array([x]), *generator.normal(size=(len(table.station) - 1, 1))) for x in stations)
     coefficients = {name: generator.normal(size=1) * (5.0 if name[-1] == "2" else 1.0) for name in table.law}

@@ -81,21 +81,20 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
     work: dict[int, Any] = {}
     outputs: list[list[Any]] = [[arithmetic.constant(0.0)] * function.nnz_out(i) for i in range(function.n_out())]
     for step in steps(function):
-        if step.operation == ca.OP_CONST:
+        if (rule := arithmetic.operations.get(step.operation)) is not None and step.operation != ca.OP_CALL:
+            work[step.results[0]] = rule(*[work[place] for place in step.arguments])
+        elif step.operation == ca.OP_CONST:
             work[step.results[0]] = arithmetic.constant(step.constant)
         elif step.operation == ca.OP_INPUT:
             work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
         elif step.operation == ca.OP_OUTPUT:
             outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
+        elif rule is not None and step.looked_up is not None:
+            work[step.results[0]] = rule(step.looked_up, *[work[place] for place in step.arguments])
         else:
-            rule = arithmetic.operations.get(step.operation)
-            if rule is not None and step.looked_up is not None:
-                rule = functools.partial(rule, step.looked_up)
-            elif rule is None or step.operation == ca.OP_CALL:
-                unknown = f"takes {operation_name(step.operation)}, unknown here"
-                what = "calls another one" if step.operation == ca.OP_CALL else unknown
-                raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
-            work[step.results[0]] = rule(*(work[place] for place in step.arguments))
+            unknown = f"takes {operation_name(step.operation)}, unknown here"
+            what = "calls another one" if step.operation == ca.OP_CALL else unknown
+            raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
     return outputs
 
 

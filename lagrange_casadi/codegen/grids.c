@@ -54,18 +54,18 @@ static inline __attribute__((always_inline)) void combine(long long many, long l
   }
 }
 
-/* What acts at a station is seen by the sections on its base side: see sight in instants/grids.py. */
-static void act(long long n, double station, double constant, double slope, const double* u, const double* near,
+/* What acts at a station is felt by the sections whose edge it is beyond: see edge in equations/section_function.py. */
+static void act(long long n, double station, double constant, double slope, const double* u, const double* beyond,
                 double* restrict row) {
   long long j;
   for (j = 0; j < n; ++j) {
-    row[j] += near[j] < station ? constant + slope*(station - u[j]) : 0.0;
+    row[j] += beyond[j] < station ? constant + slope*(station - u[j]) : 0.0;
   }
 }
 
 /* Rows of one plane, with what acts there. */
 static void add_up(long long many, long long n, int terms, const double* const* columns, const double* const* basis,
-                   const double* const* acting, int loads, long long i, const double* u, const double* near,
+                   const double* const* acting, int loads, long long i, const double* u, const double* beyond,
                    double* restrict row) {
   const long long end = i + many;
   long long j;
@@ -79,13 +79,13 @@ static void add_up(long long many, long long n, int terms, const double* const* 
       const double c = columns[m][i], *b = basis[m];
       for (j = 0; j < n; ++j) row[j] = row[j] + c*b[j];
     }
-    for (s = 0; s < loads; ++s) act(n, acting[3*s][i], acting[3*s + 1][i], acting[3*s + 2][i], u, near, row);
+    for (s = 0; s < loads; ++s) act(n, acting[3*s][i], acting[3*s + 1][i], acting[3*s + 2][i], u, beyond, row);
   }
 }
 
 /* Rows from instant i on: of one plane, or the size of two; other is room for the second one's. */
 static void whole(long long many, long long n, const double* const* columns, const double* const* basis, int planes, int terms,
-                  const double* const* acting, int loads, long long i, const double* u, const double* near, double* restrict row,
+                  const double* const* acting, int loads, long long i, const double* u, const double* beyond, double* restrict row,
                   double* restrict other) {
   long long j;
   if (planes == 2 && !loads && terms == 3) {
@@ -93,9 +93,9 @@ static void whole(long long many, long long n, const double* const* columns, con
   } else if (planes == 2 && !loads && terms == 4) {
     combine(many, n, 2, 4, columns, i, basis, row);
   } else {
-    add_up(many, n, terms, columns, basis, acting, loads, i, u, near, row);
+    add_up(many, n, terms, columns, basis, acting, loads, i, u, beyond, row);
     if (planes == 2) {
-      add_up(many, n, terms, columns + terms, basis, acting + 3*loads, loads, i, u, near, other);
+      add_up(many, n, terms, columns + terms, basis, acting + 3*loads, loads, i, u, beyond, other);
       for (j = 0; j < many*n; ++j) row[j] = sqrt(row[j]*row[j] + other[j]*other[j]);
     }
   }
@@ -108,7 +108,7 @@ __attribute__((visibility("default")))
 void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
   const long long n = call->n, k = call->k;
   const int planes = call->planes, terms = call->terms, loads = call->loads;
-  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u, *near = call->near;
+  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u, *beyond = call->beyond;
   double* out = call->out;
   double tile[TILE], other[TILE];
   const double* along[MOST];
@@ -121,7 +121,7 @@ void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
     for (first = 0; first < n; first += rows) {
       const long long many = n - first < rows ? n - first : rows;
       double* here = call->streams ? tile : out + first*k + start;
-      whole(many, size, columns, along, planes, terms, acting, loads, first, u + start, near + start, here, other);
+      whole(many, size, columns, along, planes, terms, acting, loads, first, u + start, beyond + start, here, other);
       if (call->streams) stream(out + first*k + start, tile, many*size);
     }
   }
@@ -137,7 +137,7 @@ __attribute__((visibility("default")))
 void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
   const long long designs = call->designs, n = call->n, k = call->k;
   const int planes = call->planes, terms = call->terms, loads = call->loads;
-  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u, *near = call->near;
+  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u, *beyond = call->beyond;
   double* out = call->out;
   double row[TILE], other[TILE], high[TILE], low[TILE];
   const double* along[MOST];
@@ -152,7 +152,7 @@ void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
         low[j] = HUGE_VAL;
       }
       for (i = d*n; i < (d + 1)*n; ++i) {
-        whole(1, size, columns, along, planes, terms, acting, loads, i, u + start, near + start, row, other);
+        whole(1, size, columns, along, planes, terms, acting, loads, i, u + start, beyond + start, row, other);
         for (j = 0; j < size; ++j) {
           high[j] = row[j] > high[j] ? row[j] : high[j];
           low[j] = row[j] < low[j] ? row[j] : low[j];

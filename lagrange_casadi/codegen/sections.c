@@ -18,10 +18,11 @@ DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return
 /* A ratio on the link; 0 for what is none. */
 DESIGNS_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
-/* From where on sections at a ratio see what acts at stations: see sight in instants/grids.py. */
-DESIGNS_INLINE casadi_real designs_sight(casadi_real u) {
-  const casadi_real inside = lanes_less(u, 1 - DESIGNS_END, u, 1 - DESIGNS_END);
-  return lanes_less(DESIGNS_END, inside, inside, DESIGNS_END);
+/* The ratio beyond which a section feels what acts at stations, as it is on the tip's side of one that is there, and on the base's: see
+   edge in equations/section_function.py. */
+DESIGNS_INLINE casadi_real designs_section_edge(casadi_real u, int side) {
+  if (side) return lanes_less(DESIGNS_END, u - DESIGNS_END, u - DESIGNS_END, DESIGNS_END);
+  return lanes_less(u + DESIGNS_END, 1 - DESIGNS_END, u + DESIGNS_END, 1 - DESIGNS_END);
 }
 
 /* Of a uniform link without stations, whose matter is its length and its mass. */
@@ -145,34 +146,29 @@ static inline void designs_smooth(const designs_link* link, casadi_real u, casad
   designs_spread(link, u, force);
 }
 
-/* And what a load does at a ratio, if it is seen there. */
-static inline void designs_act(const designs_link* link, int station, casadi_real u, casadi_real seen, casadi_real* force) {
-  const casadi_real* load = link->loads + 4*station;
-  force[0] = force[0] + lanes_less(0, seen, load[1], 0);
-  force[1] = force[1] + lanes_less(0, seen, load[2], 0);
-  force[2] = force[2] + lanes_less(0, seen, load[3] + load[2]*(link->matter[0]*(load[0] - u)), 0);
+/* And what acts at stations beyond an edge. */
+static inline void designs_act(const designs_link* link, casadi_real u, casadi_real edge, casadi_real* force) {
+  const casadi_real* load = link->loads;
+  int s;
+  for (s = 0; s < link->stations; ++s, load += 4) {
+    force[0] = force[0] + lanes_less(edge, load[0], load[1], 0);
+    force[1] = force[1] + lanes_less(edge, load[0], load[2], 0);
+    force[2] = force[2] + lanes_less(edge, load[0], load[3] + load[2]*(link->matter[0]*(load[0] - u)), 0);
+  }
 }
 
 /* All forces at a ratio, as they are on the tip's side of a station that is there, and on the base's. */
 static inline void designs_beside(const designs_link* link, casadi_real u, casadi_real sides[2][3]) {
-  const casadi_real near = designs_sight(u);
-  casadi_real station;
-  int k, s;
+  int k;
   designs_smooth(link, u, sides[0]);
   for (k = 0; k < 3; ++k) sides[1][k] = sides[0][k];
-  for (s = 0; s < link->stations; ++s) {
-    station = link->loads[4*s];
-    designs_act(link, s, u, lanes_less(near, station, 1, 0), sides[0]);
-    designs_act(link, s, u, lanes_less(station, near, 0, 1), sides[1]);
-  }
+  for (k = 0; k < 2; ++k) designs_act(link, u, designs_section_edge(u, k), sides[k]);
 }
 
-/* All forces at a ratio between two stations, of which the middle is told. */
-static inline void designs_within(const designs_link* link, casadi_real u, casadi_real middle, casadi_real* force) {
-  int s;
-  middle = designs_sight(middle);
+/* All forces at a ratio between two stations, by the edge of a section at the first. */
+static inline void designs_within(const designs_link* link, casadi_real u, casadi_real edge, casadi_real* force) {
   designs_smooth(link, u, force);
-  for (s = 0; s < link->stations; ++s) designs_act(link, s, u, lanes_less(middle, link->loads[4*s], 1, 0), force);
+  designs_act(link, u, edge, force);
 }
 
 /* The zero of the shear in a part of a cell where it is monotonic and has one, by Newton's method kept within what encloses it. */
@@ -241,7 +237,7 @@ static inline void designs_sort(casadi_real* marks, int count) {
 static inline void designs_along(const designs_link* link, casadi_real* marks, casadi_real* value, casadi_real* place) {
   const casadi_real *law = link->law, l = link->matter[0];
   const int count = link->stations, parts = count + 1, many = 3 + 3*count;
-  casadi_real *bending = value + 2*many, sides[2][3], force[3], low, high, middle, acting, zero[2], turn[2], u, rises;
+  casadi_real *bending = value + 2*many, sides[2][3], force[3], low, high, edge, acting, zero[2], turn[2], u, rises;
   int k, j, s;
   for (s = -2; s < count; ++s) {
     u = s == -2 ? 0 : 1;
@@ -260,19 +256,19 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
     high = 1;
     if (s > 0) low = marks[s - 1];
     if (s < count) high = marks[s];
-    middle = DESIGNS_HALF*(low + high);
+    edge = designs_section_edge(low, 0);
     acting = 0;
-    for (k = 0; k < count; ++k) acting = acting + lanes_less(designs_sight(middle), link->loads[4*k], link->loads[4*k + 2], 0);
+    for (k = 0; k < count; ++k) acting = acting + lanes_less(edge, link->loads[4*k], link->loads[4*k + 2], 0);
     for (k = 0; k < 2; ++k) {
       u = place[k*parts + s] = lanes_less(turn[k], low, low, lanes_less(high, turn[k], high, turn[k]));
-      designs_within(link, u, middle, force);
+      designs_within(link, u, edge, force);
       value[k*many + 2 + 2*count + s] = force[k];
     }
     zero[0] = designs_zero_between(link, acting, low, u);
     zero[1] = designs_zero_between(link, acting, u, high);
     for (k = 0; k < 2; ++k) {
       u = place[(2 + k)*parts + s] = lanes_less(0, rises, zero[k], zero[1 - k]);
-      designs_within(link, u, middle, force);
+      designs_within(link, u, edge, force);
       bending[2 + 2*count + k*parts + s] = force[2];
     }
   }

@@ -21,7 +21,7 @@ static inline void designs_along_in_space(const designs_link* link, const design
                                           casadi_real* room, casadi_real* value, casadi_real* place) {
   const int count = link->stations, parts = count + 1, many = 2 + 2*count, turns = link->spreads ? 2*parts : parts;
   const casadi_real* law = link->law;
-  casadi_real *values[3], *places[3], torsion, station, at_tip, seen, *from;
+  casadi_real *values[3], *places[3], torsion, at_tip, *from;
   designs_link planes[3];
   designs_between between;
   int k, s, j, bends;
@@ -64,13 +64,10 @@ static inline void designs_along_in_space(const designs_link* link, const design
   for (k = 0; k < 2; ++k) designs_of_plane(values[k] + many + turns, places[k] + turns, many, turns, 1, &value, &place);
   if (link->couple) designs_of_plane(values[2], places[2], many, turns, 1, &value, &place);
   for (s = -2; !link->couple && s < 2*count; ++s) {
-    const casadi_real u = s == -2 ? 0 : s == -1 ? 1 : designs_on_link(link->loads[7*(s/2)]), near = designs_sight(u);
+    const casadi_real u = s == -2 ? 0 : s == -1 ? 1 : designs_on_link(link->loads[7*(s/2)]);
+    const casadi_real edge = designs_section_edge(u, s > 0 && s % 2);
     torsion = law[11];
-    for (j = 0; j < count; ++j) {
-      station = link->loads[7*j];
-      seen = s < 0 || s % 2 == 0 ? lanes_less(near, station, 1, 0) : lanes_less(station, near, 0, 1);
-      torsion = torsion + lanes_less(0, seen, link->loads[7*j + 4], 0);
-    }
+    for (j = 0; j < count; ++j) torsion = torsion + lanes_less(edge, link->loads[7*j], link->loads[7*j + 4], 0);
     *value++ = torsion;
   }
   for (k = 1; k >= 0; --k) {
@@ -90,6 +87,7 @@ static inline void designs_along_in_space(const designs_link* link, const design
       if (s > 0) low = marks[s - 1];
       if (s < count) high = marks[s];
       between.middle = DESIGNS_HALF*(low + high);
+      between.edge = designs_section_edge(low, 0);
       designs_summits_between(&between, nodes[bends], low, high, summit);
       for (k = 0; k < 2; ++k) {
         place[k*parts + s] = summit[k];

@@ -7,12 +7,12 @@ typedef struct {
   const DESIGNS_REAL *nodes, *weights;
 } designs_nodes;
 
-/* What is looked at: a force of a link, by its number, or the size of both planes' forces; and where: between the stations around the
-   middle of a part. */
+/* What is looked at: a force of a link, by its number, or the size of both planes' forces; and where: in a part between two stations, by
+   its middle and the edge of a section at its first. */
 typedef struct {
   const designs_link* planes;
   int many, force;
-  casadi_real middle;
+  casadi_real middle, edge;
 } designs_between;
 
 /* Coefficients of the derivative of a polynomial of a degree. */
@@ -103,10 +103,10 @@ static inline casadi_real designs_bending(const designs_link* link, casadi_real 
 /* The size of what is looked at. */
 static inline casadi_real designs_looked_at(const designs_between* of, casadi_real u) {
   casadi_real force[3], sum;
-  designs_within(of->planes, u, of->middle, force);
+  designs_within(of->planes, u, of->edge, force);
   if (of->many == 1) return designs_size(force[of->force]);
   sum = force[of->force]*force[of->force];
-  designs_within(of->planes + 1, u, of->middle, force);
+  designs_within(of->planes + 1, u, of->edge, force);
   return DESIGNS_ROOT(sum + force[of->force]*force[of->force]);
 }
 
@@ -117,7 +117,7 @@ static inline casadi_real designs_slope(const designs_between* of, int cell, cas
   int k;
   if (of->many == 1 && !bends) return designs_falling(of->planes, of->force, cell, u, of->middle);
   for (k = 0; k < of->many; ++k) {
-    designs_within(of->planes + k, u, of->middle, force);
+    designs_within(of->planes + k, u, of->edge, force);
     if (of->many == 1) return designs_bending(of->planes, force[1], u, of->middle);
     sum = sum + force[of->force]*(bends ? designs_bending(of->planes + k, force[1], u, of->middle) : designs_falling(of->planes + k, 1, cell, u, of->middle));
   }
@@ -209,12 +209,13 @@ static inline void designs_along_loaded(const designs_link* link, const designs_
     if (s > 0) low = marks[s - 1];
     if (s < count) high = marks[s];
     between.middle = DESIGNS_HALF*(low + high);
+    between.edge = designs_section_edge(low, 0);
     for (k = 0; k < 3; ++k) {
       between.force = k;
       designs_summits_between(&between, k == 2 ? of_bending : of_force, low, high, summit);
       for (j = 0; j < 2; ++j) {
         place[(2*k + j)*parts + s] = summit[j];
-        designs_within(link, summit[j], between.middle, force);
+        designs_within(link, summit[j], between.edge, force);
         value[k*many + 2 + 2*count + j*parts + s] = force[k];
       }
     }

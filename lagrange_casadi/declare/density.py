@@ -59,12 +59,13 @@ class Density:
         return found[0] * scale, found[1] * scale, found[2] * scale * length * length
 
     def tails(self, u: Any, length: Any) -> tuple[Any, Any, Any]:
-        """T0, T1 and T2 at a ratio ``u``, a number or an expression in parameters."""
+        """T0, T1 and T2 at a ratio ``u`` from 0 to 1, a number or an expression in parameters."""
         larger = (lambda x: ca.fmax(x, 0.0)) if isinstance(u, ca.SX) else (lambda x: max(x, 0.0))
         scale = length if self.per_length else 1.0
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            parts = _differences(larger(b - u), larger(a - u), len(cell) + 2)
+            high, low = 1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)
+            parts = _differences(high, low, len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
                 for k in range(3):
                     found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
@@ -130,13 +131,13 @@ class NumericDensity:
         """The whole mass [kg]."""
         return float(self.tails(np.zeros(1))[0][0])
 
-    def tails(self, u: Array, count: int = 3) -> tuple[Array, ...]:
-        """T0, T1 and T2 at ratios ``u`` of any shape, or the first of them only."""
-        found: list[Any] = [np.zeros_like(u) for _ in range(count)]
+    def tails(self, u: Array) -> tuple[Array, ...]:
+        """T0, T1 and T2 at ratios ``u`` of any shape."""
+        found: list[Any] = [np.zeros_like(u) for _ in range(3)]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + count - 1)
+            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u) if len(cell) > 1 else cell):
-                for k in range(count):
+                for k in range(3):
                     found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
         return tuple(found)
 

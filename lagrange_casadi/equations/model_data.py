@@ -13,6 +13,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
 from ..beams.material import Material
 from ..beams.told import beam_of
@@ -29,8 +30,10 @@ from ..declare.scene import Scene
 from ..declare.stated import Stated
 from ..declare.times import Timing
 from ..errors import UnknownNameError
+from .checks import Column
 from .described import template
 from .gaps import extent
+from .section_function import Section
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +142,10 @@ class ModelData(Graphs):
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
         body = self.template.placed(self.template.content["bodies"][name], p)
         return Link(name, *self.matter(name, p), beam_of(body["beam"]))
+
+    def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
+        """The section forces of a link, of columns and parameters ``p`` that are expressions."""
+        return Section(link, table_of(self.space), columns, *self.matter(link, p))
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""

@@ -24,12 +24,11 @@ from ..beams.beam import SLIGHT, Beam
 from ..beams.properties import Properties
 from ..beams.shape import between
 from ..declare.density import Density
+from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from .checks import Column
-from .mobility import stations_of
-from .own import section_force
-from .spreads import spreads_of
+from .section_function import Place, Section, Side, edge
 
 FORCES = {False: {"axial": 0, "shear": 1, "bending": 5}, True: {"axial": 0, "shear_y": 1, "shear_z": 2, "torsion": 3}}
 FORCES[True] |= {"bending_y": 4, "bending_z": 5}
@@ -43,6 +42,9 @@ _MORE = 6
 
 _PLACES = 17
 """Places at which the thinnest cross-section is sought."""
+
+_SLACK = END["single"]
+"""How near a station is at a section: one graph serves both precisions."""
 
 _DEEP = 4
 """How much of an expression is compared to see that two fibres are alike."""
@@ -71,19 +73,13 @@ class Loaded:
     def __init__(self, space: bool, link: Link, columns: Mapping[Column, Any]) -> None:
         assert link.beam is not None
         assert isinstance(link.mass, Density)
-        self.link, self.columns, self.space = link, columns, space
+        self.link, self.space = link, space
         self.beam: Beam = link.beam
         self.course = link.beam.course
-        self.table = table_of(space)
-        outputs = [column for column in columns if isinstance(column, Output)]
-        stations = stations_of(outputs, link.name)
-        self.marks = [columns[Output("station", link.name, "station", name)] for name in stations]
-        powers = spreads_of(outputs, link.name)
-        for name in powers:
-            width, end = (columns[Output("spread", link.name, member, name)] for member in ("width", "end"))
-            self.marks += [end, end - width]
+        self.section = Section(link.name, table_of(space), columns, link.length, link.mass)
+        self.marks = [place.ratio for place in self.section.marks if place.side == "tip"]
         self.marks += [ca.SX(b) for b in link.mass.breaks[1:-1]]
-        self.degree = max(max(map(len, link.mass.cells)) + 2, *(many + 1 for many in powers.values()), 0)
+        self.degree = max(max(map(len, link.mass.cells)) + 2, *(many + 1 for many in self.section.spreads.values()), 0)
 
     @property
     def told(self) -> bool:
@@ -101,18 +97,16 @@ class Loaded:
                     found.append(Part(a, b - a, cell, self._polynomials(a, b)))
         return found
 
-    def force_at(self, name: str, u: Any, middle: Any) -> Any:
-        """A section force at a ratio; at a station on the side on which a ``middle`` is."""
-        return section_force(self.link, name, u, self.columns, self.table, middle)
+    def force_at(self, name: str, u: Any, side: Side) -> Any:
+        """A section force at a ratio; at a station on a ``side`` of it."""
+        return self.section.at(name, Place(u, side=side), _SLACK)
 
     def _polynomials(self, a: Any, b: Any) -> dict[str, list[Any]]:
         nodes = (1.0 - np.cos(math.pi * np.arange(self.degree + 1) / self.degree)) / 2
         inverse = np.linalg.inv(np.vander(nodes, increasing=True))
         found = {}
         for name in FORCES[self.space]:
-            values = [
-                section_force(self.link, name, a + (b - a) * x, self.columns, self.table, (a + b) / 2) for x in nodes.tolist()
-            ]
+            values = [self.section.force(name, a + (b - a) * x, edge(a, _SLACK)) for x in nodes.tolist()]
             found[name] = [sum(w * value for w, value in zip(row.tolist(), values, strict=True)) for row in inverse]
         return found
 

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from ..arithmetic.interpret import interpret, numpy_arithmetic
 from ..base.arrays import Array
 from ..base.tables import Terms
 from ..declare.density import NumericDensity
+from ..equations.section_function import along
 from .spread_loads import SpreadLoad
+
+_NUMPY = numpy_arithmetic()
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,53 +26,49 @@ class Basis:
     """
 
     u: Array
-    force: Array
-    bending: Array
+    length: Array | float
+    density: NumericDensity
+    spreads: Sequence[SpreadLoad]
 
-    @classmethod
-    def of(cls, u: Array, length: float, density: NumericDensity, spreads: Sequence[SpreadLoad]) -> Basis:
-        """Those of a link."""
-        t0, t1, t2 = density.tails(u)
-        force = by_force(u, length, t0, t1)
-        bending = [np.ones_like(t0), length * (1.0 - u), length * t1, length * length * (u * t1 + t2)]
-        for spread in spreads:
-            for rows, more in zip((force, bending), spread.rows(u, length), strict=True):
-                rows += more
-        return cls(u, np.stack(force), np.stack(bending))
+    @cached_property
+    def force(self) -> Array:
+        """Those of a force."""
+        return self._rows(bends=False)
 
-    def of_force(self, terms: Terms, columns: Sequence[Array]) -> tuple[list[Array], Array]:
-        """Columns and rows of a force, by the ``columns`` of its law and of what acts along the link.
+    @cached_property
+    def bending(self) -> Array:
+        """Those of a bending moment."""
+        return self._rows(bends=True)
 
-        The two planes of bending are of the same rows: where signs differ, columns have them.
+    def _rows(self, *, bends: bool) -> Array:
+        cells = self.density.cells
+        function = along(self.density.breaks, tuple(map(len, cells)), tuple(load.powers for load in self.spreads), bends=bends)
+        matter = [self.length, *(coefficient for cell in cells for coefficient in cell)]
+        # Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
+        spans = [values[..., :1] for load in self.spreads for values in (load.width, load.end)]
+        (rows,) = interpret(function, [matter, spans, [self.u]], _NUMPY)
+        found = np.empty((len(rows), *np.broadcast(self.length, self.u).shape))
+        for row, values in zip(found, rows, strict=True):
+            row[...] = values
+        return found
+
+    def of(self, terms: Terms, law: Sequence[Array], spreads: Sequence[SpreadLoad]) -> tuple[list[Array], Array]:
+        """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along the link.
+
+        Of that each force feels its own: loads by their arms, and couples of slices without. The two planes of bending are of the
+        same rows: where signs differ, columns have them.
         """
-        if not terms.arm:
-            return list(columns), self.force[: len(columns)]
-        return _signed(terms, columns), self.bending
-
-    def of_thick(self, terms: Terms, columns: Sequence[Array], spreads: Sequence[SpreadLoad]) -> tuple[list[Array], Array]:
-        """The same of a link whose slices have rotary inertia, by the ``columns`` of its law alone.
-
-        Of what acts along such a link each force feels its own: loads by their arms, and couples without.
-        """
-        found, plain = _signed(terms, columns), self.bending if terms.arm else self.force
-        rows, first = [*plain[: len(columns)]], 0
-        sign, own = terms.arm or 1, 3 + (len(self.bending) - len(self.force) if terms.arm else 0)
-        for spread in spreads:
-            for values, there, start in (
-                ([sign * value for value in spread.terms.get(terms.spread, ())], plain, own),
-                (spread.terms.get(terms.couple, ()), self.force, 3),
+        sign, plain, own = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
+        columns = [*law[:1], *(-column for column in law[1:])] if sign < 0 else list(law)
+        if not spreads:
+            return columns, plain[: len(law)]
+        rows, first = [*plain[: len(law)]], 0
+        for load in spreads:
+            for values, there in (
+                ([sign * value for value in load.terms.get(terms.spread, ())], plain[own + first :]),
+                (load.terms.get(terms.couple, ()), self.force[3 + first :] if terms.couple in load.terms else ()),
             ):
-                found += values
-                rows += [*there[start + first : start + first + len(values)]]
-            first += spread.powers
-        return found, np.stack(rows)
-
-
-def _signed(terms: Terms, columns: Sequence[Array]) -> list[Array]:
-    """Columns with the sign of a moment's arm; the first one is a moment itself."""
-    return [*columns[:1], *(-column for column in columns[1:])] if (terms.arm or 1) < 0 else list(columns)
-
-
-def by_force(u: Array, length: float, t0: Array, t1: Array) -> list[Array]:
-    """The rows of a law's forces, by the moments of the matter beyond."""
-    return [np.ones_like(t0), t0, length * (u * t0 + t1)]
+                columns += values
+                rows += [*there[: len(values)]]
+            first += load.powers
+        return columns, np.stack(rows)

@@ -21,6 +21,7 @@ from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.limits import END
+from ..equations.section_function import edge
 from ..errors import CompilerError, DeclarationError, warn
 
 WORTH_COMPILING = 1 << 14
@@ -48,7 +49,7 @@ _SUM = {
     "loads": "int",
     "acting": "const double* const*",
     "u": "const double*",
-    "near": "const double*",
+    "beyond": "const double*",
     "out": "double*",
 }
 GRID = Call("lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"})
@@ -57,15 +58,6 @@ LARGEST = Call("lagrange_casadi_largest_call", {"designs": "long long", "n": "lo
 
 Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
-
-
-def sight(u: Array, slack: float) -> Array:
-    """From where on sections at ratios see what acts at stations: each sees what is beyond it.
-
-    A section at the tip is just inside it, and sees what acts at the tip; what acts at the base no section sees. What moves
-    along, and is at an end, misses that by rounding, by ``slack`` at most: no section looks from nearer to an end than that.
-    """
-    return np.clip(u, slack, 1.0 - slack)
 
 
 def fill(
@@ -82,7 +74,7 @@ def fill(
 
     The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are as many
     columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. ``slack`` is that of
-    :func:`sight`. Raises :class:`DeclarationError` for an ``out`` of another shape.
+    :func:`.edge`. Raises :class:`DeclarationError` for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
@@ -95,13 +87,13 @@ def fill(
     functions = empty("the functions along a link", (len(basis), -(-k // _LINE) * _LINE))
     functions[:, :k], functions[:, k:] = basis, 0.0
     flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
-    near = sight(ratios, slack)
+    beyond = edge(ratios, slack)
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
 
     def run(start: int) -> None:
         rows = (ctypes.c_void_p * len(flat))(*(row.ctypes.data + start * row.itemsize for row in flat))
-        here = _sum(len(columns), planes, rows, functions, ratios, near) | {"out": out[start:].ctypes.data}
+        here = _sum(len(columns), planes, rows, functions, ratios, beyond) | {"out": out[start:].ctypes.data}
         library.lagrange_casadi_grid(GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here))
 
     if shares == 1:
@@ -139,8 +131,8 @@ def largest(
     flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
     functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
     rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
-    near = sight(ratios, slack)
-    whole = _sum(len(columns), planes, rows, functions, ratios, near) | {"out": out.ctypes.data}
+    beyond = edge(ratios, slack)
+    whole = _sum(len(columns), planes, rows, functions, ratios, beyond) | {"out": out.ctypes.data}
     library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
     out[~finite] = np.nan
     return out
@@ -164,7 +156,7 @@ def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
     return [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
 
 
-def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, near: Array) -> dict[str, int]:
+def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, beyond: Array) -> dict[str, int]:
     """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads' parts; functions have a row each."""
     first = ctypes.addressof(rows)
     return {
@@ -176,7 +168,7 @@ def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, 
         "loads": (len(rows) - columns) // (3 * planes),
         "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
         "u": ratios.ctypes.data,
-        "near": near.ctypes.data,
+        "beyond": beyond.ctypes.data,
     }
 
 
@@ -207,7 +199,7 @@ def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
         rows += column[:, None] * function
     for station, constant, slope in loads:
         at = station[:, None]
-        rows += np.where(sight(u, slack) < at, constant[:, None] + slope[:, None] * (at - u), 0.0)
+        rows += np.where(edge(u, slack) < at, constant[:, None] + slope[:, None] * (at - u), 0.0)
 
 
 @functools.cache

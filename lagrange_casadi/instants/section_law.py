@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -23,17 +23,15 @@ from ..base.room import cores, require
 from ..base.tables import PLANE, SPACE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
+from ..equations.section_function import SIDES, Side, edge
 from . import grids
-from .basis import Basis, by_force
+from .basis import Basis
 from .sizes import growth_of_size, size_of, slope_of_size
 from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
 from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
 __all__ = ["Basis", "SectionLaw", "Side", "StationLoad"]
-
-Side = Literal["base", "tip"]
-_SIDES: tuple[Side, ...] = ("tip", "base")
 
 _BLOCK = 1 << 15
 
@@ -42,8 +40,8 @@ _BLOCK = 1 << 15
 class SectionLaw(Brief):
     """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at stations, and ``spreads`` along it.
 
-    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which. What misses an
-    end by no more than ``slack``, a ratio, acts at that end: see :func:`.sight`.
+    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which. ``slack`` is how
+    near to a section a station is that is at it, as a ratio to the length: see :func:`.edge`.
     """
 
     length: float
@@ -64,7 +62,7 @@ class SectionLaw(Brief):
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
-        return Basis.of(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
+        return Basis(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
 
     def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
@@ -104,7 +102,7 @@ class SectionLaw(Brief):
         values = self._smooth(force, u)
         for load in self.loads:
             station = _column(load.station, u)
-            values = values + self._beyond(force, load, u, self._seen(u, station, side))
+            values = values + self._beyond(force, load, u, edge(u, self.slack, side) < station)
         return values
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
@@ -125,7 +123,7 @@ class SectionLaw(Brief):
         """
         stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         u = np.stack([*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1)
-        seen = [[self._seen(u, load.station[:, None], side) for side in _SIDES] for load in self.loads]
+        seen = [[edge(u, self.slack, side) < load.station[:, None] for side in SIDES] for load in self.loads]
         basis, found = self.basis(u), {}
         for force in self.table.sections:
             columns, rows = self._terms(force, basis)
@@ -135,7 +133,7 @@ class SectionLaw(Brief):
             for spread, moving in zip(self.spreads, changes.spreads, strict=True):
                 gaps = gaps + (terms.arm or 1) * spread.moved(terms.spread, moving, u, self.length, arm=bool(terms.arm))
                 gaps = gaps + spread.moved(terms.couple, moving, u, self.length, arm=False)
-            gaps, sizes = (np.repeat(values[..., None], len(_SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
+            gaps, sizes = (np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
                 station, constant, slope = (values[:, None] for values in self._acting(force, load))
                 moved, more, steeper = (values[..., None] for values in self._acting(force, change))
@@ -146,7 +144,7 @@ class SectionLaw(Brief):
             found[force] = gaps, sizes
         for force in self.table.forces:
             if len(parts := self._parts(force)) > 1:
-                values = [np.stack([self.at(part, u, side) for side in _SIDES[: gaps.shape[-1]]], axis=-1) for part in parts]
+                values = [np.stack([self.at(part, u, side) for side in SIDES[: gaps.shape[-1]]], axis=-1) for part in parts]
                 gap = growth_of_size(values, [found[part][0] for part in parts])
                 found[force] = gap, size_of(found[part][1] for part in parts)
         return found
@@ -195,9 +193,9 @@ class SectionLaw(Brief):
             station, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
             # A station that moves takes its force's arm with it.
-            seen = self._seen(u, station, side)
-            values = values + np.where(seen, more + slope * going + steeper * (station - u), 0.0)
-            passing = passing + np.where(u == station, going, 0.0)
+            felt = edge(u, self.slack, side) < station
+            values = values + np.where(felt, more + slope * going + steeper * (station - u), 0.0)
+            passing = np.where(u == station, going, passing)
         return values + passing * self.along(force, u, side) if self.loads else values
 
     def bound(self, force: str, xi: Array) -> float:
@@ -263,7 +261,7 @@ class SectionLaw(Brief):
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
-        seen = [self._seen((low + high) / 2, load.station[:, None], "tip") for load in self.loads]
+        seen = [edge(low, self.slack) < load.station[:, None] for load in self.loads]
 
         def within(name: str, u: Array) -> Array:
             if len(parts := self._parts(name)) > 1:
@@ -305,26 +303,11 @@ class SectionLaw(Brief):
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
-        if self._thick:
-            return basis.of_thick(terms, columns, self.spreads)
-        if terms.spread:
-            columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
-        return basis.of_force(terms, columns)
+        return basis.of(terms, columns, self.spreads)
 
     def _smooth(self, force: str, u: Array) -> Array:
-        terms = self.table.sections[force]
-        if terms.arm or self.spreads:
-            columns, rows = self._terms(force, self.basis(u))
-            return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
-        # The whole basis takes one moment more of the matter.
-        plain = [self.coefficients[name] for name in terms.coefficients]
-        matter = by_force(u, self.length, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
-        return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
-
-    def _seen(self, u: Array, station: Array, side: Side) -> Any:
-        """Whether a section sees what acts at a station."""
-        near = grids.sight(u, self.slack)
-        return near < station if side == "tip" else near <= station
+        columns, rows = self._terms(force, self.basis(u))
+        return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]

@@ -58,27 +58,11 @@ class SpreadLoad:
         lever = length if arm else 1.0
         return sum((np.abs(c)[:, None] * (length * lever / (j + 1)) for j, c in enumerate(self.terms.get(direction, ()))), 0.0)
 
-    def rows(self, u: Array, length: Array | float) -> tuple[list[Array], list[Array]]:
-        """What sections at ratios ``u`` feel of a unit of each coefficient: force, and moment.
-
-        Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
-        """
-        x, reach, lever = self._seen(u, length)
-        forces, moments, power = [], [], x
-        for j in range(self.powers):
-            forces.append(reach * power / (j + 1))
-            moments.append(forces[-1] * (reach * x / (j + 2) + lever))
-            power = power * x
-        return forces, moments
-
-    def _seen(self, u: Array, length: Array | float) -> tuple[Array, Array, Array]:
-        """Of sections at ratios: x, L and a of :mod:`..equations.spreads`."""
-        width, end = self.width[..., :1], self.end[..., :1]
-        return np.clip((end - u) / width, 0.0, 1.0), length * width, length * np.maximum(end - width - u, 0.0)
-
     def moved(self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool) -> Array:
         """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose changes are (..., t)."""
-        x, reach, lever = self._seen(u, length)
+        width, end = self.width[..., :1], self.end[..., :1]
+        # x, L and a of equations/spreads.py.
+        x, reach, lever = np.clip((end - u) / width, 0.0, 1.0), length * width, length * np.maximum(end - width - u, 0.0)
         within = (x > 0.0) & (x < 1.0)
         by_end, by_width = np.zeros_like(x), np.zeros_like(x)
         for j, values in enumerate(self.terms.get(direction, ())):

@@ -14,9 +14,7 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
 from ..base.vocabulary import Precision
-from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
-from ..equations.spreads import spreads_of
 from ..instants.solution import Solution
 from .naming import constants, members, prefix
 
@@ -73,12 +71,10 @@ class Setting(Member):
 
 @dataclass(frozen=True)
 class LinkContract:
-    """A link that has sections: its name, its number in C, and what acts on it: at stations, and along it, in so many powers."""
+    """A link that has sections: its name, and its number in C."""
 
     name: str
     constant: str
-    stations: tuple[str, ...]
-    spreads: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -158,7 +154,7 @@ def contract(
         unit = output.unit(graph.data.kinds)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
     numbered = constants(f"{prefix(name)}_link", graph.links)
-    links = [LinkContract(link, constant, stations_of(given, link), spreads_of(given, link)) for link, constant in numbered.items()]
+    links = [LinkContract(link, constant) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
         name,

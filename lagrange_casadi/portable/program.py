@@ -15,8 +15,10 @@ from ..base.vocabulary import Precision
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.printer import print_functions
 from ..codegen.stages import controlled
+from ..declare.limits import END
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
+from ..equations.section_function import SectionInputs, section
 from ..instants.cycle_table import CycleTable
 from ..instants.tabulate import still
 
@@ -26,7 +28,8 @@ class Program:
     """What is emitted.
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``cycle`` is a table to be
-    read instead of an instant, and ``still`` are stations that are told beside it, for they do not move.
+    read instead of an instant, and ``still`` are stations that are told beside it, for they do not move. ``sections`` are, of each
+    link that has them, the name of the function that gives its section forces, and what that takes.
     """
 
     graph: SceneGraph
@@ -37,6 +40,7 @@ class Program:
     newton: int | None
     cycle: CycleTable | None
     still: Mapping[Output, float]
+    sections: Mapping[str, tuple[str, SectionInputs]]
 
     @property
     def text(self) -> str:
@@ -95,9 +99,11 @@ def program(
         "sound": 0 if fixed else functions["sound"].size1_out(0),
         "positive": 0 if fixed else positive,
     }
+    of_sections, sections = _sections(graph, symbols, precision)
+    functions |= of_sections
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
-    return Program(graph, precision, filled, columns, sizes, newton, cycle, places)
+    return Program(graph, precision, filled, columns, sizes, newton, cycle, places, sections)
 
 
 def _fixed(function: Any, p: Array) -> Any:
@@ -116,6 +122,22 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
         length, density = graph.data.matter(name, symbols)
         found += [length, *(c for cell in density.cells for c in cell)]
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
+
+
+def _sections(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
+    """The functions that give section forces, by name; and of each link which of them does, and what that takes."""
+    named: dict[Any, str] = {}
+    functions: dict[str, Any] = {}
+    found: dict[str, tuple[str, SectionInputs]] = {}
+    for link in graph.links:
+        inputs = SectionInputs.of(graph.outputs, link)
+        _, density = graph.data.matter(link, symbols)
+        kind = inputs.alike(), density.breaks, tuple(map(len, density.cells))
+        if kind not in named:
+            named[kind] = f"section_of_{len(named)}"
+            functions[named[kind]] = section(*kind, END[precision], name=named[kind])
+        found[link] = named[kind], inputs
+    return functions, found
 
 
 def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, int]:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
 from ..base.quantities import Output
 from ..base.tables import ON_INBOARD, PLANE, Table
-from ..declare.limits import END
-from .contract import Contract, LinkContract
+from .contract import Contract
 from .program import Program
 from .text import template
 
@@ -38,95 +35,38 @@ def law_in_words(c: Contract) -> str:
     return law + (LOADED if _acts(c, c.table.spread) else "") + (THICK if _acts(c, c.table.couples) else "")
 
 
-def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
+def functions(c: Contract, program: Program) -> str:
     """The C functions that give the forces inside links."""
-    bodies = program.graph.data.template.content["bodies"]
-    shapes: list[str] = []
-    laws: list[str] = []
-    breaks: list[float] = []
-    sizes: list[int] = []
-    place = program.sizes["gapped"]
     names = {Output.of(m.source): m.name for m in c.outputs}
+    links: list[str] = []
+    place = program.sizes["gapped"]
     for link in c.links:
-        density = bodies[link.name]["density"]
-        lengths = [len(cell) for cell in density["cells"]]
-        shapes.append(f"  {{{len(lengths)}, {len(breaks)}, {len(sizes)}}}")
-        breaks += density["breaks"]
-        sizes += lengths
-        rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
-        rows.append(f"    stations = {len(link.stations)};")
-        rows += [f"    law[{i}] = outputs->{names[Output('law', link.name, term)]};" for i, term in enumerate(c.table.law)]
-        acting = [Output("station", link.name, term, station) for station in link.stations for term in c.table.place_first]
-        rows += [f"    acting[{i}] = outputs->{names[output]};" for i, output in enumerate(acting)]
-        rows += _spread_on(c, link, names)
-        laws.append("\n".join([*rows, "    break;"]))
-        place += 1 + sum(lengths)
-    words = {"p": c.prefix, "P": c.prefix.upper()}
-    tails = template(
-        "tails.c",
-        most=max(sizes),
-        breaks=", ".join(number(u) for u in breaks),
-        sizes=", ".join(map(str, sizes)),
-        shapes=",\n".join(shapes),
+        function, inputs = program.sections[link.name]
+        links.append(f"  case {link.constant}:")
+        for vector, outputs in (("law", inputs.law), ("acting", inputs.acting)):
+            links += [f"    {vector}[{i}] = outputs->{names[output]};" for i, output in enumerate(outputs)]
+        links += [f"    arg[2] = model->matter + {place};", f"    {function}(arg, res);", "    break;"]
+        place += program.functions[function].size1_in("matter")
+    acting = max(len(inputs.acting) for _, inputs in program.sections.values())
+    return template(
+        "sections.c",
+        p=c.prefix,
+        P=c.prefix.upper(),
+        none=" = ".join(f"forces->{force}" for force in c.table.forces),
+        law=len(c.table.law),
+        acting=f", acting[{acting}]" if acting else "",
+        given="acting" if acting else "0",
+        many=len(c.table.forces),
+        links="\n".join(links),
+        put="\n".join(f"  forces->{force} = found[{i}];" for i, force in enumerate(c.table.forces)),
+        indent=" " * (len(c.prefix) * 2 + 16),
     )
-    one = template(
-        "sections.c" if c.table is PLANE else "sections_in_space.c",
-        **words,
-        **({} if c.table is PLANE else {"root": root}),
-        slack=number(END[c.precision]),
-        loads=len(c.table.place_first) * max(1, *(len(link.stations) for link in c.links)),
-        **_spreads(c, words),
-        laws="\n".join(laws),
-    )
-    many = template("many_sections.c", **words, indent=" " * (len(c.prefix) * 2 + 16))
-    return f"{tails}\n{one}\n{many}"
-
-
-def _spreads(c: Contract, words: dict[str, str]) -> dict[str, str]:
-    """What is declared for loads along links, and what is added for them; nothing where there are none."""
-    many = max(len(link.spreads) for link in c.links)
-    if not many:
-        return {"declared": "", "spread": ""}
-    directions = _directions(c)
-    room = max(sum(2 + len(directions) * powers for powers in link.spreads.values()) for link in c.links)
-    declared = f"""
-  casadi_real spread[{room}], reach, x, lever, power, share, turning;
-  const casadi_real* along;
-  int powers[{many}], j, spreads = 0;"""
-    added = []
-    for force, terms in c.table.sections.items():
-        if terms.spread:
-            sign, what = "-" if terms.arm < 0 else "+", "turning" if terms.arm else "share"
-            added.append(f"      {force} = {force} {sign} along[{directions.index(terms.spread)}]*{what};")
-        if terms.couple in directions:
-            added.append(f"      {force} = {force} + along[{directions.index(terms.couple)}]*share;")
-    return {
-        "declared": declared,
-        "spread": template("spreads.c", **words, added="\n".join(added), directions=len(directions)),
-    }
 
 
 def _acts(c: Contract, members: tuple[str, ...]) -> bool:
     """Whether something along some link has one of these members."""
     outputs = (Output.of(m.source) for m in c.outputs)
     return any(output.group == "spread" and output.member in members for output in outputs)
-
-
-def _directions(c: Contract) -> tuple[str, ...]:
-    """The members that what acts along links may have for each power."""
-    return (*c.table.spread, *(c.table.couples if _acts(c, c.table.couples) else ()))
-
-
-def _spread_on(c: Contract, link: LinkContract, names: Mapping[Output, str]) -> list[str]:
-    """What is taken of the outputs for the loads along a link."""
-    rows = [f"    spreads = {len(link.spreads)};"] if link.spreads else []
-    outputs: list[Output] = []
-    for k, (load, powers) in enumerate(link.spreads.items()):
-        rows.append(f"    powers[{k}] = {powers};")
-        outputs += [Output("spread", link.name, member, load) for member in ("width", "end")]
-        outputs += [Output("spread", link.name, member, load, power) for power in range(powers) for member in _directions(c)]
-    values = (f"outputs->{names[output]}" if output in names else "0" for output in outputs)
-    return rows + [f"    spread[{i}] = {value};" for i, value in enumerate(values)]
 
 
 def in_words(table: Table) -> str:

@@ -48,11 +48,7 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
-        sections = (
-            functions(self.contract, self.program, self._number, function_name("sqrt", self.contract.precision))
-            if self.contract.links
-            else ""
-        )
+        sections = functions(self.contract, self.program) if self.contract.links else ""
         if self.slopes is not None:
             sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(

@@ -71,7 +71,7 @@ def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Ar
             made = _made(name, table, columns, spread, (of_force, of_moment))
             words = what(output, table), solution.unit(output), not solution.determined(output)
             forces.append(asdict(Force(name, *words, **made)))
-        yield {"link": link, "length": law.length, "xi": arrays.add(xi), "forces": forces, "loads": loads}
+        yield {"link": link, "length": law.length, "slack": law.slack, "xi": arrays.add(xi), "forces": forces, "loads": loads}
 
 
 def _made(

@@ -20,12 +20,13 @@ import casadi as ca
 from ..base.quantities import Output
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
+from ..declare.limits import END
 from ..equations.checks import Column
 from ..equations.model_data import ModelData
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
+from ..equations.section_function import Place, Section
 from ..summits.sharpness import Kind, Sharpness, Watch
-from .along import Along, Place
 
 SAME_PLACE = 1e-9
 """How near to a station a peak along a link is that is at it, as a ratio to the length."""
@@ -118,7 +119,7 @@ def _rows(
     table = table_of(data.space)
     rows: list[Any] = []
     weights: list[Any] = []
-    links: dict[str, Along] = {}
+    links: dict[str, Section] = {}
 
     def add(parts: Sequence[Any], weight: Any) -> None:
         """A quantity, or several of which it is the size: the slope of a size is that of what goes along it."""
@@ -130,21 +131,21 @@ def _rows(
         if quantity.group != "section":
             add([columns[part] for part in quantity.components(table) if part in columns], chosen[k])
             continue
-        link = links.setdefault(quantity.part, Along(data, quantity.part, columns, p))
+        link = links.setdefault(quantity.part, data.section(quantity.part, columns, p))
         names, left = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
-        here = {id(place): [link.force(name, place) for name in names] for place in marks}
+        here = {id(place): [link.at(name, place, END["double"]) for name in names] for place in marks}
         sizes = {key: resultant(parts) for key, parts in here.items()}
         for place in marks:
             twins = [other for other in marks if other.station == place.station and other is not place and place.station]
             nearer = ca.SX(1.0)
             for twin in twins:
                 own, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
-                nearer = own < others if place.seen else own <= others
+                nearer = own < others if place.side == "base" else own <= others
             taken = left * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
             left = left - taken
             add(here[id(place)], chosen[k] * taken)
-        add([link.force(name, Place(xi)) for name in names], chosen[k] * left)
+        add([link.at(name, Place(xi), END["double"]) for name in names], chosen[k] * left)
     return rows, weights
 
 

@@ -9,8 +9,9 @@ import casadi as ca
 
 from ..base.quantities import Output
 from ..base.tables import table_of
+from ..declare.limits import END
 from ..equations.model_data import ModelData
-from .along import Along, Place
+from ..equations.section_function import Place
 
 
 def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]) -> Any:
@@ -21,8 +22,8 @@ def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Se
     """
     table, p = table_of(data.space), ca.SX.sym("p", len(data.parameters))
     values, slopes, xi = ca.SX.sym("columns", len(columns)), ca.SX.sym("slopes", len(by), len(columns)), ca.SX.sym("xi")
-    along = Along(data, link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
-    own = {force: along.force(force, Place(xi)) for force in table.forces if table.parts("section", force) == (force,)}
+    section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
+    own = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
     seeds = ca.SX(p.numel(), len(by))
     for k, j in enumerate(by):
         seeds[j, k] = 1.0

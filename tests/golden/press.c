@@ -12,206 +12,259 @@
 
 typedef press_real casadi_real;
 
-/* ---- The graph, one statement an instruction ---- */
+/* ---- Written by CasADi <casadi> ---- */
+
+static casadi_real casadi_sq(casadi_real x) { return x*x;}
 
 static void law(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2;
-  a0 = 0.015707963267948967;
-  a1 = arg[0][0];
-  a0 = a0 * a1;
-  a2 = 78.539816339744831;
-  a2 = a0 + a2;
-  a1 = a2 * a1;
-  res[0][0] = a1;
-  a0 = a0 + a2;
-  res[1][0] = a0;
-  a0 = 0.031415926535897934;
-  res[2][0] = a0;
+  a0=1.5707963267948967e-02;
+  a1=arg[0][0];
+  a0=(a0*a1);
+  a2=7.8539816339744831e+01;
+  a2=(a0+a2);
+  a1=(a2*a1);
+  res[0][0]=a1;
+  a0=(a0+a2);
+  res[1][0]=a0;
+  a0=3.1415926535897934e-02;
+  res[2][0]=a0;
 }
 
 static void count(const casadi_real** arg, casadi_real** res) {
   casadi_real a0;
-  a0 = arg[0][0];
-  res[0][0] = a0;
-  a0 = arg[0][1];
-  res[0][1] = a0;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a0=arg[0][1];
+  res[0][1]=a0;
 }
 
 static void constants_of(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9;
-  a0 = arg[0][0];
-  res[0][0] = a0;
-  a1 = arg[0][1];
-  res[0][1] = a1;
-  a2 = a1 * a1;
-  a3 = 1.0 / a2;
-  a3 = copysign(a3, a2);
-  res[0][2] = a3;
-  a3 = -0.16666666666666669;
-  a2 = arg[0][2];
-  a4 = a3 * a2;
-  a4 = a4 * a0;
-  a4 = a4 * a0;
-  a5 = 0.5;
-  a6 = a5 * a2;
-  a0 = a0 * a0;
-  a6 = a6 * a0;
-  a4 = a4 + a6;
-  res[0][3] = a4;
-  a4 = 9.8100000000000005;
-  a6 = arg[0][4];
-  a4 = a4 * a6;
-  a0 = 4.9050000000000002;
-  a7 = arg[0][3];
-  a8 = a0 * a7;
-  a9 = a4 + a8;
-  res[0][4] = a9;
-  a3 = a3 * a7;
-  a3 = a3 * a1;
-  a9 = a3 * a1;
-  res[0][5] = a9;
-  res[0][6] = a6;
-  a5 = a5 * a7;
-  res[0][7] = a5;
-  res[0][8] = a4;
-  res[0][9] = a8;
-  a0 = a0 * a2;
-  res[0][10] = a0;
-  a0 = 1.0 / a1;
-  a0 = copysign(a0, a1);
-  res[0][11] = a0;
-  a5 = a5 * a1;
-  a5 = a5 + a3;
-  res[0][12] = a5;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a1=arg[0][1];
+  res[0][1]=a1;
+  a2=casadi_sq(a1);
+  a3=(1./a2);
+  a3=copysign(a3,a2);
+  res[0][2]=a3;
+  a3=-1.6666666666666669e-01;
+  a2=arg[0][2];
+  a4=(a3*a2);
+  a4=(a4*a0);
+  a4=(a4*a0);
+  a5=5.0000000000000000e-01;
+  a6=(a5*a2);
+  a0=casadi_sq(a0);
+  a6=(a6*a0);
+  a4=(a4+a6);
+  res[0][3]=a4;
+  a4=9.8100000000000005e+00;
+  a6=arg[0][4];
+  a4=(a4*a6);
+  a0=4.9050000000000002e+00;
+  a7=arg[0][3];
+  a8=(a0*a7);
+  a9=(a4+a8);
+  res[0][4]=a9;
+  a3=(a3*a7);
+  a3=(a3*a1);
+  a9=(a3*a1);
+  res[0][5]=a9;
+  res[0][6]=a6;
+  a5=(a5*a7);
+  res[0][7]=a5;
+  res[0][8]=a4;
+  res[0][9]=a8;
+  a0=(a0*a2);
+  res[0][10]=a0;
+  a0=(1./a1);
+  a0=copysign(a0,a1);
+  res[0][11]=a0;
+  a5=(a5*a1);
+  a5=(a5+a3);
+  res[0][12]=a5;
 }
 
 static void matter(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1;
-  a0 = arg[0][0];
-  a1 = arg[0][1];
-  a0 = a0 + a1;
-  res[0][0] = a0;
-  res[0][1] = a1;
-  a1 = arg[0][3];
-  res[0][2] = a1;
+  a0=arg[0][0];
+  a1=arg[0][1];
+  a0=(a0+a1);
+  res[0][0]=a0;
+  res[0][1]=a1;
+  a1=arg[0][3];
+  res[0][2]=a1;
 }
 
 static void sound(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2, a3;
-  a0 = arg[0][0];
-  res[0][0] = a0;
-  a0 = arg[0][1];
-  res[0][1] = a0;
-  a0 = arg[0][2];
-  a1 = arg[0][3];
-  a2 = a0 + a1;
-  a3 = arg[0][4];
-  a2 = a2 + a3;
-  res[0][2] = a2;
-  res[0][3] = a0;
-  res[0][4] = a1;
-  res[0][5] = a3;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a0=arg[0][1];
+  res[0][1]=a0;
+  a0=arg[0][2];
+  a1=arg[0][3];
+  a2=(a0+a1);
+  a3=arg[0][4];
+  a2=(a2+a3);
+  res[0][2]=a2;
+  res[0][3]=a0;
+  res[0][4]=a1;
+  res[0][5]=a3;
 }
 
 static void instant(const casadi_real** arg, casadi_real** res) {
-  casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11;
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15;
-  a0 = arg[4][1];
-  a1 = arg[0][1];
-  a2 = sin(a1);
-  a3 = arg[4][0];
-  a2 = a2 * a3;
-  a4 = a0 - a2;
-  a0 = a0 + a2;
-  a4 = a4 * a0;
-  a0 = arg[4][2];
-  a0 = a4 * a0;
-  res[0][0] = a0;
-  a0 = 0.0;
-  res[0][1] = a0;
-  a5 = arg[4][3];
-  a6 = arg[2][0];
-  a5 = a5 * a6;
-  a1 = cos(a1);
-  a1 = a1 * a3;
-  a3 = arg[4][8];
-  a4 = sqrt(a4);
-  a7 = arg[4][4];
-  a7 = a4 * a7;
-  a8 = arg[4][5];
-  a9 = a6 * a1;
-  a10 = arg[1][0];
-  a11 = a10 * a10;
-  a12 = a11 * a2;
-  a9 = a9 - a12;
-  a10 = a10 * a1;
-  a12 = 1.0 / a4;
-  a12 = copysign(a12, a4);
-  a10 = a10 * a12;
-  a10 = a10 * a10;
-  a13 = a10 * a2;
-  a13 = a9 + a13;
-  a13 = a13 * a12;
-  a8 = a8 * a13;
-  a7 = a7 - a8;
-  a8 = arg[4][6];
-  a11 = a11 * a1;
-  a6 = a6 * a2;
-  a11 = a11 + a6;
-  a6 = a10 * a4;
-  a14 = a13 * a2;
-  a6 = a6 + a14;
-  a6 = a11 + a6;
-  a8 = a8 * a6;
-  a14 = arg[4][7];
-  a6 = a14 * a6;
-  a6 = a8 + a6;
-  a15 = a2 * a6;
-  a7 = a7 - a15;
-  a7 = a7 * a12;
-  a3 = a3 - a7;
-  a7 = arg[4][9];
-  a7 = a3 + a7;
-  a12 = 9.8100000000000005;
-  a12 = a12 + a9;
-  a9 = a14 * a12;
-  a7 = a7 + a9;
-  a9 = arg[4][10];
-  a7 = a7 + a9;
-  a1 = a1 * a7;
-  a5 = a5 + a1;
-  a1 = a14 * a11;
-  a6 = a6 + a1;
-  a6 = a2 * a6;
-  a5 = a5 + a6;
-  res[0][2] = a5;
-  a5 = arg[4][11];
-  a4 = a4 * a5;
-  a8 = a4 * a8;
-  a2 = a2 * a5;
-  a3 = a2 * a3;
-  a8 = a8 + a3;
-  res[0][3] = a8;
-  a8 = a2 * a12;
-  a3 = a4 * a11;
-  a8 = a8 + a3;
-  res[0][4] = a8;
-  res[0][5] = a10;
-  a4 = a4 * a12;
-  a2 = a2 * a11;
-  a11 = a4 - a2;
-  a11 = a11 * a14;
-  a14 = arg[4][12];
-  a14 = a13 * a14;
-  a11 = a11 - a14;
-  res[0][6] = a11;
-  a2 = a2 - a4;
-  res[0][7] = a2;
-  res[0][8] = a13;
-  res[0][9] = a0;
+  a00=arg[4][1];
+  a01=arg[0][1];
+  a02=sin(a01);
+  a03=arg[4][0];
+  a02=(a02*a03);
+  a04=(a00-a02);
+  a00=(a00+a02);
+  a04=(a04*a00);
+  a00=arg[4][2];
+  a00=(a04*a00);
+  res[0][0]=a00;
+  a00=0.;
+  res[0][1]=a00;
+  a05=arg[4][3];
+  a06=arg[2][0];
+  a05=(a05*a06);
+  a01=cos(a01);
+  a01=(a01*a03);
+  a03=arg[4][8];
+  a04=sqrt(a04);
+  a07=arg[4][4];
+  a07=(a04*a07);
+  a08=arg[4][5];
+  a09=(a06*a01);
+  a10=arg[1][0];
+  a11=casadi_sq(a10);
+  a12=(a11*a02);
+  a09=(a09-a12);
+  a10=(a10*a01);
+  a12=(1./a04);
+  a12=copysign(a12,a04);
+  a10=(a10*a12);
+  a10=casadi_sq(a10);
+  a13=(a10*a02);
+  a13=(a09+a13);
+  a13=(a13*a12);
+  a08=(a08*a13);
+  a07=(a07-a08);
+  a08=arg[4][6];
+  a11=(a11*a01);
+  a06=(a06*a02);
+  a11=(a11+a06);
+  a06=(a10*a04);
+  a14=(a13*a02);
+  a06=(a06+a14);
+  a06=(a11+a06);
+  a08=(a08*a06);
+  a14=arg[4][7];
+  a06=(a14*a06);
+  a06=(a08+a06);
+  a15=(a02*a06);
+  a07=(a07-a15);
+  a07=(a07*a12);
+  a03=(a03-a07);
+  a07=arg[4][9];
+  a07=(a03+a07);
+  a12=9.8100000000000005e+00;
+  a12=(a12+a09);
+  a09=(a14*a12);
+  a07=(a07+a09);
+  a09=arg[4][10];
+  a07=(a07+a09);
+  a01=(a01*a07);
+  a05=(a05+a01);
+  a01=(a14*a11);
+  a06=(a06+a01);
+  a06=(a02*a06);
+  a05=(a05+a06);
+  res[0][2]=a05;
+  a05=arg[4][11];
+  a04=(a04*a05);
+  a08=(a04*a08);
+  a02=(a02*a05);
+  a03=(a02*a03);
+  a08=(a08+a03);
+  res[0][3]=a08;
+  a08=(a02*a12);
+  a03=(a04*a11);
+  a08=(a08+a03);
+  res[0][4]=a08;
+  res[0][5]=a10;
+  a04=(a04*a12);
+  a02=(a02*a11);
+  a11=(a04-a02);
+  a11=(a11*a14);
+  a14=arg[4][12];
+  a14=(a13*a14);
+  a11=(a11-a14);
+  res[0][6]=a11;
+  a02=(a02-a04);
+  res[0][7]=a02;
+  res[0][8]=a13;
+  res[0][9]=a00;
 }
 
-/* ---- What calls it ---- */
+static void section_of_0(const casadi_real** arg, casadi_real** res) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10;
+  a00=arg[0][0];
+  a01=arg[0][1];
+  a02=arg[2][1];
+  a03=1.;
+  a04=arg[3][0];
+  a03=(a03-a04);
+  a05=(a02*a03);
+  a01=(a01*a05);
+  a00=(a00+a01);
+  a01=arg[0][2];
+  a06=arg[2][0];
+  a07=(a04*a05);
+  a08=casadi_sq(a03);
+  a09=2.;
+  a09=(a08/a09);
+  a09=(a02*a09);
+  a07=(a07+a09);
+  a07=(a06*a07);
+  a01=(a01*a07);
+  a00=(a00+a01);
+  res[0][0]=a00;
+  a00=arg[0][3];
+  a01=arg[0][4];
+  a05=(a01*a05);
+  a05=(a00+a05);
+  a10=arg[0][5];
+  a07=(a10*a07);
+  a05=(a05+a07);
+  res[0][1]=a05;
+  a05=arg[0][6];
+  a07=(a06*a03);
+  a00=(a00*a07);
+  a05=(a05+a00);
+  a00=(a06*a09);
+  a01=(a01*a00);
+  a05=(a05+a01);
+  a06=casadi_sq(a06);
+  a04=(a04*a09);
+  a03=(a03*a08);
+  a08=3.;
+  a03=(a03/a08);
+  a02=(a02*a03);
+  a04=(a04+a02);
+  a06=(a06*a04);
+  a10=(a10*a06);
+  a05=(a05+a10);
+  res[0][2]=a05;
+}
+
+/* ---- Written by lagrange_casadi ---- */
 
 #define SEAL <seal>
 
@@ -373,66 +426,23 @@ press_status press_batch(press_model* model, long many, const press_inputs* inpu
   }
   return first;
 }
-
-/* How the density of each link is given: how many cells, and where in these lists their breaks and numbers of coefficients begin. */
-static const casadi_real breaks[] = {0.0, 1.0};
-static const int sizes[] = {1};
-static const struct {
-  int cells, first_break, first_size;
-} shapes[] = {
-  {1, 0, 0}
-};
-
-/* Moments of the material from a ratio u to the tip: T[k] is the integral of the density times the distance to the power k, per
-   unit of the ratio. density holds, of each cell between breaks, so many coefficients of a polynomial. */
-static void tails(casadi_real u, int link, const casadi_real* density, casadi_real* T) {
-  const casadi_real* at = breaks + shapes[link].first_break;
-  const int* many = sizes + shapes[link].first_size;
-  casadi_real parts[1 + 2], high, low, width, total, power, shifted, term;
-  int i, j, k, n, choose;
-  for (k = 0; k < 3; ++k) T[k] = 0;
-  for (i = 0; i < shapes[link].cells; ++i) {
-    high = at[i + 1] - u > 0 ? at[i + 1] - u : 0;
-    low = at[i] - u > 0 ? at[i] - u : 0;
-    width = high - low;
-    total = 1;
-    power = low;
-    for (n = 0; n < many[i] + 2; ++n) {
-      parts[n] = width*total;
-      total = total*high + power;
-      power = power*low;
-    }
-    for (j = 0; j < many[i]; ++j) {
-      shifted = 0;
-      for (n = j; n < many[i]; ++n) {
-        choose = 1;
-        for (k = 0; k < j; ++k) choose = choose*(n - k)/(k + 1);
-        term = density[n]*(casadi_real) choose;
-        power = 1;
-        for (k = 0; k < n - j; ++k) power = power*u;
-        shifted = shifted + term*power;
-      }
-      for (k = 0; k < 3; ++k) T[k] = T[k] + shifted*parts[j + k]/(casadi_real) (j + k + 1);
-    }
-    density += many[i];
-  }
-}
-
 static void no_forces(press_forces* forces) {
   forces->axial = forces->shear = forces->bending = nothing;
 }
 
 press_status press_section(const press_model* model, const press_outputs* outputs, press_link link, press_real xi, press_forces* forces) {
-  casadi_real law[7], acting[4], T[3], l, first, near, axial, shear, bending;
-  const casadi_real* matter_of;
-  int k, stations = 0;
+  casadi_real law[7], found[3];
+  const casadi_real* arg[4];
+  casadi_real* res[1];
   no_forces(forces);
   if (model->seal != SEAL) return PRESS_NOT_PREPARED;
   if (!(xi >= 0 && xi <= 1)) return PRESS_BAD_RATIO;
+  arg[0] = law;
+  arg[1] = 0;
+  arg[3] = &xi;
+  res[0] = found;
   switch (link) {
   case PRESS_LINK_ROD:
-    matter_of = model->matter + 1;
-    stations = 0;
     law[0] = outputs->section_rod_n0;
     law[1] = outputs->section_rod_n1;
     law[2] = outputs->section_rod_n2;
@@ -440,30 +450,16 @@ press_status press_section(const press_model* model, const press_outputs* output
     law[4] = outputs->section_rod_f1;
     law[5] = outputs->section_rod_f2;
     law[6] = outputs->section_rod_m0;
+    arg[2] = model->matter + 1;
+    section_of_0(arg, res);
     break;
   default:
     return PRESS_NO_LINK;
   }
-  l = matter_of[0];
-  tails(xi, (int) link, matter_of + 1, T);
-  first = l*(xi*T[0] + T[1]);
-  axial = law[0] + law[1]*T[0] + law[2]*first;
-  shear = law[3] + law[4]*T[0] + law[5]*first;
-  bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
-  /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
-     by rounding. */
-  near = xi < 9.9999999999999998e-13 ? 9.9999999999999998e-13 : xi > 1 - 9.9999999999999998e-13 ? 1 - 9.9999999999999998e-13 : xi;
-  for (k = 0; k < 4*stations; k += 4) {
-    if (near < acting[k]) {
-      axial = axial + acting[k + 1];
-      shear = shear + acting[k + 2];
-      bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));
-    }
-  }
-  if (!is_finite(axial + shear + bending)) return PRESS_NOT_FINITE;
-  forces->axial = axial;
-  forces->shear = shear;
-  forces->bending = bending;
+  if (!all_finite(found, 3)) return PRESS_NOT_FINITE;
+  forces->axial = found[0];
+  forces->shear = found[1];
+  forces->bending = found[2];
   return PRESS_OK;
 }
 

@@ -1,38 +1,35 @@
 static void no_forces(${p}_forces* forces) {
-  forces->axial = forces->shear = forces->bending = nothing;
+  $none = nothing;
 }
 
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
-  casadi_real law[7], acting[$loads], T[3], l, first, near, axial, shear, bending;$declared
-  const casadi_real* matter_of;
-  int k, stations = 0;
+  casadi_real law[$law], found[$many]$acting;
+  const casadi_real* arg[4];
+  casadi_real* res[1];
   no_forces(forces);
   if (model->seal != SEAL) return ${P}_NOT_PREPARED;
   if (!(xi >= 0 && xi <= 1)) return ${P}_BAD_RATIO;
+  arg[0] = law;
+  arg[1] = $given;
+  arg[3] = &xi;
+  res[0] = found;
   switch (link) {
-$laws
+$links
   default:
     return ${P}_NO_LINK;
   }
-  l = matter_of[0];
-  tails(xi, (int) link, matter_of + 1, T);
-  first = l*(xi*T[0] + T[1]);
-  axial = law[0] + law[1]*T[0] + law[2]*first;
-  shear = law[3] + law[4]*T[0] + law[5]*first;
-  bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
-  /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
-     by rounding. */
-  near = xi < $slack ? $slack : xi > 1 - $slack ? 1 - $slack : xi;
-  for (k = 0; k < 4*stations; k += 4) {
-    if (near < acting[k]) {
-      axial = axial + acting[k + 1];
-      shear = shear + acting[k + 2];
-      bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));
-    }
-  }
-$spread  if (!is_finite(axial + shear + bending)) return ${P}_NOT_FINITE;
-  forces->axial = axial;
-  forces->shear = shear;
-  forces->bending = bending;
+  if (!all_finite(found, $many)) return ${P}_NOT_FINITE;
+$put
   return ${P}_OK;
+}
+
+${p}_status ${p}_sections(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, long many, const ${p}_real* xi,
+$indent ${p}_forces* forces) {
+  ${p}_status first = ${P}_OK, status;
+  long i;
+  for (i = 0; i < many; ++i) {
+    status = ${p}_section(model, outputs, link, xi[i], forces + i);
+    if (first == ${P}_OK) first = status;
+  }
+  return first;
 }

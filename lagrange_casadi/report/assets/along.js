@@ -124,7 +124,7 @@ class Along {
     const place = instant * this.outputs.length;
     for (let k = 0; k < tallies.length; k += 1) tallies[k][0] = NaN;
     if (!stations.length) {
-      for (const piece of this.pieces) this.look(piece, piece.low, piece.high, piece.middle, place, whole);
+      for (const piece of this.pieces) this.look(piece, piece.low, piece.high, place, whole);
       return tallies;
     }
     const cuts = stations.map((own) => held[place + own]);
@@ -133,17 +133,18 @@ class Along {
       let low = piece.low;
       for (const u of inner) {
         if (u <= low || u >= piece.high) continue;
-        this.look(piece, low, u, (low + u) / 2, place, whole);
+        this.look(piece, low, u, place, whole);
         low = u;
       }
-      this.look(piece, low, piece.high, (low + piece.high) / 2, place, whole);
+      this.look(piece, low, piece.high, place, whole);
     }
     return tallies;
   }
 
-  /** Look for smallest and largest values in a part of a piece; what acts beyond its `middle` is seen there. */
-  look(piece, low, high, middle, place, whole) {
-    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, middle, place);
+  /** Look for smallest and largest values in a part of a piece; what acts beyond its `low` end is felt there. */
+  look(piece, low, high, place, whole) {
+    const edge = edgeAt(this.entry, low);
+    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, edge, place);
     if (high > low && (low > piece.low || high < piece.high)) this.narrow(piece, low, high);
     const whence = high > low ? (low + high) / 2 : piece.middle;
     const half = high > low ? (high - low) / 2 : piece.half;
@@ -183,8 +184,8 @@ class Along {
     }
   }
 
-  /** A force in a piece, with what acts at the stations that are seen. */
-  sum(k, piece, middle, place) {
+  /** A force in a piece, with what acts at the stations beyond an edge. */
+  sum(k, piece, edge, place) {
     const { many, held, stations } = this;
     const c = this.scratch[k];
     const rows = piece.rows[k];
@@ -200,7 +201,7 @@ class Along {
     const across = this.across[k];
     for (let l = 0; l < stations.length; l += 1) {
       const station = held[place + stations[l]];
-      if (!(sight(middle) < station)) continue;
+      if (!(edge < station)) continue;
       c[0] += held[place + acting[l]];
       if (!across) continue;
       const slope = this.plain[k].arm * this.length * held[place + across[l]];

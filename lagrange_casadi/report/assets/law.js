@@ -6,15 +6,14 @@ const sections = contents.sections.map((entry) => {
     return { name, ...Object.fromEntries(Object.entries(members).map(([member, number]) => [member, array(number)])) };
   });
   const forces = new Map(entry.forces.map((force) => [force.name, force]));
-  return { link: entry.link, length: entry.length, xi: array(entry.xi), loads, forces };
+  return { link: entry.link, length: entry.length, slack: entry.slack, xi: array(entry.xi), loads, forces };
 });
 
 const sectionByLink = new Map(sections.map((section) => [section.link, section]));
 
-/** From where on a section at a ratio sees what acts at stations. A section at the tip is just inside it, and what acts at the base no
- *  section sees; what is at an end may miss it by rounding. */
-function sight(xi) {
-  return Math.max(1e-12, Math.min(1 - 1e-12, xi));
+/** The ratio beyond which a section feels what acts at stations: see edge in equations/section_function.py. */
+function edgeAt({ slack }, xi, side = "tip") {
+  return side === "tip" ? Math.min(xi + slack, 1 - slack) : Math.max(xi - slack, slack);
 }
 
 /** A force at an instant, at the ratio with a number, on the tip's side of a station. */
@@ -37,10 +36,10 @@ function forceAt(section, force, instant, xi, along, side) {
   }
   let sum = 0;
   for (const [coefficient, row, sign] of force.terms) sum += sign * array(coefficient)[instant] * along(array(row));
-  const near = sight(xi);
+  const edge = edgeAt(section, xi, side);
   for (const load of section.loads) {
     const station = load.station[instant];
-    if (side === "tip" ? near < station : near <= station) {
+    if (edge < station) {
       sum += load[force.acting][instant];
       if (force.arm) sum += force.arm * section.length * load[force.across][instant] * (station - xi);
     }
@@ -69,7 +68,7 @@ function sectionForces(section, name, instant, found, step = 1) {
   for (const load of section.loads) {
     const [station, acts] = [load.station[instant], load[force.acting][instant]];
     const lever = force.arm ? force.arm * section.length * load[force.across][instant] : 0;
-    for (let k = 0; k < found.length; k += step) if (sight(xi[k]) < station) found[k] += acts + lever * (station - xi[k]);
+    for (let k = 0; k < found.length; k += step) if (edgeAt(section, xi[k]) < station) found[k] += acts + lever * (station - xi[k]);
   }
   return found;
 }

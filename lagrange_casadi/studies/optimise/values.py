@@ -17,11 +17,12 @@ import casadi as ca
 from ...base.quantities import Output
 from ...base.symbolic import symbolic
 from ...base.tables import table_of
+from ...declare.limits import END
 from ...equations.checks import Column
 from ...equations.reciprocals import differentiable
 from ...equations.scene_graph import SceneGraph
+from ...equations.section_function import Place
 from ...errors import DeclarationError
-from ...sensitivity.along import Along, Place
 from ...sensitivity.points import resultant
 from ..designs.times import DesignTimes
 from .fatigue import Tired, tired_link
@@ -101,10 +102,10 @@ class PointValues:
         table = table_of(self.graph.data.space)
         columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
         if quantity.group == "section":
-            link = Along(self.graph.data, quantity.part, columns, p)
+            link = self.graph.data.section(quantity.part, columns, p)
             places = [Place(xi), *(mark for mark in link.marks if mark.station)]
             names = table.parts("section", quantity.member)
-            sizes = [resultant([link.force(name, place) for name in names]) for place in places]
+            sizes = [resultant([link.at(name, place, END["double"]) for name in names]) for place in places]
         else:
             sizes = [resultant([columns[part] for part in quantity.components(table) if part in columns])]
         place = ca.SX.sym("place", len(sizes))

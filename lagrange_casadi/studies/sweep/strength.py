@@ -28,6 +28,7 @@ from ...declare.masses import ALL
 from ...declare.parts import Link
 from ...equations.checks import Column
 from ...equations.model_data import ModelData
+from ...equations.section_function import Side
 from ...equations.strength import FORCES, Loaded
 from ...instants.statistics import counted
 from ...strength.fatigue import FEW, damage_score, factor, factor_score, felt, loaded, strengths
@@ -77,8 +78,8 @@ class Fatigue:
         link = data.link(name, p)
         body = Loaded(data.space, link, columns)
         normal, shears = list[Any](), list[list[Any]]()
-        for cell, u, middle, notch in _places(body, link):
-            forces = {place: body.force_at(name, u, middle) * _scale(notch, name) for name, place in FORCES[body.space].items()}
+        for cell, u, side, notch in _places(body, link):
+            forces = {place: body.force_at(name, u, side) * _scale(notch, name) for name, place in FORCES[body.space].items()}
             section = body.properties(cell, u)
             for fibre in body.alone[cell]:
                 values = [
@@ -326,23 +327,24 @@ def _is_place(member: Output) -> bool:
     return member.member == "station" or (member.group == "spread" and member.power is None)
 
 
-def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Any, Notch | None]]:
+def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Side, Notch | None]]:
     """Cells of the cross-section, ratios and the sides of them that are meant, and notches: those of :mod:`..strength.fatigue`."""
     breaks = body.course.breaks
 
-    def cell_of(u: float, side: int) -> int:
+    def cell_of(u: float, side: Side) -> int:
         inside = [k for k, (a, b) in enumerate(itertools.pairwise(breaks)) if a <= u <= b]
-        return inside[-1] if side > 0 else inside[0]
+        return inside[-1] if side == "tip" else inside[0]
 
+    sides: tuple[Side, ...] = ("base", "tip")
     for u in np.linspace(0.0, 1.0, _EVENLY).tolist():
-        yield cell_of(u, 1), u, None, None
-    for u, side in itertools.product(breaks, (-1, 1)):
-        yield cell_of(u, side), u, u + side * _NEAR, None
-    for mark, side, cell in itertools.product(body.marks, (-1, 1), range(len(breaks) - 1)):
+        yield cell_of(u, "tip"), u, "tip", None
+    for u, side in itertools.product(breaks, sides):
+        yield cell_of(u, side), u, side, None
+    for mark, side, cell in itertools.product(body.marks, sides, range(len(breaks) - 1)):
         u = ca.fmin(ca.fmax(ca.SX(mark), breaks[cell]), breaks[cell + 1])
-        yield cell, u, u + side * _NEAR, None
-    for notch, side in itertools.product(link.beam.notches if link.beam else (), (-1, 1)):
-        yield cell_of(notch.at, side), notch.at, notch.at + side * _NEAR, felt(notch)
+        yield cell, u, side, None
+    for notch, side in itertools.product(link.beam.notches if link.beam else (), sides):
+        yield cell_of(notch.at, side), notch.at, side, felt(notch)
 
 
 def _scale(notch: Notch | None, force: str) -> float:
