@@ -27,7 +27,8 @@ from ...declare.masses import ALL, mass_of
 from ...declare.mechanism import Mechanism
 from ...declare.parts import Link
 from ...equations.checks import Column
-from ...equations.strength import FORCES, Loaded
+from ...equations.strength import Loaded
+from ...equations.stress import concentration
 from ...instants.statistics import counted
 from ...strength.fatigue import FEW, damage_score, factor, factor_score, felt, loaded, strengths
 from ...strength.fatigue import worst as search
@@ -75,12 +76,10 @@ class Fatigue:
         body = Loaded(mechanism, link, columns)
         normal, shears = list[Any](), list[list[Any]]()
         for cell, u, middle, notch in _places(body, link):
-            forces = {place: body.force_at(name, u, middle) * _scale(notch, name) for name, place in FORCES[body.space].items()}
-            p = body.properties(cell, u)
-            for fibre in body.alone[cell]:
-                values = [
-                    ca.SX(sum(number * forces[k] for k, number in enumerate(row) if k in forces)) for row in p.rows(p.fibres[fibre])
-                ]
+            forces = {name: body.force_at(name, u, middle) * concentration(notch, name) for name in body.cross.forces}
+            p = body.cross.properties(cell, u)
+            for fibre in body.cross.alone[cell]:
+                values = list(map(ca.SX, body.cross.stresses(p, p.fibres[fibre], forces)))
                 normal.append(values[0])
                 shears.append(values[1:])
         sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
@@ -344,9 +343,3 @@ def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Any, Notch | N
         yield cell, u, u + side * _NEAR, None
     for notch, side in itertools.product(link.beam.notches if link.beam else (), (-1, 1)):
         yield cell_of(notch.at, side), notch.at, notch.at + side * _NEAR, felt(notch)
-
-
-def _scale(notch: Notch | None, force: str) -> float:
-    if notch is None:
-        return 1.0
-    return notch.axial if force == "axial" else notch.bending if force.startswith("bending") else notch.shear
