@@ -82,7 +82,7 @@ class Column:
                 over = share / found + sum(b / gap for b, gap in zip(bent, gaps, strict=True)) - 1.0
                 slope = share / found**2 + sum(b / gap**2 for b, gap in zip(bent, gaps, strict=True))
                 found = found + larger(over / slope, 0.0)
-        return chosen(SLIGHT, share, 0.0, found)
+        return chosen(share, SLIGHT, found, 0.0)
 
 
 def _critical(euler: Any, crushing: Any) -> Any:

@@ -113,9 +113,9 @@ class Loaded:
 
     def square(self, part: Part, x: Any) -> Any:
         """The largest square of von Mises' stresses at a place of a part."""
-        p, forces = self.at(part, x), {name: part.force(name, x) for name in self.cross.forces}
-        fibres = (p.fibres[k] for k in self.cross.needed[part.cell])
-        return most([squared(self.cross.stresses(p, fibre, forces), KINDS["von_mises"]) for fibre in fibres])
+        forces = [part.force(name, x) for name in self.cross.forces]
+        found = self.cross.stresses(self.at(part, x), self.cross.needed[part.cell], forces)
+        return most(ca.vertsplit(squared(found, KINDS["von_mises"])))
 
     @cached_property
     def _constant(self) -> list[Properties]:

@@ -7,7 +7,7 @@ planar mechanism bending is about z. All are linear in section forces.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,7 +17,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..beams.beam import Beam, Notch
-from ..beams.properties import Fibre, Properties, smaller
+from ..beams.properties import Properties, smaller
 from ..beams.shape import between
 
 FORCES = {False: ("axial", "shear", "bending"), True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")}
@@ -64,20 +64,25 @@ class CrossSections:
         share = (u - course.breaks[cell]) / (course.breaks[cell + 1] - course.breaks[cell])
         return between(first, last, share).properties(space=self.space)
 
-    def stresses(self, p: Properties, fibre: Fibre, forces: Mapping[str, Any]) -> list[Any]:
-        """Normal stress, and shear stress along y and along z, at a fibre, of section forces by name."""
-        acting = [(place, forces[name]) for place, name in zip(_PLACES[self.space], self.forces, strict=True)]
-        return [sum(row[place] * force for place, force in acting) for row in p.rows(fibre)]
+    def stresses(self, p: Properties, fibres: Sequence[int], forces: Sequence[Any]) -> tuple[Any, Any, Any]:
+        """Normal stresses, and shear stresses along y and along z, at some fibres, of section forces: as expressions, (fibres,)."""
+        rows = [self._row(numbers) for part in zip(*(p.rows(p.fibres[k]) for k in fibres), strict=True) for numbers in part]
+        factors = ca.sparsify(ca.vertcat(*(ca.horzcat(*row) for row in rows)))
+        normal, along_y, along_z = ca.vertsplit(ca.mtimes(factors, ca.vertcat(*forces)), len(fibres))
+        return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
         """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres, forces, u...)."""
         p = self.properties(cell, u)
         found = np.zeros((3, len(p.fibres), len(self.forces), *np.shape(u)))
         for k, fibre in enumerate(p.fibres):
-            for row, numbers in enumerate(p.rows(fibre)):
-                for force, place in enumerate(_PLACES[self.space]):
-                    found[row, k, force] = numbers[place]
+            for part, numbers in enumerate(p.rows(fibre)):
+                for force, number in enumerate(self._row(numbers)):
+                    found[part, k, force] = number
         return found
+
+    def _row(self, numbers: Sequence[Any]) -> list[Any]:
+        return [numbers[place] for place in _PLACES[self.space]]
 
     @cached_property
     def thinnest(self) -> Thinnest:

@@ -74,14 +74,13 @@ class Fatigue:
         symbols = ca.SX.sym("members", len(members))
         columns: dict[Column, Any] = dict(zip(members, ca.vertsplit(symbols), strict=True))
         body = Loaded(mechanism, link, columns)
-        normal, shears = list[Any](), list[list[Any]]()
+        normal, shears = list[Any](), list[tuple[Any, ...]]()
         for cell, u, middle, notch in _places(body, link):
-            forces = {name: body.force_at(name, u, middle) * concentration(notch, name) for name in body.cross.forces}
-            p = body.cross.properties(cell, u)
-            for fibre in body.cross.alone[cell]:
-                values = list(map(ca.SX, body.cross.stresses(p, p.fibres[fibre], forces)))
-                normal.append(values[0])
-                shears.append(values[1:])
+            forces = [body.force_at(name, u, middle) * concentration(notch, name) for name in body.cross.forces]
+            found = body.cross.stresses(body.cross.properties(cell, u), body.cross.alone[cell], forces)
+            own, *across = (ca.vertsplit(one) for one in found)
+            normal += own
+            shears += zip(*across, strict=True)
         sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
         axes = tuple(axis for axis in (0, 1) if not all(shears[k][axis].is_zero() for k in sheared))
         every = ca.vertcat(*normal, *(shears[k][axis] for axis in axes for k in sheared))
