@@ -7,9 +7,10 @@ import pytest
 import strong
 
 from lagrange_casadi import beams, evaluate, load, save
+from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.stress import KINDS, summits
+from lagrange_casadi.strength.stress import summits
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -129,7 +129,7 @@ class CrossSections:
         return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
 
 
-def squared(stresses: Sequence[Any], weights: tuple[float, float]) -> Any:
+def squared(stresses: Any, weights: tuple[float, float]) -> Any:
     """The square of a kind of stress by its ``weights``, of normal stress and shear stresses along y and along z."""
     (normal, *shears), (of_normal, of_shear) = stresses, weights
     return of_normal * normal**2 + of_shear * sum(shear**2 for shear in shears)

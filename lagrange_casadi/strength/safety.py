@@ -15,9 +15,10 @@ from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
 from .critical_plane import FINDLEY, plane_factor, worst_plane
-from .fatigue import CRITERIA, damage_score, factor, factor_score, worst
+from .fatigue import CRITERIA, damage_score, factor, factor_score
 from .member import Member
 from .stress import Stress, StressPeak
+from .worst import worst
 
 
 @dataclass(frozen=True)

@@ -273,7 +273,7 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
     own = np.moveaxis(c[:, rows], 2, 0)
 
     def square(x: Array) -> Array:
-        return squared(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights)
+        return np.asarray(squared(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights))
 
     x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
     found, looked = square(x), squares[rows, k]
