@@ -12,9 +12,9 @@ import pytest
 
 import lagrange_casadi as lc
 from lagrange_casadi.base import vocabulary
+from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.strength import CRITERIA
 from lagrange_casadi.strength.critical_plane import FINDLEY
-from lagrange_casadi.strength.stress import KINDS
 
 pytestmark = pytest.mark.quick
 

@@ -61,7 +61,7 @@ def summed(found):
     p = {name: np.empty(PIECES) for name in ("iy", "iz", "iyz", "shear_y", "shear_z", "torsion", "centre_y", "centre_z")}
     for cell in np.unique(cells):
         for name, values in p.items():
-            values[cells == cell] = getattr(member.properties(int(cell), u[cells == cell]), name)
+            values[cells == cell] = getattr(member.cross.properties(int(cell), u[cells == cell]), name)
 
     def across(curvature, shear):
         piece = member.law.length / PIECES

@@ -8,10 +8,10 @@ from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, refine
 from lagrange_casadi.cli.strength_lines import strength_lines
+from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.peaks import refine_safety, refine_stress
-from lagrange_casadi.strength.stress import KINDS
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

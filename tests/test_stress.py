@@ -7,9 +7,10 @@ import pytest
 import strong
 
 from lagrange_casadi import beams, evaluate, load, save
+from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.stress import KINDS, summits
+from lagrange_casadi.strength.stress import summits
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -60,7 +61,7 @@ def test_normal_stresses_make_up_the_forces(solutions, name):
     stress, section = solution.stress("rod"), solution.section("rod").law
     u = np.full((solution.t.size, 1), 0.41)
     values = stress.at(0.41)[0]
-    properties = stress.member.properties(0, 0.41)
+    properties = stress.member.cross.properties(0, 0.41)
     places = np.array([(1.0, f.y, f.z) for f in properties.fibres])
     plane, rest, _, _ = np.linalg.lstsq(places, values, rcond=None)
     assert rest.size == 0 or rest.max() < 1e-18 * np.abs(values).max() ** 2
@@ -143,10 +144,10 @@ def test_a_round_bar_in_space_is_the_textbooks_shaft(robots):
 def test_a_c_is_twisted_by_what_bends_it(robots):
     """Its shear centre is beyond the web: a force along y at the centroid twists it by that lever."""
     stress = robots["c"].stress("upper")
-    p = stress.member.properties(0, 0.0)
+    p = stress.member.cross.properties(0, 0.0)
     k = stress.fibres(0.0).index("inside of the web, middle")
     fibre = p.fibres[k]
-    factors = stress.member.factors(0, np.zeros(1))[1, k, :, 0]
+    factors = stress.member.cross.factors(0, np.zeros(1))[1, k, :, 0]
     assert factors[1] == pytest.approx(fibre.along_y[0] + p.centre_z * fibre.along_y[2])
     assert p.centre_z < min(f.z for f in p.fibres)
 

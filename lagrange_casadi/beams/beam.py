@@ -41,7 +41,7 @@ class Beam:
     """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`; notches along the link.
 
     ``columns`` are the effective lengths of the link as a column over its length: where it bends along y, in the plane of motion of
-    a planar mechanism, and where it bends along z. By default joints tell them (:mod:`.buckling`).
+    a planar mechanism, and where it bends along z. By default joints tell them (:mod:`..equations.buckling`).
 
     Raises :class:`.DeclarationError` for what is none of these.
     """

@@ -74,7 +74,7 @@ class Properties:
 
 def symbolic(*values: Any) -> bool:
     """Whether any of the values is an expression."""
-    return any(isinstance(value, ca.SX) for value in values)
+    return any(isinstance(value, (ca.SX, ca.MX)) for value in values)
 
 
 def larger(a: Any, b: Any) -> Any:

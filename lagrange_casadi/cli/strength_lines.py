@@ -7,11 +7,12 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene, fitted_of, strength_of
+from ..equations.stress import KINDS
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.parts import untold
 from ..strength.safety import Life, Safety
-from ..strength.stress import KINDS, StressPeak
+from ..strength.stress import StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress
 
 _BAR = 40

@@ -47,7 +47,7 @@ class Compliance:
         """Factors of section forces between two breaks, at ratios ``u`` (n,), whose squares add up to twice the strain energy of a
         unit of length: (strains, forces, n), or (strains, forces, 1) where the cross-section is constant.
         """
-        p = self.member.properties(index, u)
+        p = self.member.cross.properties(index, u)
         e, g = self.elasticity, self.shear_modulus
         numbers = (p.area, p.iy, p.iz, p.iyz, p.torsion, p.shear_y, p.shear_z, p.centre_y, p.centre_z)
         area, iy, iz, iyz, torsion, *rest = np.broadcast_arrays(*(np.atleast_1d(np.inf if x is None else x) for x in numbers))

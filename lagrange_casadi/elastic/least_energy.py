@@ -27,10 +27,11 @@ from ..declare.giving import Elastic
 from ..equations.checks import Column
 from ..equations.open_forces import OpenForces
 from ..equations.scene_graph import SceneGraph
+from ..equations.stress import FORCES
 from ..errors import DeclarationError, one_line
 from ..instants.laws import law_of
 from ..instants.section_law import SectionLaw
-from ..strength.member import FORCES, Member
+from ..strength.member import Member
 from .compliance import Compliance, Nodes, nodes, sorted_edges
 
 _NONE = 1e-9

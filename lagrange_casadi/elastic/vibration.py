@@ -150,7 +150,7 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
     for cell in range(len(breaks) - 1):
         here = index == cell
         if here.any():
-            p = member.properties(cell, u[here])
+            p = member.cross.properties(cell, u[here])
             each: Any = [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
             for i, row in enumerate(each):
                 for j, value in enumerate(row):

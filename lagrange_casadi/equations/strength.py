@@ -20,19 +20,15 @@ import numpy as np
 
 from ..base.quantities import Output
 from ..base.tables import table_of
-from ..beams.beam import SLIGHT, Beam
 from ..beams.properties import Properties
-from ..beams.shape import between
 from ..declare.density import Density
 from ..declare.limits import END
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
+from . import buckling
 from .checks import Column
 from .section_function import Place, Section, Side, edge
-
-FORCES = {False: {"axial": 0, "shear": 1, "bending": 5}, True: {"axial": 0, "shear_y": 1, "shear_z": 2, "torsion": 3}}
-FORCES[True] |= {"bending_y": 4, "bending_z": 5}
-"""The section forces that stresses are linear in, and their places in :meth:`.Properties.rows`."""
+from .stress import KINDS, CrossSections, squared
 
 _LOOKS, _SUMMITS, _NEARER = 9, 2, 8.0
 """Places at which a part is looked at, how many of its summits are followed, and how much nearer places come."""
@@ -40,14 +36,8 @@ _LOOKS, _SUMMITS, _NEARER = 9, 2, 8.0
 _MORE = 6
 """More places where the cross-section changes."""
 
-_PLACES = 17
-"""Places at which the thinnest cross-section is sought."""
-
 _SLACK = END["single"]
 """How near a station is at a section: one graph serves both precisions."""
-
-_DEEP = 4
-"""How much of an expression is compared to see that two fibres are alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +64,8 @@ class Loaded:
         assert link.beam is not None
         assert isinstance(link.mass, Density)
         self.link, self.space = link, space
-        self.beam: Beam = link.beam
-        self.course = link.beam.course
+        self.beam, self.course = link.beam, link.beam.course
+        self.cross = CrossSections(link.beam, space)
         self.section = Section(link.name, table_of(space), columns, link.length, link.mass)
         self.marks = [place.ratio for place in self.section.marks if place.side == "tip"]
         self.marks += [ca.SX(b) for b in link.mass.breaks[1:-1]]
@@ -105,58 +95,25 @@ class Loaded:
         nodes = (1.0 - np.cos(math.pi * np.arange(self.degree + 1) / self.degree)) / 2
         inverse = np.linalg.inv(np.vander(nodes, increasing=True))
         found = {}
-        for name in FORCES[self.space]:
+        for name in self.cross.forces:
             values = [self.section.force(name, a + (b - a) * x, edge(a, _SLACK)) for x in nodes.tolist()]
             found[name] = [sum(w * value for w, value in zip(row.tolist(), values, strict=True)) for row in inverse]
         return found
 
-    def properties(self, cell: int, u: Any) -> Properties:
-        """The cross-section at a ratio within a cell."""
-        (first, last), low, high = self.course.cells[cell], self.course.breaks[cell], self.course.breaks[cell + 1]
-        return between(first, last, (u - low) / (high - low)).properties(space=self.space)
-
     def at(self, part: Part, x: Any) -> Properties:
         """The cross-section at a place of a part."""
         first, last = self.course.cells[part.cell]
-        return self._constant[part.cell] if first is last else self.properties(part.cell, part.low + part.width * x)
+        return self._constant[part.cell] if first is last else self.cross.properties(part.cell, part.low + part.width * x)
 
     def square(self, part: Part, x: Any) -> Any:
         """The largest square of von Mises' stresses at a place of a part."""
-        p = self.at(part, x)
-        forces = {place: part.force(name, x) for name, place in FORCES[self.space].items()}
-        found = []
-        for fibre in self._needed[part.cell]:
-            normal, *shears = (
-                sum(number * forces[k] for k, number in enumerate(row) if k in forces) for row in p.rows(p.fibres[fibre])
-            )
-            found.append(normal * normal + 3.0 * sum(shear * shear for shear in shears))
-        return most(found)
+        forces = [part.force(name, x) for name in self.cross.forces]
+        found = self.cross.stresses(self.at(part, x), self.cross.needed[part.cell], forces)
+        return most(ca.vertsplit(squared(found, KINDS["von_mises"])))
 
     @cached_property
     def _constant(self) -> list[Properties]:
         return [first.properties(space=self.space) for first, _ in self.course.cells]
-
-    @cached_property
-    def _needed(self) -> list[list[int]]:
-        """Of each cell the fibres, those left out that have the normal stress of another one, and no shear."""
-        return [self._differing(cell, lower=True) for cell in range(len(self.course.cells))]
-
-    @cached_property
-    def alone(self) -> list[list[int]]:
-        """Of each cell the fibres, those left out that are like another one."""
-        return [self._differing(cell, lower=False) for cell in range(len(self.course.cells))]
-
-    def _differing(self, cell: int, *, lower: bool) -> list[int]:
-        first, last = self.course.cells[cell]
-        shapes = [first] if first is last else [first, last]
-        every = [[_plain(p.rows(f), self.space) for f in p.fibres] for p in (s.properties(space=self.space) for s in shapes)]
-        numbers, kept = range(len(every[0])), list[int]()
-        for k in numbers:
-            alike = (all(_same(rows[k], rows[other]) for rows in every) for other in kept)
-            below = (all(_below(rows[k], rows[other]) for rows in every) for other in numbers if lower and other != k)
-            if not any(alike) and not any(below):
-                kept.append(k)
-        return kept
 
 
 def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> dict[Column, Any]:
@@ -188,59 +145,11 @@ def utilisation(
 
 
 def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
-    """The largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) = 1."""
-    material = link.beam.material
-    elasticity, strength = material.needs("buckling", "elasticity", "yield_strength")
-    area, second, modulus = _thinnest(link)
-    lengths = [k * link.link.length for k in effective]
-    euler = [math.pi**2 * elasticity * i / length**2 for i, length in zip(second, lengths, strict=True)]
-    half = strength * area / 2
-    critical = [ca.if_else(e <= half, e, strength * area * (1.0 - strength * area / (4.0 * e))) for e in euler]
-
-    n = _largest(link, lambda part, x: -part.force("axial", x))
+    """How far a link is used as a column, with the largest compression and the largest moments along it."""
+    compression = _largest(link, lambda part, x: -part.force("axial", x))
     names = ("bending_z", "bending_y") if link.space else ("bending",)
-    bent = [ca.sqrt(_largest(link, partial(_squared, name))) for name in names]
-    compressed = ca.fmax(n, 0.0)
-    share = compressed / ca.fmin(*critical)
-    shares = [compressed / e for e in euler]
-    moments = [b / (w * strength) for b, w in zip(bent, modulus, strict=False)]
-    found = most([_alone(share, c, b) for c, b in zip(shares, moments, strict=False)] + shares)
-    if link.space:
-        # From the left, where it is convex and falls, Newton's method rises to the solution.
-        for _ in range(_ROUNDS):
-            gaps = [ca.fmax(found - c, _TINY * found) for c in shares]
-            over = share / found + sum(b / gap for b, gap in zip(moments, gaps, strict=True)) - 1.0
-            slope = share / found**2 + sum(b / gap**2 for b, gap in zip(moments, gaps, strict=True))
-            found = found + ca.fmax(over / slope, 0.0)
-    return ca.if_else(share > SLIGHT, found, 0.0)
-
-
-_ROUNDS, _TINY = 8, 1e-12
-
-
-def _alone(a: Any, c: Any, b: Any) -> Any:
-    """The larger u of a/u + b/(u - c) = 1."""
-    total = a + b + c
-    return (total + ca.sqrt(ca.fmax(total * total - 4.0 * a * c, 0.0))) / 2
-
-
-def _thinnest(link: Loaded) -> tuple[Any, list[Any], list[Any]]:
-    """The least area, second moments and moduli about z and y."""
-    areas, seconds, moduli = [], [list[Any](), list[Any]()], [list[Any](), list[Any]()]
-    for cell, (first, last) in enumerate(link.course.cells):
-        low, high = link.course.breaks[cell : cell + 2]
-        places = [low] if first is last else [low + (high - low) * k / (_PLACES - 1) for k in range(_PLACES)]
-        for u in places:
-            p = link.properties(cell, u)
-            half, turned = (p.iz + p.iy) / 2, ca.sqrt(((p.iz - p.iy) / 2) ** 2 + p.iyz**2)
-            straight = ca.SX(p.iyz).is_zero()
-            areas.append(ca.SX(p.area))
-            for k, (second, modulus) in enumerate(
-                zip((p.iz, p.iy) if straight else [half - turned] * 2, (p.wz, p.wy), strict=True)
-            ):
-                seconds[k].append(ca.SX(second))
-                moduli[k].append(ca.SX(modulus))
-    return _least(areas), [_least(each) for each in seconds], [_least(each) for each in moduli]
+    moments = [ca.sqrt(_largest(link, partial(_squared, name))) for name in names]
+    return buckling.Column.of(link.cross, link.link.length, effective).used(compression, moments)
 
 
 def _squared(name: str, part: Part, x: Any) -> Any:
@@ -310,27 +219,3 @@ def most(values: Sequence[Any]) -> Any:
     for value in values[1:]:
         found = ca.fmax(found, value)
     return ca.SX(found)
-
-
-def _least(values: Sequence[Any]) -> Any:
-    found = values[0]
-    for value in values[1:]:
-        found = ca.fmin(found, value)
-    return found
-
-
-def _plain(row: tuple[tuple[Any, ...], ...], space: bool) -> tuple[list[Any], list[Any]]:
-    """What a fibre takes for its normal stress, and for its shear stress: in the plane alone the square of this counts."""
-    if space:
-        return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
-    return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
-
-
-def _same(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
-    return all(ca.is_equal(x, y, _DEEP) for x, y in zip([*a[0], *a[1]], [*b[0], *b[1]], strict=True))
-
-
-def _below(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
-    """Whether a fibre has the normal stress of another one, no shear stress, and the other some."""
-    same = all(ca.is_equal(x, y, _DEEP) for x, y in zip(a[0], b[0], strict=True))
-    return same and all(x.is_zero() for x in a[1]) and not all(x.is_zero() for x in b[1])

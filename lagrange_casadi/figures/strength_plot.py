@@ -10,8 +10,9 @@ import numpy as np
 from ..base.arrays import Array
 from ..instants.solution import Solution
 from ..shapes.readable import Scale
-from ..strength.fatigue import Loaded, factor, factor_score, loaded, places, worst
+from ..strength.fatigue import Loaded, factor, factor_score, loaded
 from ..strength.stress import Stress
+from ..strength.worst import places, worst
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,8 +1,8 @@
 """Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
 
 from ..declare.held import effective_lengths
+from ..equations.buckling import Column, critical_stress
 from .bearings import joint_safety
-from .buckling import Column, critical_stress
 from .critical_plane import Plane, critical_plane, plane_factor
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
 from .parts import safeties

@@ -19,8 +19,8 @@ from ..arguments import NotNegative, public
 from ..base.arrays import Array
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
-from .fatigue import Place, sought
 from .stress import Stress
+from .worst import Place, sought, told
 
 FINDLEY = "findley"
 """The criterion's name."""
@@ -84,16 +84,14 @@ def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, s
     found = [(Plane(-1.0, 0.0, 0.0), Place(0.0, "tip", None), "")]
 
     def look(places: Iterable[Place]) -> Place:
-        seen = []
-        for place in places:
-            values = stress.at(place.xi, place.side, place.notch)
-            seen += [(bound, place, k, values[:, k]) for k, bound in enumerate(_bounds(values, share).tolist())]
-        for bound, place, k, history in sorted(seen, key=lambda one: -one[0]):
-            if bound <= found[0][0].value(share):
-                break
-            plane = critical_plane(history, share)
-            if plane.value(share) > found[0][0].value(share):
-                found[0] = plane, place, stress.fibres(place.xi, place.side)[k]
+        for values, fibres in told(stress, places):
+            bounds = _bounds(values, share)
+            for k in np.argsort(-bounds, kind="stable").tolist():
+                if bounds[k] <= found[0][0].value(share):
+                    break
+                plane = critical_plane(values[:, k], share)
+                if plane.value(share) > found[0][0].value(share):
+                    found[0] = plane, *fibres[k]
         return found[0][1]
 
     sought(stress, look)

@@ -8,33 +8,27 @@ edition, sections 6-12 and 6-14). Which swings there are is counted along the di
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from ..arguments import Numeric, public
 from ..base.arrays import Array
 from ..beams.beam import Notch
 from ..beams.material import Material
+from ..beams.properties import larger
 from ..errors import UnknownNameError
-from ..instants.section_law import Side
 from .rainflow import rainflow
-from .stress import Stress
-
-FEW = 65
-"""Ratios that are looked at first."""
-
-_ROUNDS, _ZOOM = 3, 9
-"""How often and how finely the place that is worst is looked at again."""
 
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
 
-_SIDES: tuple[Side, Side] = ("base", "tip")
+_ROUNDED = 1.0 + 1e-12
+"""By how much more than a bound a value may be by rounding."""
 
 
 @dataclass(frozen=True)
@@ -80,11 +74,20 @@ def factor(amplitude: Numeric, mean: Numeric, material: Material, criterion: str
     Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq. 6-45 to 6-48; Dowling for
     Morrow). A mean in compression counts as none.
     """
-    endurance, strength = strengths(material, criterion)
-    a, m = np.asarray(amplitude) / endurance, np.maximum(mean, 0.0) / strength
-    share = (a + np.sqrt(a * a + 4.0 * m * m)) / 2 if criterion_of(criterion).square else a + m
     with np.errstate(divide="ignore"):
-        return 1.0 / share
+        return 1.0 / used(np.asarray(amplitude), np.asarray(mean), material, criterion)
+
+
+def used(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
+    """How far a material is used by amplitude and mean, one over :func:`factor`; of numbers, arrays or expressions."""
+    endurance, strength = strengths(material, criterion)
+    a, m = amplitude / endurance, larger(mean, 0.0) / strength
+    return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion_of(criterion).square else a + m
+
+
+def tires(material: Material) -> bool:
+    """Whether fatigue of a material can be told by Goodman."""
+    return material.endurance is not None and material.ultimate is not None
 
 
 @public
@@ -119,14 +122,6 @@ def cycles(amplitude: Numeric, material: Material) -> Any:
     return np.where((size <= endurance) & material.endless, np.inf, found)
 
 
-class Place(NamedTuple):
-    """Where a link is looked at: a ratio xi/l, the side of it, and the notch whose factors count."""
-
-    xi: float
-    side: Side
-    notch: Notch | None
-
-
 class Loaded(NamedTuple):
     """The swings at a place and fibre: amplitudes and means [Pa], how often each comes in a cycle, and between which instants."""
 
@@ -147,10 +142,20 @@ def loaded(values: Array) -> Loaded:
         pairs, counts = [(first, first)], [1.0]
     else:
         pairs, counts = [(s.first, s.last) for s in swings], [s.times for s in swings]
-    a, b = (vector[:, list(side)] for side in zip(*pairs, strict=True))
-    middle = (a + b) / 2
-    mean = np.sqrt(np.maximum(middle[0], 0.0) ** 2 + middle[1] ** 2 + middle[2] ** 2)
-    return Loaded(np.linalg.norm(b - a, axis=0) / 2, mean, np.array(counts), pairs)
+    a, b = (values[:, list(side)] for side in zip(*pairs, strict=True))
+    amplitude, mean = (np.sqrt(square) for square in swing_squares(a, b))
+    return Loaded(amplitude, mean, np.array(counts), pairs)
+
+
+def swing_squares(first: Any, last: Any) -> tuple[Any, Any]:
+    """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and z, to others.
+
+    They are numbers, arrays or expressions.
+    """
+    far = [b - a for a, b in zip(first, last, strict=True)]
+    normal, *shears = ((a + b) / 2 for a, b in zip(first, last, strict=True))
+    amplitude = (far[0] ** 2 + 3.0 * (far[1] ** 2 + far[2] ** 2)) / 4
+    return amplitude, larger(normal, 0.0) ** 2 + 3.0 * (shears[0] ** 2 + shears[1] ** 2)
 
 
 def _farthest(points: Array) -> tuple[int, int]:
@@ -181,72 +186,141 @@ def _directions() -> Array:
 _DIRECTIONS = _directions()
 
 
-Score = Callable[[Loaded], tuple[float, ...]]
-"""What is smallest where it is worst; of equals the second number tells."""
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """Stresses over time of n designs: ``normal`` (n, places, t), and of places that are ``sheared`` the ``shears``.
+
+    These are (n, axes, sheared, t), along one of ``axes`` after the other (0 is y, 1 is z), for in a plane there are none along z.
+    """
+
+    normal: Array
+    shears: Array
+    sheared: npt.NDArray[np.intp]
+    axes: tuple[int, ...]
+
+    @classmethod
+    def of(cls, values: Array) -> Histories:
+        """Those of one design: stresses (3, places, t), normal, and shear along y and along z."""
+        sheared = np.flatnonzero(values[1:].any(axis=(0, 2)))
+        return cls(values[None, 0], values[None, 1:][:, :, sheared], sheared, (0, 1))
+
+    def at(self, design: int, place: int) -> Array:
+        """The stresses of a design at a place: (3, t)."""
+        found = np.zeros((3, self.normal.shape[2]))
+        found[0] = self.normal[design, place]
+        for column in np.flatnonzero(self.sheared == place):
+            found[[1 + axis for axis in self.axes]] = self.shears[design, :, column]
+        return found
+
+    def widest(self) -> tuple[Array, Array]:
+        """Amplitudes and means [Pa] that no swing is beyond, each (n, places)."""
+        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
+        amplitude, mean = (high - low) ** 2, np.maximum(high, 0.0) ** 2
+        square, size = self._sheared()
+        amplitude[:, self.sheared] += square
+        mean[:, self.sheared] += size
+        return np.sqrt(amplitude) / 2, np.sqrt(mean)
+
+    def bounds(self, material: Material) -> tuple[Array, Array]:
+        """Bounds on utilisation by Goodman's rule, and what is known of it at least, each (n, places).
+
+        Of a history of normal stress alone the swing from its smallest to its largest value is the worst.
+        """
+        endurance, strength = strengths(material, "goodman")
+        high, low = self.normal.max(axis=2), self.normal.min(axis=2)
+        bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
+        known, sheared = bound.copy(), self.sheared
+        known[:, sheared] = 0.0
+        if sheared.size:
+            square, size = self._sheared()
+            high, low = high[:, sheared], low[:, sheared]
+            swing, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
+            whole = np.sqrt(swing + square) / (2 * endurance) + np.sqrt(middle**2 + size) / strength
+            # A smaller swing has a larger mean. Where shear is most of it, or means count for much, no more is known than this.
+            wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else swing + square
+            other = np.sqrt(wide) / (2 * endurance) + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
+            bound[:, sheared] = np.maximum(whole, other)
+        return bound, known
+
+    def utilisation(self, material: Material) -> Array:
+        """Utilisation of designs (n,) by Goodman's rule, one over their least factor."""
+        bound, known = self.bounds(material)
+        best = known.max(axis=1)
+        for i in np.flatnonzero(bound.max(axis=1) > best).tolist():
+            for k in np.argsort(-bound[i], kind="stable").tolist():
+                if bound[i, k] <= best[i]:
+                    break
+                if k in self.sheared:
+                    swings = loaded(self.at(i, k))
+                    best[i] = max(best[i], float(np.max(used(swings.amplitude, swings.mean, material))))
+        return np.asarray(best)
+
+    def worst(self, score: Score, least: tuple[float, ...] | None = None) -> tuple[tuple[float, ...], int, Loaded] | None:
+        """Where a score of the first design is smallest: its value, the place, and the swings there; of equals the first place.
+
+        None where it is nowhere below ``least``. What cannot be below what was found is not counted.
+        """
+        bound = score.bound(self)
+        found: tuple[tuple[float, ...], int, Loaded] | None = None
+        for k in np.lexsort(bound.T[::-1]).tolist():
+            best = least if found is None else found[0]
+            if best is not None and tuple(bound[k].tolist()) > best:
+                break
+            swings = loaded(self.at(0, k))
+            value = score.of(swings)
+            if best is None or value < best or (found is not None and value == best and k < found[1]):
+                found = value, k, swings
+        return found
+
+    def _sheared(self) -> tuple[Array, Array]:
+        """Of sheared places three times the squares of how far shear stress goes, and of how large it is, each (n, sheared)."""
+        return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(np.sum(self.shears**2, axis=1), axis=2)
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """What is smallest where a link is worst, ``of`` swings; of equals the second number tells.
+
+    ``bound`` has for every place of a design numbers that it is not below, (places, numbers).
+    """
+
+    of: Callable[[Loaded], tuple[float, ...]]
+    bound: Callable[[Histories], Array]
 
 
 def factor_score(material: Material, criterion: str) -> Score:
     """The factor of safety against fatigue. Raises what :func:`strengths` does."""
     strengths(material, criterion)
-    return lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),)
+
+    def bound(histories: Histories) -> Array:
+        goodman = criterion == "goodman"
+        (most, *_) = histories.bounds(material)[0] if goodman else used(*histories.widest(), material, criterion)
+        with np.errstate(divide="ignore"):
+            return np.asarray(1.0 / (most * _ROUNDED))[:, None]
+
+    return Score(lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),), bound)
 
 
 def damage_score(material: Material, criterion: str) -> Score:
     """The damage by Miner's sum, and where there is none the largest amplitude; times -1. Raises what :func:`strengths` does."""
     strengths(material, criterion)
 
-    def score(swings: Loaded) -> tuple[float, float]:
+    def of(swings: Loaded) -> tuple[float, float]:
         sizes = reversed_amplitude(swings.amplitude, swings.mean, material, criterion)
         with np.errstate(divide="ignore"):
             return -float(np.sum(swings.times / cycles(sizes, material))), -float(np.max(sizes))
 
-    return score
+    def bound(histories: Histories) -> Array:
+        amplitude, mean = (size[0] * _ROUNDED for size in histories.widest())
+        sizes = reversed_amplitude(amplitude, mean, material, criterion)
+        many = histories.normal.shape[2] / 2 + 1
+        with np.errstate(divide="ignore"):
+            return -np.stack([many / cycles(sizes, material), sizes], axis=1)
 
-
-def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
-    """Where along a link and at which fibre a score is smallest: its value, the place, the fibre, and the swings there.
-
-    Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is worst, finer and finer.
-    """
-    found: list[tuple[tuple[float, ...], Place, str, Loaded]] = []
-
-    def look(places: Iterable[Place]) -> Place:
-        found[:] = [min([*found, *(_at(stress, place, score) for place in places)], key=lambda one: one[0])]
-        return found[0][1]
-
-    sought(stress, look)
-    return found[0]
-
-
-def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
-    """Look at the places of a link, and then around the one that ``look`` says is the worst so far, finer and finer."""
-    place, step = look(places(stress)), 1.0 / (FEW - 1)
-    for _ in range(_ROUNDS):
-        if place.notch is not None:
-            return
-        around = np.linspace(place.xi - step, place.xi + step, _ZOOM).tolist()
-        place, step = look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0), step * 2 / (_ZOOM - 1)
-
-
-def places(stress: Stress) -> Iterator[Place]:
-    """Where along a link fatigue is looked at first: evenly, at both sides of stations and steps, and at notches."""
-    member = stress.member
-    still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]
-    steps = {*still, *(cell.low for cell in member.cells), *(cell.high for cell in member.cells)}
-    yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, FEW).tolist())
-    yield from (Place(x, side, None) for x, side in itertools.product(sorted(steps), _SIDES))
-    yield from (Place(float(notch.at), side, felt(notch)) for notch, side in itertools.product(member.beam.notches, _SIDES))
+    return Score(of, bound)
 
 
 def felt(notch: Notch) -> Notch:
     """What fatigue feels of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
     q = notch.sensitivity
     return Notch(notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear)))
-
-
-def _at(stress: Stress, place: Place, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
-    values = stress.at(place.xi, place.side, place.notch)
-    every = [loaded(values[:, k]) for k in range(values.shape[1])]
-    scores = [score(one) for one in every]
-    k = scores.index(min(scores))
-    return scores[k], place, stress.fibres(place.xi, place.side)[k], every[k]

@@ -12,19 +12,15 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..beams.beam import Beam
-from ..beams.properties import Properties
-from ..beams.shape import between
 from ..beams.told import beam_told
 from ..declare.description import in_space
 from ..equations.bars import unaimed
+from ..equations.stress import FORCES, CrossSections
 from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
 from ..instants.statistics import counted
 from ..summits.polynomials import interpolation
-
-FORCES = {False: ("axial", "shear", "bending"), True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")}
-"""The section forces that stresses are linear in: in the plane, and in space."""
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a link too short to cut."""
@@ -48,11 +44,11 @@ class Cell:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names of its fibres."""
-        return tuple(fibre.name for fibre in self.member.properties(self.index, np.zeros(1)).fibres)
+        return tuple(fibre.name for fibre in self.member.cross.properties(self.index, np.zeros(1)).fibres)
 
     def factors(self, u: Array) -> Array:
         """What stresses, normal and along y and along z, take of each force at ratios ``u``: (3, fibres, forces, u...)."""
-        return self.member.factors(self.index, u)
+        return self.member.cross.factors(self.index, u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,27 +96,15 @@ class Member:
             raise DeclarationError(f"link '{self.link}': friction is at rest at all instants, so its strength is open")
         return self.during(np.flatnonzero(counts))
 
+    @cached_property
+    def cross(self) -> CrossSections:
+        """Its cross-sections."""
+        return CrossSections(self.beam, self.space)
+
     @property
     def forces(self) -> tuple[str, ...]:
         """The names of the section forces that stresses are made of."""
-        return FORCES[self.space]
-
-    def properties(self, index: int, u: Any) -> Properties:
-        """The properties between two breaks at ratios ``u``."""
-        course = self.beam.course
-        first, last = course.cells[index]
-        share = (u - course.breaks[index]) / (course.breaks[index + 1] - course.breaks[index])
-        return between(first, last, share).properties(space=self.space)
-
-    def factors(self, index: int, u: Array) -> Array:
-        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres, forces, u...)."""
-        p = self.properties(index, u)
-        found = np.zeros((3, len(p.fibres), 6, *np.shape(u)))
-        for k, fibre in enumerate(p.fibres):
-            for row, numbers in enumerate(p.rows(fibre)):
-                for force, number in enumerate(numbers):
-                    found[row, k, force] = number
-        return found if self.space else found[:, :, [0, 1, 5]]
+        return self.cross.forces
 
     def at(self, u: Array, side: Side = "tip", scale: Array | None = None) -> Array:
         """The section forces at ratios ``u`` (t, n), each times its ``scale``: (forces, t, n)."""
@@ -161,7 +145,7 @@ class Member:
         for degree in _DEGREES if first is not last else _DEGREES[:1]:
             nodes, weights = interpolation(degree)
             finer = np.linspace(-1.0, 1.0, 2 * degree + 3)
-            here, there = (self.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer))
+            here, there = (self.cross.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer))
             told = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
             # Of each force its own unit.
             size = np.abs(there).max(axis=(0, 1, 3), keepdims=True)
@@ -173,7 +157,7 @@ class Member:
         yield from self._cells(index, middle, high)
 
     def _check_torsion(self) -> None:
-        if not self.space or self.properties(0, 0.0).torsion is not None:
+        if not self.space or self.cross.properties(0, 0.0).torsion is not None:
             return
         ends = np.zeros((self.t.size, 1)) + np.linspace(0.0, 1.0, 9)
         twist, bending = (float(np.fmax.reduce(np.abs(self.law.at(force, ends)), axis=None)) for force in ("torsion", "bending"))

@@ -11,13 +11,14 @@ from ..arguments import public
 from ..beams.material import Material
 from ..declare.description import Description
 from ..declare.held import effective_lengths
+from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
-from .buckling import Column, column, load_factor
 from .critical_plane import FINDLEY, plane_factor, worst_plane
-from .fatigue import CRITERIA, damage_score, factor, factor_score, worst
+from .fatigue import CRITERIA, damage_score, factor, factor_score
 from .member import Member
 from .stress import Stress, StressPeak
+from .worst import worst
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,8 @@ def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
 
 def as_column(description: Description, member: Member) -> Column:
     """A link as a column, by the effective lengths of its beam or its joints."""
-    return column(member, member.beam.columns or effective_lengths(description, member.link))
+    effective = member.beam.columns or effective_lengths(description, member.link)
+    return Column.of(member.cross, member.law.length, effective)
 
 
 def yielded(member: Member, peak: StressPeak) -> Verdict:
@@ -147,17 +149,17 @@ def buckling(member: Member, of: Column) -> Verdict:
     compression = -law.reached("axial")[1][0]
     names = ("bending_z", "bending_y") if member.space else ("bending",)
     moments = [np.abs(law.extreme(name)[1]) for name in names]
-    both = (moments[0], moments[1] if member.space else np.zeros_like(compression))
-    factors = load_factor(compression, both, of)
-    k = int(np.argmin(factors))
-    if not np.isfinite(factors[k]):
+    with np.errstate(divide="ignore", invalid="ignore"):
+        used = of.used(compression, moments)
+    k = int(np.argmax(used))
+    if not used[k]:
         return Verdict("buckling", math.inf, "nothing is compressed")
     axis = int(np.argmin(of.critical))
     way = ("along y", "along z")[axis] if member.space else ("in the plane", "out of the plane")[axis]
     kind = "Euler" if of.critical[axis] >= of.euler[axis] * (1.0 - 1e-12) else "Johnson"
     load = f"{kind}'s {of.critical[axis]:.4g} N {way}, slenderness {of.slenderness[axis]:.3g}"
     return Verdict(
-        "buckling", float(factors[k]), f"{load}; {compression[k]:.4g} N and {both[0][k]:.4g} N m at t = {member.t[k]:.5g} s"
+        "buckling", 1.0 / float(used[k]), f"{load}; {compression[k]:.4g} N and {moments[0][k]:.4g} N m at t = {member.t[k]:.5g} s"
     )
 
 

@@ -1,8 +1,7 @@
-"""Stresses in a link, over time, along it, and at the fibres of its cross-section.
+"""Stresses in a link of a solution, over time, along it, and at the fibres of its cross-section.
 
-s = N/A + a y + b z with a Iz + b Iyz = -Mz and a Iyz + b Iy = My, for any axes; shear stresses are those of :mod:`..beams`. In a
-planar mechanism bending is about z. All are linear in section forces, so between two marks they are polynomials of xi, or products
-of these with smooth functions of the cross-section, which are replaced by polynomials that agree to 1e-13.
+They are linear in section forces (:mod:`..equations.stress`), so between two marks they are polynomials of xi, or products of these
+with smooth functions of the cross-section, which are replaced by polynomials that agree to 1e-13.
 
 The largest of sqrt(s^2 + k t^2) along a link is sought among all summits of its square. How far a square may rise
 between the places at which it is looked at is bounded by Ehlich and Zeller, *Schwankung von Polynomen zwischen Gitterpunkten*,
@@ -24,13 +23,11 @@ from numpy.polynomial import chebyshev
 from ..arguments import Share, public
 from ..base.arrays import Array
 from ..beams.beam import Notch
+from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
 from ..summits.polynomials import interpolation
 from .member import Cell, Member
-
-KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
-"""Of each kind of stress the weights of s^2 and t^2 in its square."""
 
 _LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
 _BESIDE, _STEPS = 0.9, 40
@@ -93,7 +90,7 @@ class Stress:
                 chosen = inside[start : start + width]
                 forces = self.member.at(np.broadcast_to(u[chosen], (self.member.t.size, chosen.size)))
                 values = np.einsum("cfkn,ktn->cftn", factors[..., start : start + width], forces)
-                squares = _square(values, weights)
+                squares = squared(values, weights)
                 best = np.argmax(squares, axis=0)[None]
                 square, normal = (np.take_along_axis(a, best, 0)[0] for a in (squares, values[0]))
                 found[:, chosen] = _signed(kind, square, normal)
@@ -102,7 +99,7 @@ class Stress:
     def at(self, xi: Share, side: Side = "tip", notch: Notch | None = None) -> Array:
         """The stresses at a ratio: (3, fibres, t), normal, and shear along y and z, with the factors of a notch where given."""
         cell = self.member.cell_at(xi, side)
-        forces = self.member.at(np.full((self.member.t.size, 1), xi), side, None if notch is None else self._scale(notch))
+        forces = self.member.at(np.full((self.member.t.size, 1), xi), side, self._scale(notch))
         return np.asarray(np.einsum("cfk,kt->cft", cell.factors(np.array([xi]))[..., 0], forces[..., 0]))
 
     def fibres(self, xi: Share, side: Side = "tip") -> tuple[str, ...]:
@@ -141,7 +138,7 @@ class Stress:
         weights = _weights(kind)
         self._require_notches()
         each = [self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES]
-        return np.asarray(np.sqrt(np.max([_square(values, weights).max(axis=0) for values in each], axis=0)))
+        return np.asarray(np.sqrt(np.max([squared(values, weights).max(axis=0) for values in each], axis=0)))
 
     def _require_notches(self) -> None:
         if not self.member.beam.notches:
@@ -165,14 +162,14 @@ class Stress:
         found = []
         for side in _SIDES:
             values = self.at(notch.at, side, notch)
-            squares = _square(values, _weights(kind))
+            squares = squared(values, _weights(kind))
             fibre, k = np.unravel_index(int(np.argmax(squares)), squares.shape)
             value = float(_signed(kind, squares[fibre, k], values[0, fibre, k]))
             found.append(StressPeak(kind, value, float(self.member.t[k]), notch.at, self.fibres(notch.at, side)[fibre], True))
         return max(found, key=lambda peak: abs(peak.value))
 
-    def _scale(self, notch: Notch) -> Array:
-        return np.array([_factor(notch, force) for force in self.member.forces])
+    def _scale(self, notch: Notch | None) -> Array:
+        return np.array([concentration(notch, force) for force in self.member.forces])
 
     def _blocks(self) -> Iterator[Stress]:
         """The stresses over few instants after another."""
@@ -246,7 +243,7 @@ class _Part:
         values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
         # A square is not negative: it is bounded about half of what is largest.
         factor = (1.0 + 1.0 / math.cos(math.pi * self.degree / (places.size - 2))) / 2
-        return np.moveaxis(_square(values, weights), 0, 1), factor
+        return np.moveaxis(squared(values, weights), 0, 1), factor
 
     def summits(self, t: Any, f: Any, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
         """The largest squares at some instants and fibres, their ratios, and the sign of the normal stress there."""
@@ -269,14 +266,14 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
     """
     degree = c.shape[-1] - 1
     places = _places(degree, _LOOKS)
-    squares = _square(c @ chebyshev.chebvander(places, degree).T, weights)
+    squares = squared(c @ chebyshev.chebvander(places, degree).T, weights)
     edge = np.full((len(squares), 1), -1.0)
     higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (squares >= np.hstack([squares[:, 1:], edge]))
     rows, k = np.nonzero(higher & (squares >= _BESIDE * squares.max(axis=1, keepdims=True)))
     own = np.moveaxis(c[:, rows], 2, 0)
 
     def square(x: Array) -> Array:
-        return _square(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights)
+        return np.asarray(squared(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights))
 
     x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
     found, looked = square(x), squares[rows, k]
@@ -302,18 +299,10 @@ def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Arra
     return (low + high) / 2
 
 
-def _factor(notch: Notch, force: str) -> float:
-    return notch.axial if force == "axial" else notch.bending if force.startswith("bending") else notch.shear
-
-
 def _weights(kind: str) -> tuple[float, float]:
     if kind not in KINDS:
         raise UnknownNameError("kind of stress", kind, KINDS)
     return KINDS[kind]
-
-
-def _square(values: Array, weights: tuple[float, float]) -> Array:
-    return np.asarray(weights[0] * values[0] ** 2 + weights[1] * (values[1] ** 2 + values[2] ** 2))
 
 
 def _signed(kind: str, square: Array, normal: Array) -> Array:

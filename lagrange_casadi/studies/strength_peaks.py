@@ -17,9 +17,9 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.even_points import are_even
 from ..declare.scene import Scene
+from ..equations.buckling import Column
 from ..instants.backends import searching
 from ..instants.solution import Solution
-from ..strength.buckling import Column
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
 from ..strength.stress import Stress, StressPeak

@@ -21,8 +21,8 @@ from ...beams.material import Material
 from ...equations.scene_graph import SceneGraph
 from ...errors import DeclarationError
 from ...instants.statistics import counted
-from ...strength.fatigue import factor, loaded, strengths
-from ..sweep.strength import Fatigue, bounds
+from ...strength.fatigue import loaded, strengths, swing_squares, used
+from ...strength.fibres import FibreStresses
 from .look import Look, Point
 
 _FEW = 8
@@ -45,10 +45,10 @@ class Tired:
         return self.graph.data.materials[self.link]
 
     @cached_property
-    def fatigue(self) -> Fatigue:
+    def fatigue(self) -> FibreStresses:
         """Its stresses by what its law is made of."""
         members = [output for output in self.graph.outputs if output.along and output.part == self.link]
-        return Fatigue.of(self.graph.data, self.link, members)
+        return FibreStresses.of(self.graph.data, self.link, members)
 
     def points(self, look: Look) -> list[Point]:
         """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share of the swing's other instant.
@@ -63,19 +63,19 @@ class Tired:
             return []
         if not fatigue.stands(members[None])[0]:
             raise DeclarationError(f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone")
-        normal, shears = fatigue.stresses(members[None], look.p[None])
-        bound, _ = bounds(normal, shears, fatigue.sheared, self.material)
+        histories = fatigue.histories(members[None], look.p[None])
+        bound, _ = histories.bounds(self.material)
         found: list[Point] = []
         best = 0.0
         for k in np.argsort(-bound[0], kind="stable").tolist():
             if bound[0, k] <= best and len(found) >= _FEW:
                 break
-            swings = loaded(fatigue.history(normal[0], shears[0], k))
-            used = 1.0 / factor(swings.amplitude, swings.mean, self.material, "goodman")
-            worst = int(np.argmax(used))
+            swings = loaded(histories.at(0, k))
+            shares = used(swings.amplitude, swings.mean, self.material)
+            worst = int(np.argmax(shares))
             first, last = (look.instant(int(instants[i])) for i in swings.instants[worst])
-            found.append(Point(first.share, last.share, k, float(used[worst]), first.guess, second=last.guess))
-            best = max(best, float(used[worst]))
+            found.append(Point(first.share, last.share, k, float(shares[worst]), first.guess, second=last.guess))
+            best = max(best, float(shares[worst]))
         return sorted(found, key=lambda point: -point.value)
 
     def stresses(self, out: Any, p: Any) -> Any:
@@ -99,12 +99,8 @@ class Tired:
         chosen, other = place[:count], place[count:]
         ends = [at_time(*when, p, 0.0, 0.0) for when in ((share, guess), (xi, other))]
         a, b = ([ca.dot(chosen, end[k * count : (k + 1) * count]) for k in range(3)] for end in ends)
-        endurance, strength = strengths(self.material, "goodman")
-        middle = [(x + y) / 2 for x, y in zip(a, b, strict=True)]
-        mean = _root(ca.fmax(middle[0], 0.0) ** 2 + 3.0 * (middle[1] ** 2 + middle[2] ** 2))
-        far = [y - x for x, y in zip(a, b, strict=True)]
-        amplitude = _root(far[0] ** 2 + 3.0 * (far[1] ** 2 + far[2] ** 2)) / 2
-        return ca.Function("swing", given, [amplitude / endurance + mean / strength], {"cse": True} if kind is ca.SX else {})
+        amplitude, mean = (_root(square) for square in swing_squares(a, b))
+        return ca.Function("swing", given, [used(amplitude, mean, self.material)], {"cse": True} if kind is ca.SX else {})
 
 
 def tired_link(output: Output | None) -> str | None:

@@ -9,8 +9,8 @@ from ...base.numerals import real
 from ...declare.mechanism import Mechanism
 from ...declare.scene import Wanted
 from ...errors import DeclarationError
-from ...strength.fatigue import strengths
-from ..sweep.strength import WAYS, tires
+from ...strength.fatigue import strengths, tires
+from ..sweep.strength import WAYS
 from .terms import Constraint
 
 _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")

@@ -1,0 +1,96 @@
+"""Columns: Euler's and Johnson's critical loads, and the interaction with bending; in numbers, arrays or expressions.
+
+Johnson's parabola joins Euler's curve at half the yield strength (Shigley, *Mechanical Engineering Design*, 9th edition, sections
+4-12 and 4-13). Bending adds to compression as N/N_cr + M/(M_yield (1 - N/N_Euler)) = 1, about both axes (Timoshenko and Gere,
+*Theory of Elastic Stability*, sections 1.11 and 1.13, for moments that are even along the link, the worst). Of a link whose
+cross-section changes, the least second moment, area and modulus count for all of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arguments import Numeric, Positive, public
+from ..beams.beam import SLIGHT
+from ..beams.properties import chosen, larger, smaller, symbolic
+from .stress import CrossSections
+
+_ROUNDS, _TINY = 8, 1e-12
+"""Steps of Newton's method for bending about two axes, and how near Euler's load they begin."""
+
+
+@public
+def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Any:
+    """The stress at which a column of a slenderness, effective length over radius of gyration, fails: Euler's or Johnson's [Pa]."""
+    with np.errstate(divide="ignore"):
+        return _critical(np.pi**2 * elasticity / np.asarray(slenderness, float) ** 2, strength)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A link as a column, where it bends along y and where it bends along z: effective lengths over its own, slenderness, Euler's
+    load and the critical one [N], and the moment at which its outermost fibre yields [N m].
+    """
+
+    effective: tuple[Any, Any]
+    slenderness: tuple[Any, Any]
+    euler: tuple[Any, Any]
+    critical: tuple[Any, Any]
+    yielding: tuple[Any, Any]
+
+    @classmethod
+    def of(cls, cross: CrossSections, length: Any, effective: tuple[float, float]) -> Column:
+        """A link of a length as a column.
+
+        Raises :class:`.DeclarationError` where its material lacks elasticity or yield strength.
+        """
+        elasticity, strength = cross.beam.material.needs("buckling", "elasticity", "yield_strength")
+        thinnest = cross.thinnest
+
+        def column(k: int) -> tuple[Any, ...]:
+            own, second = effective[k] * length, thinnest.second[k]
+            euler = math.pi**2 * elasticity * second / own**2
+            slenderness = own * (thinnest.area / second) ** 0.5
+            critical, yielding = _critical(euler, strength * thinnest.area), thinnest.modulus[k] * strength
+            numbers = (effective[k], slenderness, euler, critical, yielding)
+            return tuple(number if symbolic(number) else float(number) for number in numbers)
+
+        return cls(*zip(column(0), column(1), strict=True))
+
+    def used(self, compression: Any, moments: Sequence[Any]) -> Any:
+        """How far a column is used by compression and moments, about z and in space about y: one over the factor of safety.
+
+        That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) = 1. Compression of less than
+        1e-6 of the critical load counts as none.
+        """
+        compressed = larger(compression, 0.0)
+        share = compressed / smaller(*self.critical)
+        shares = [compressed / euler for euler in self.euler]
+        bent = [moment / limit for moment, limit in zip(moments, self.yielding, strict=False)]
+        found = larger(*shares)
+        for euler, moment in zip(shares, bent, strict=False):
+            found = larger(found, _alone(share, euler, moment))
+        if len(bent) > 1:
+            # From the left, where it is convex and falls, Newton's method rises to the solution.
+            for _ in range(_ROUNDS):
+                gaps = [larger(found - euler, _TINY * found) for euler in shares]
+                over = share / found + sum(b / gap for b, gap in zip(bent, gaps, strict=True)) - 1.0
+                slope = share / found**2 + sum(b / gap**2 for b, gap in zip(bent, gaps, strict=True))
+                found = found + larger(over / slope, 0.0)
+        return chosen(share, SLIGHT, found, 0.0)
+
+
+def _critical(euler: Any, crushing: Any) -> Any:
+    """The critical load of Euler's load and the one at which all of the cross-section yields."""
+    return chosen(crushing / 2, euler, euler, crushing * (1.0 - crushing / (4.0 * euler)))
+
+
+def _alone(a: Any, c: Any, b: Any) -> Any:
+    """The larger u of a/u + b/(u - c) = 1."""
+    total = a + b + c
+    return (total + larger(total * total - 4.0 * a * c, 0.0) ** 0.5) / 2
