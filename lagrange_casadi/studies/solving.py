@@ -14,6 +14,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import cores, in_words, require
 from ..declare.corners import Corners
+from ..declare.declared import declaration
 from ..declare.ends import BEYOND
 from ..declare.even_points import EvenPoints, points
 from ..declare.giving import Elastic, felt, giving
@@ -41,7 +42,6 @@ from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance
-from ..judge.written import written
 from ..sensitivity.series import series_slopes
 
 _BESIDE, _CHECKED = 8, 2
@@ -221,9 +221,8 @@ def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, wi
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
     """
-    mechanism = graph.scene.mechanism
-    equations = written(mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
-    return certify(solution, equations, _hidden(graph, out, solution.left_open), within)
+    declared = declaration(graph.scene).at(graph.data.values(p))
+    return certify(solution, declared, _hidden(graph, out, solution.left_open), within)
 
 
 def _hidden(graph: SceneGraph, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
