@@ -147,14 +147,15 @@ class EquationGraph(Graphs):
         expression = ca.SX(told.expression if isinstance(told, Row) else told.phi)
         measured = _entries(mechanism)
         found = [entry for entry in measured if any(ca.depends_on(expression, symbol) for symbol in entry[3:])]
-        places, rates = (ca.vertcat(ca.SX(0, 1), *(entry[k] for entry in found)) for k in (3, 4))
+        places = ca.vertcat(ca.SX(0, 1), *(place for *_, place, _ in found))
+        rates = ca.vertcat(ca.SX(0, 1), *(rate for *_, rate in found))
         accelerations, t, p = ca.SX.sym("accelerations", len(found)), mechanism.time, mechanism.symbols
         moving, speed = ca.vertcat(places, rates, t), ca.vertcat(rates, accelerations, 1)
         changes = [expression]
         for _ in range(0 if row else 2):
             changes.append(ca.jtimes(changes[-1], moving, speed))
         slopes = ca.densify(ca.jacobian(expression, rates if row else places).T)
-        points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*entry[2]) for entry in found))
+        points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*point) for _, _, point, _, _ in found))
         transmission = None if isinstance(told, Row) else told.transmission
         meshes = transmission.meshes if transmission else ()
         wrenches = ca.horzcat(ca.SX(3 * _WRENCHES + 3, 0), *(_numbers(transmission, mesh) for mesh in meshes if transmission))
@@ -291,7 +292,7 @@ def declaration(scene: Scene) -> Declaration:
     """What a scene declares, for its certificate."""
     mechanism = scene.mechanism
     weights = None if scene.weights is None else tuple(scene.weights)
-    told = (*mechanism.constraints.values(), *mechanism.rows.values())
+    told: tuple[Constraint | Row, ...] = (*mechanism.constraints.values(), *mechanism.rows.values())
     template = template_of(mechanism, tuple(scene.laws), weights)
     return Declaration(template, tuple(EquationGraph.of(mechanism, one) for one in told))
 
@@ -328,7 +329,13 @@ def _numbers(transmission: Transmission, mesh: Mesh) -> Any:
 def _triple(vector: Any) -> Triple:
     """A vector of two or three numbers in space."""
     x, y, *z = vector
-    return x, y, *(z or (0.0,))  # type: ignore[return-value]
+    return x, y, *(z or (0.0,))
+
+
+def _rows(matrix: Any) -> Rows:
+    """Three rows of three numbers."""
+    x, y, z = map(tuple, matrix)
+    return x, y, z
 
 
 def _place(told: Description) -> Place:
@@ -339,7 +346,7 @@ def _body(told: Description, space: bool) -> BodyNumbers:
     length, mass = told["length"], told["mass"]
     if "centre" in told:
         centre = told["centre"]
-        inertia = tuple(map(tuple, centre["inertia"])) if space else (_ORIGIN, _ORIGIN, (0.0, 0.0, centre["inertia"]))
+        inertia = _rows(centre["inertia"]) if space else (_ORIGIN, _ORIGIN, (0.0, 0.0, centre["inertia"]))
         return BodyNumbers(length, mass, (centre["x"], centre["y"], centre.get("z", 0.0)), inertia)
     if length is None or mass == 0.0:
         return BodyNumbers(length, mass)
@@ -353,14 +360,13 @@ def _body(told: Description, space: bool) -> BodyNumbers:
 
 def _joint(_: str, told: Description) -> JointNumbers:
     axes = zip(told["coordinates"].items(), told["axes"], strict=True)
-    triad, turned = (tuple(map(tuple, told[word])) for word in ("triad", "turned"))
     return JointNumbers(
         kind=told["kind"],
         parent=_place(told["parent"]),
         child=_place(told["child"]),
         axes=tuple(AxisNumbers(name, kind, tuple(direction)) for (name, kind), direction in axes),
-        triad=triad,
-        turned=turned,
+        triad=_rows(told["triad"]),
+        turned=_rows(told["turned"]),
         pitch=told["pitch"],
     )
 

@@ -6,7 +6,7 @@ one of several axes a couple at right angles to the other axes. Multipliers act 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,53 +14,59 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import Equation
+from ..declare.declared import AxisNumbers, Equation
+from .closure import Gaps
 from .digits import Digits
-from .placing import Moving, Placed
+from .placing import Motion, Placed
 from .touching import actions, sense
 from .unplaced import stacked
-from .vectors import NIL, Axes, Scalar, Vector
+from .vectors import NIL, Axes, Scalar, Vector, less, product, total
 
 
 @dataclass(frozen=True, eq=False)
 class Action:
-    """A force and a couple on a body at a place, in ground axes, and whether they do work."""
+    """A force and a couple on a body at a place, in ground axes; and the opposite there ``against`` another body, where given.
+
+    ``works`` says whether they do work.
+    """
 
     body: str
     at: Vector
     force: Vector
     couple: Vector
+    against: str = "ground"
     works: bool = True
+
+    @property
+    def moving(self) -> Iterator[tuple[str, bool]]:
+        """The bodies but for the ground, and whether they bear the opposite."""
+        return ((body, opposite) for body, opposite in ((self.body, False), (self.against, True)) if body != "ground")
 
     @cached_property
     def sizes(self) -> tuple[Scalar, Scalar]:
-        """The sizes of both."""
+        """The sizes of force and couple."""
         return self.force.size, self.couple.size
 
 
 @dataclass(eq=False)
 class _Sums:
-    """Forces on a body and their moments about its centre, added up."""
+    """What acts, added up: forces on each body and their moments about its centre, and the power of all.
 
-    force: Vector = NIL
-    moment: Vector = NIL
+    Beside it sizes, none against another: ``largest`` of one action, ``pushes`` and ``twists`` of all, and ``flow`` of powers.
+    """
 
-
-@dataclass(eq=False)
-class _Sizes:
-    """How large forces, couples, and powers are, none against another: the largest of a body, and all added up."""
-
+    force: dict[str, Vector] = field(default_factory=dict)
+    moment: dict[str, Vector] = field(default_factory=dict)
+    power: Scalar = 0.0
     largest: Scalar = 0.0
     pushes: Scalar = 0.0
     twists: Scalar = 0.0
-    power: Scalar = 0.0
     flow: Scalar = 0.0
-    bodies: dict[str, _Sums] = field(default_factory=dict)
 
     def bear(self, push: Scalar, twist: Scalar, size: float) -> None:
         """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
-        self.largest = np.maximum(self.largest, push + twist / size)
-        self.pushes, self.twists = self.pushes + push, self.twists + twist
+        self.largest = np.maximum(self.largest, total(push, twist / size))
+        self.pushes, self.twists = total(self.pushes, push), total(self.twists, twist)
 
 
 def forces_reported(placed: Placed) -> bool:
@@ -76,56 +82,52 @@ def forces_reported(placed: Placed) -> bool:
     return all(output in outputs and np.isfinite(outputs[output]).all() for output in needed)
 
 
-def balance(placed: Placed, digits: Digits) -> dict[str, tuple[Array, float]]:
+def balance(placed: Placed, digits: Digits) -> dict[str, list[Gaps]]:
     """The residuals of forces, each with what it is to be compared with."""
     acting = list(_acting(placed))
-    sizes = _sums(placed, acting)
-    worst, power = np.zeros_like(placed.reported.t), sizes.power
+    centres = {name: placed.bodies[name].point(Vector(*body.centre)) for name, body in placed.declared.bodies.items()}
+    sums = _sums(placed, acting, centres)
+    worst, power = np.zeros_like(placed.reported.t), sums.power
     gravity, size = Vector(*placed.declared.gravity), placed.declared.size
     for name, body in placed.declared.bodies.items():
-        motion, sums = placed.bodies[name], sizes.bodies.get(name, _Sums())
-        centre, inertia = Vector(*body.centre), Axes.of(body.inertia)
-        _, speed, change = motion.point(centre)
+        motion, (_, speed, change), inertia = placed.bodies[name], centres[name], Axes.of(body.inertia)
         inertial = body.mass * (change - gravity)
         spin = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.rate)))
         gains = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.acceleration)))
-        turning = gains + motion.rate.cross(spin)
-        weight = _weight(placed, name, centre.size)
-        sizes.bear(weight, gains.size + motion.rate.size * spin.size, size)
-        worst = np.maximum(worst, (sums.force - inertial).size)
+        turning, rate = gains + motion.rate.cross(spin), motion.sizes[2]
+        weight = _weight(placed, name, Vector(*body.centre).size)
+        sums.bear(weight, gains.size + rate * spin.size, size)
+        worst = np.maximum(worst, (sums.force.get(name, NIL) - inertial).size)
         if placed.declared.oriented(name):
-            worst = np.maximum(worst, (sums.moment - turning).size / size)
+            worst = np.maximum(worst, (sums.moment.get(name, NIL) - turning).size / size)
         power = power - speed.dot(inertial) - motion.rate.dot(turning)
-        sizes.flow = sizes.flow + speed.size * weight + motion.rate.size * turning.size
+        sums.flow = sums.flow + speed.size * weight + rate * turning.size
     worst = np.maximum(worst, _unlike(placed))
     turned, fastest, _ = placed.rates
     # Reported digits leave open places, which give arms, and the joints' rates, of which the rates of bodies are sums.
-    largest = sizes.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
-    flow = sizes.flow + digits.least * fastest + digits.coarseness * (sizes.pushes * fastest + sizes.twists * turned)
+    largest = sums.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
+    flow = sums.flow + digits.least * fastest + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
     found = {
-        "balance": (worst, max(float(np.max(largest)), digits.least)),
-        "power": (np.abs(power), float(np.max(flow))),
+        "balance": [(worst, max(float(np.max(largest)), digits.least))],
+        "power": [(np.abs(power), float(np.max(flow)))],
     }
-    return found | ({"ends": _ends(placed, acting, digits)} if placed.reported.laws else {})
+    return found | ({"ends": [_ends(placed, acting, digits)]} if placed.reported.laws else {})
 
 
 def _acting(placed: Placed) -> Iterator[Action]:
     """Every force of joints, drives, loads and equations."""
     reported, declared = placed.reported, placed.declared
     for name, joint in declared.joints.items():
-        child = placed.ends(name)[1]
-        at = child.point(Vector(*joint.child.at))[0]
-        reaction = Action(joint.child.body, at, reported.force("reaction", name), reported.force("reaction", name, "m"), False)
-        yield from (reaction, reaction.back(joint.parent.body))
+        at, child, parent = placed.pins[name][0], joint.child.body, joint.parent.body
+        yield Action(child, at, reported.force("reaction", name), reported.force("reaction", name, "m"), parent, works=False)
         # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
-        force, couple = NIL, NIL
+        force, couple, driven = NIL, NIL, False
         for axis in joint.axes:
             if (effort := reported.outputs.get(Output("effort", axis.coordinate))) is not None:
-                along = _along(placed, name, axis.coordinate, effort)
+                along, driven = _along(placed, name, axis, effort), True
                 force, couple = force + along[0], couple + along[1]
-        if force is not NIL or couple is not NIL:
-            effort_of_all = Action(joint.child.body, at, force, couple)
-            yield from (effort_of_all, effort_of_all.back(joint.parent.body))
+        if driven:
+            yield Action(child, at, force, couple, parent)
     for name, load in declared.loads.items():
         force, couple = reported.force("load", name), reported.force("load", name, "m")
         for point, sign in zip(load.points, (1.0, -1.0), strict=False):
@@ -137,15 +139,14 @@ def _acting(placed: Placed) -> Iterator[Action]:
         yield from _held(placed, equation)
 
 
-def _along(placed: Placed, joint: str, coordinate: str, effort: Array) -> tuple[Vector, Vector]:
-    """The force and the couple of an effort along a coordinate, on the joint's child at its point."""
-    near, numbers = placed.ends(joint)[0], placed.declared.joints[joint]
-    axis = next(axis for axis in numbers.axes if axis.coordinate == coordinate)
+def _along(placed: Placed, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
+    """The force and the couple of an effort along an axis of a joint, on its child at the joint's point."""
+    near = placed.ends(joint)[0]
     if axis.kind == "slide":
         return effort * near.axes.turn(Vector(*axis.direction)), NIL
     about = placed.relatives[joint].about
     turns = [near.axes.turn(direction) for direction in about.values()]
-    return NIL, effort * _reciprocal(turns, [*about].index(coordinate))
+    return NIL, effort * _reciprocal(turns, [*about].index(axis.coordinate))
 
 
 def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
@@ -169,13 +170,12 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
         return
     places, moving, _ = stacked(placed, equation)
     forces = multiplier * equation.slopes_at(places, moving, reported.t)
-    joints = {axis.coordinate: name for name, joint in declared.joints.items() for axis in joint.axes}
+    axes = {axis.coordinate: (name, axis) for name, joint in declared.joints.items() for axis in joint.axes}
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
-            joint = declared.joints[joints[entry.part]]
-            at = placed.bodies[joint.child.body].point(Vector(*joint.child.at))[0]
-            action = Action(joint.child.body, at, *_along(placed, joints[entry.part], entry.part, force))
-            yield from (action, action.back(joint.parent.body))
+            name, axis = axes[entry.part]
+            joint = declared.joints[name]
+            yield Action(joint.child.body, placed.pins[name][0], *_along(placed, name, axis, force), joint.parent.body)
         elif entry.kind == "direction":
             yield Action(entry.part, placed.bodies[entry.part].at, NIL, Vector(0.0, 0.0, force))
         else:
@@ -183,30 +183,31 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
             yield Action(entry.part, placed.bodies[entry.part].point(Vector(*entry.point))[0], push, NIL)
 
 
-def _sums(placed: Placed, acting: Sequence[Action]) -> _Sizes:
+def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion]) -> _Sums:
     """What acts on the bodies, added up."""
-    found, size = _Sizes(), placed.declared.size
-    middles = {name: placed.bodies[name].point(Vector(*body.centre))[0] for name, body in placed.declared.bodies.items()}
+    found, size = _Sums(), placed.declared.size
     for act in acting:
-        if act.body == "ground":
-            continue
-        motion, sums = placed.bodies[act.body], found.bodies.setdefault(act.body, _Sums())
-        sums.force = sums.force + act.force
-        sums.moment = sums.moment + (act.at - middles[act.body]).cross(act.force) + act.couple
         push, twist = act.sizes
-        found.bear(push, twist, size)
-        if act.works:
-            speed = motion.speed_at(act.at)
-            found.power = found.power + speed.dot(act.force) + motion.rate.dot(act.couple)
-            found.flow = found.flow + speed.size * push + motion.rate.size * twist
+        for body, opposite in act.moving:
+            motion = placed.bodies[body]
+            force, moment = found.force.get(body, NIL), found.moment.get(body, NIL)
+            turning = (act.at - centres[body][0]).cross(act.force) + act.couple
+            found.force[body] = force - act.force if opposite else force + act.force
+            found.moment[body] = moment - turning if opposite else moment + turning
+            found.bear(push, twist, size)
+            if act.works:
+                speed = motion.speed_at(act.at)
+                power = total(speed.dot(act.force), motion.rate.dot(act.couple))
+                found.power = less(found.power, power) if opposite else total(found.power, power)
+                found.flow = total(found.flow, total(product(speed.size, push), product(motion.sizes[2], twist)))
     return found
 
 
 def _weight(placed: Placed, body: str, reach: float) -> Scalar:
     """The inertia of a body and its weight [N], none against another: of its origin, and of what turns about it."""
-    motion = placed.bodies[body]
-    turning = motion.rate.size**2 + motion.acceleration.size
-    return placed.declared.bodies[body].mass * (motion.change.size + turning * reach + Vector(*placed.declared.gravity).size)
+    _, change, rate, acceleration = placed.bodies[body].sizes
+    weight = Vector(*placed.declared.gravity).size
+    return placed.declared.bodies[body].mass * (change + (rate**2 + acceleration) * reach + weight)
 
 
 def _unlike(placed: Placed) -> Scalar:
@@ -221,7 +222,7 @@ def _unlike(placed: Placed) -> Scalar:
     return worst
 
 
-def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> tuple[Array, float]:
+def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> Gaps:
     """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link.
 
     And beside what the rounding of places leaves open, which turns short links most.
@@ -230,24 +231,27 @@ def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> tuple[Arr
     worst, scale, blurred = np.zeros_like(reported.t), digits.least, digits.coarseness * declared.extent
     for link, law in reported.laws.items():
         inside, twisted = reported.inside(link)
-        own = [act for act in acting if act.body == link]
-        force, moment = _before(placed.bodies[link], own, law.slack * law.length)
-        flow = _weight(placed, link, law.length)
-        for act in own:
-            push, twist = act.sizes
-            flow = np.maximum(flow, push + twist / declared.size)
+        force, moment, flow = _before(placed, link, acting, law.slack * law.length)
+        flow = np.maximum(flow, _weight(placed, link, law.length))
         worst = np.maximum(worst, (force + inside).size / (1.0 + blurred / law.length))
         worst = np.maximum(worst, (moment + twisted).size / (declared.size + blurred))
         scale = max(scale, float(np.max(flow)))
     return worst, scale
 
 
-def _before(motion: Moving, acting: Sequence[Action], edge: float) -> tuple[Vector, Vector]:
-    """The force in a link's axes, and the moment about its base, of all that acts at its base or before it."""
-    force, moment = NIL, NIL
+def _before(placed: Placed, link: str, acting: Sequence[Action], edge: float) -> tuple[Vector, Vector, Scalar]:
+    """The force and the moment about a link's base, in its axes, of all that acts at its base or before it; and the largest."""
+    motion, force, moment, largest = placed.bodies[link], NIL, NIL, 0.0
     for act in acting:
-        arm, push = motion.under(act.at), motion.axes.resolve(act.force)
-        here = np.where(arm.x <= edge, 1.0, 0.0)
-        force = force + here * push
-        moment = moment + here * (arm.cross(push) + motion.axes.resolve(act.couple))
-    return force, moment
+        for body, opposite in act.moving:
+            if body != link:
+                continue
+            push, twist = act.sizes
+            largest = np.maximum(largest, total(push, twist / placed.declared.size))
+            arm = act.at - motion.at
+            there = motion.axes.x.dot(arm)
+            if not np.any(there <= edge):
+                continue
+            here = np.where(there <= edge, -1.0 if opposite else 1.0, 0.0)
+            force, moment = force + here * act.force, moment + here * (arm.cross(act.force) + act.couple)
+    return motion.axes.resolve(force), motion.axes.resolve(moment), largest

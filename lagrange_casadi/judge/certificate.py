@@ -20,7 +20,7 @@ from ..declare.declared import Declared
 from ..instants.section_law import SectionLaw
 from ..instants.solution import Solution
 from .balance import balance, forces_reported
-from .closure import closure
+from .closure import Gaps, closure
 from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE
 from .digits import Digits
@@ -64,14 +64,19 @@ def certify(
     whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, left_open=())
     reported = _reported(whole, phases or {})
     digits = Digits.of(solution)
-    found: dict[str, list[Array]] = {}
-    scales: dict[str, float] = {}
+    found: dict[tuple[str, int], list[Array]] = {}
+    scales: dict[tuple[str, int], float] = {}
     for start in range(0, whole.t.size, _BLOCK):
         block = reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
-        for name, (gaps, scale) in _residuals(declared, block, digits).items():
-            found.setdefault(name, []).append(gaps)
-            scales[name] = max(scales.get(name, 0.0), scale)
-    return {name: np.concatenate(gaps) / (scales[name] or 1.0) for name, gaps in found.items()}
+        for name, parts in _residuals(declared, block, digits).items():
+            for part, (gaps, scale) in enumerate(parts):
+                found.setdefault((name, part), []).append(gaps)
+                scales[name, part] = max(scales.get((name, part), 0.0), scale)
+    residuals: dict[str, Array] = {}
+    for (name, part), blocks in found.items():
+        gaps = np.concatenate(blocks) / (scales[name, part] or 1.0)
+        residuals[name] = np.maximum(residuals.get(name, gaps), gaps)
+    return residuals
 
 
 def tolerance(solution: Solution) -> float:
@@ -115,8 +120,8 @@ def _law_at_base(solution: Solution, link: str) -> SectionLaw:
     return replace(law, slack=max(_EDGE, law.slack))
 
 
-def _residuals(declared: Declared, reported: Reported, digits: Digits) -> dict[str, tuple[Array, float]]:
-    """Each residual, and the largest of what it is to be compared with."""
+def _residuals(declared: Declared, reported: Reported, digits: Digits) -> dict[str, list[Gaps]]:
+    """The gaps of each residual, each with the largest of what it is to be compared with."""
     if any(Output("motion", name) not in reported.outputs for name in {*declared.kinds} - reported.unmeasured):
         return {}
     if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
@@ -124,7 +129,7 @@ def _residuals(declared: Declared, reported: Reported, digits: Digits) -> dict[s
     placed = place_all(place(declared, reported.without_locked(declared)))
     if len(placed.bodies) < len(declared.bodies) + 1:
         return {}
-    found = {"closure": (closure(placed, digits), declared.size)}
+    found = {"closure": closure(placed, digits)}
     if (rubbed := law_gaps(placed)) is not None:
-        found["friction"] = rubbed, 1.0
+        found["friction"] = [(rubbed, 1.0)]
     return found | (balance(placed, digits) if forces_reported(placed) else {})

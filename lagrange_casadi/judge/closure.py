@@ -15,29 +15,37 @@ from .touching import idle
 from .unplaced import gaps_of, stacked
 from .vectors import Scalar, Vector, most
 
+Gaps = tuple[Array, float]
+"""Gaps (t,), and what they are to be compared with."""
 
-def closure(placed: Placed, digits: Digits) -> Array:
-    """The largest gap of all (t,); angles times the length of all links, and so equations, over their slopes."""
+
+def closure(placed: Placed, digits: Digits) -> list[Gaps]:
+    """The largest gap of places and angles, beside the length of all links; and those of rates, beside the largest there are."""
     worst = np.zeros_like(placed.reported.t)
     for gaps in (_of_joints, _of_angles, _of_poses, _of_equations):
         for gap in gaps(placed, digits):
             worst = np.maximum(worst, gap)
-    return worst
+    return [(worst, placed.declared.size), *_of_rates(placed)]
 
 
 def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far a joint's child is from where, and from how, its motion puts it; and so of rates, over the largest that there are."""
-    size = placed.declared.size
-    _, fastest, changes = placed.rates
-    speed, change = (float(np.max(largest)) for largest in (fastest, changes))
-    scales = [size / scale if scale > 0.0 else 0.0 for scale in (speed, speed / size, change, change / size)]
+    """How far a joint's child is from where, and from how, the joint's reported motion puts it."""
     for name, joint in placed.declared.joints.items():
         (near, far), motion = placed.ends(name), placed.relatives[name]
-        yield (near.under(placed.pins[name][0]) - Vector(*joint.parent.at) - motion.slide[0]).size
+        there = near.at + near.axes.turn(Vector(*joint.parent.at) + motion.slide[0])
+        yield (placed.pins[name][0] - there).size
         if motion.whole:
-            yield near.axes.under(far.axes).off(motion.turned) * size
-        for gap, scale in zip(gaps_of(placed, name), scales, strict=True):
-            yield gap.size * scale
+            yield near.axes.under(far.axes).off(motion.turned) * placed.declared.size
+
+
+def _of_rates(placed: Placed) -> list[Gaps]:
+    """What joints leave of velocities, angular velocities, and the changes of both."""
+    size = placed.declared.size
+    _, fastest, changes = placed.rates
+    gaps = [gaps_of(placed, name, placed.pins[name]) for name in placed.declared.joints]
+    largest = (fastest, fastest / size, changes, changes / size)
+    nothing = np.zeros_like(placed.reported.t)
+    return [(nothing + most(each[k].size for each in gaps), float(np.max(one))) for k, one in enumerate(largest)]
 
 
 def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
@@ -89,4 +97,4 @@ def _missed(placed: Placed, equation: Equation) -> Array:
     sizes = np.reshape(units, (-1, 1)) + np.abs(moving if equation.row else places)
     scale = np.sum(np.abs(equation.slopes_at(places, moving, t)) * sizes, axis=0)
     missed = np.abs(equation.at(places, moving, changes, t)[0])
-    return np.divide(missed, scale, out=missed.copy(), where=scale > 0.0)
+    return np.asarray(np.divide(missed, scale, out=missed.copy(), where=scale > 0.0))

@@ -99,11 +99,15 @@ class Placed:
         numbers = self.declared.joints[joint]
         return self.bodies[numbers.parent.body], self.bodies[numbers.child.body]
 
+    def pin(self, joint: str) -> Motion:
+        """How the point of a joint on its child moves."""
+        child = self.declared.joints[joint].child
+        return self.bodies[child.body].point(_vector(child.at))
+
     @cached_property
     def pins(self) -> Mapping[str, Motion]:
-        """How the points of joints on their children move."""
-        joints = self.declared.joints.items()
-        return {name: self.bodies[joint.child.body].point(_vector(joint.child.at)) for name, joint in joints}
+        """How the points of all joints on their children move."""
+        return {name: self.pin(name) for name in self.declared.joints}
 
     @cached_property
     def rates(self) -> tuple[Scalar, Scalar, Scalar]:

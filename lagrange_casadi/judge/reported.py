@@ -78,8 +78,9 @@ class Reported:
     def axes(self, body: str) -> Axes:
         """The axes of a body; those of the ground where it has none."""
         if self.space:
-            rows = [[self.outputs.get(Output("pose", body, axis + x)) for x in "xyz"] for axis in "xyz"]
-            return GROUND if rows[0][0] is None else Axes.of(rows)
+            if Output("pose", body, "xx") not in self.outputs:
+                return GROUND
+            return Axes(*(Vector(*(self.outputs[Output("pose", body, axis + x)] for x in "xyz")) for axis in "xyz"))
         angle = Output("pose", body, "angle")
         return Axes.about(GROUND.z, self.phase(angle)) if angle in self.outputs else GROUND
 

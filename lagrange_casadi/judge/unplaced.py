@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..declare.declared import Equation
-from .placing import Moving, Placed
+from .placing import Motion, Moving, Placed
 from .reported import Reported
 from .vectors import NIL, Scalar, Vector
 
@@ -29,13 +29,13 @@ def place_all(placed: Placed) -> Placed:
     return placed
 
 
-def gaps_of(placed: Placed, joint: str) -> tuple[Vector, Vector, Vector, Vector]:
+def gaps_of(placed: Placed, joint: str, pin: Motion) -> tuple[Vector, Vector, Vector, Vector]:
     """What a joint leaves of velocities and angular velocities, and of both their changes: what moves otherwise than is reported.
 
-    All are in ground axes; those of turning are nil where it is not known how the joint turns.
+    All are in ground axes; those of turning are nil where it is not known how the joint turns. ``pin`` is how its point moves.
     """
     (near, far), motion = placed.ends(joint), placed.relatives[joint]
-    place, moves, changes = placed.pins[joint]
+    place, moves, changes = pin
     speed = moves - near.speed_at(place)
     change = changes - near.change_at(place) - 2.0 * near.rate.cross(speed) - near.axes.turn(motion.slide[2])
     about = NIL, NIL
@@ -133,7 +133,7 @@ class _Unplaced:
         for name, joint in placed.declared.joints.items():
             near, far = joint.parent.body, joint.child.body
             if (near in trial or far in trial) and near in placed.bodies and far in placed.bodies:
-                for gap in gaps_of(placed, name)[2 * order - 2 : 2 * order]:
+                for gap in gaps_of(placed, name, placed.pin(name))[2 * order - 2 : 2 * order]:
                     found += gap.components
         for name in self.names:
             if name in self.reported.bars:

@@ -51,15 +51,23 @@ class Vector:
     z: Scalar
 
     def __add__(self, other: Vector) -> Vector:
+        if self is NIL:
+            return other
+        if other is NIL:
+            return self
         return Vector(total(self.x, other.x), total(self.y, other.y), total(self.z, other.z))
 
     def __sub__(self, other: Vector) -> Vector:
+        if other is NIL:
+            return self
         return Vector(less(self.x, other.x), less(self.y, other.y), less(self.z, other.z))
 
     def __neg__(self) -> Vector:
         return Vector(less(0.0, self.x), less(0.0, self.y), less(0.0, self.z))
 
     def __rmul__(self, factor: Scalar) -> Vector:
+        if self is NIL:
+            return NIL
         return Vector(product(factor, self.x), product(factor, self.y), product(factor, self.z))
 
     def dot(self, other: Vector) -> Scalar:
@@ -68,6 +76,8 @@ class Vector:
 
     def cross(self, other: Vector) -> Vector:
         """The vector product."""
+        if self is NIL or other is NIL:
+            return NIL
         x, y, z, u, v, w = self.x, self.y, self.z, other.x, other.y, other.z
         return Vector(
             less(product(y, w), product(z, v)),
@@ -109,29 +119,45 @@ class Axes:
 
         def turned(direction: Vector) -> Vector:
             along = axis.dot(direction) * axis
-            return along + c * (direction - along) + s * axis.cross(direction)
+            found: Vector = along + c * (direction - along) + s * axis.cross(direction)
+            return found
 
         return cls(turned(GROUND.x), turned(GROUND.y), turned(GROUND.z))
 
     @classmethod
     def of(cls, rows: Any) -> Axes:
         """Three directions, of three numbers each."""
-        return cls(*(Vector(*row) for row in rows))
+        x, y, z = rows
+        return GROUND if rows == _IDENTITY else cls(Vector(*x), Vector(*y), Vector(*z))
 
     def turn(self, vector: Vector) -> Vector:
         """A vector that is given on these axes."""
-        return vector.x * self.x + vector.y * self.y + vector.z * self.z
+        if self is GROUND or vector is NIL:
+            return vector
+        found = NIL
+        for component, axis in zip(vector.components, (self.x, self.y, self.z), strict=True):
+            if not (type(component) is float and component == 0.0):
+                found = found + component * axis
+        return found
 
     def resolve(self, vector: Vector) -> Vector:
         """A vector on these axes."""
+        if self is GROUND or vector is NIL:
+            return vector
         return Vector(self.x.dot(vector), self.y.dot(vector), self.z.dot(vector))
 
     def carry(self, other: Axes) -> Axes:
         """Other axes that are given on these."""
+        if self is GROUND:
+            return other
+        if other is GROUND:
+            return self
         return Axes(self.turn(other.x), self.turn(other.y), self.turn(other.z))
 
     def under(self, other: Axes) -> Axes:
         """Other axes on these."""
+        if self is GROUND:
+            return other
         return Axes(self.resolve(other.x), self.resolve(other.y), self.resolve(other.z))
 
     @property
@@ -146,7 +172,9 @@ class Axes:
         return most(component for gap in gaps for component in gap.components)
 
 
-GROUND = Axes(Vector(1.0, 0.0, 0.0), Vector(0.0, 1.0, 0.0), Vector(0.0, 0.0, 1.0))
+_IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+GROUND = Axes(*(Vector(*row) for row in _IDENTITY))
 """Axes that are not turned."""
 
 
