@@ -8,13 +8,13 @@ import h5py
 import numpy as np
 import pytest
 from conftest import CASES
+from declarations import declaration
 from mechanisms import far, ladder, parallelogram, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, save
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
 from lagrange_casadi.instants import refusal
@@ -22,7 +22,6 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.solution import Solution
 from lagrange_casadi.judge.certificate import LOOSE, certify
-from lagrange_casadi.judge.written import written
 from lagrange_casadi.store.runs import check, load
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -109,9 +108,9 @@ def test_a_wrong_multiplier_is_seen():
     scene = geared()
     solution = evaluate(scene)
     wrong = {Output("multiplier", "mesh"): solution.multiplier("mesh") * 1.001}
-    equations = written(Stated.of(scene.mechanism), np.zeros(0))
-    assert certify(solution, equations)["balance"].max() < 1e-14
-    assert certify(solution, equations, wrong)["balance"].max() > 1e-5
+    declared = declaration(scene, {})
+    assert certify(solution, declared)["balance"].max() < 1e-14
+    assert certify(solution, declared, wrong)["balance"].max() > 1e-5
 
 
 def broken():

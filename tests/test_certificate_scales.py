@@ -6,15 +6,14 @@ import casadi as ca
 import kinds
 import numpy as np
 import pytest
+from declarations import declaration
 from extremes import slider_crank
 from mechanisms import far
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.judge.certificate import certify
-from lagrange_casadi.judge.written import written
 
 MILLIONTH = 1.0 + 1e-6
 
@@ -97,9 +96,7 @@ def test_far_from_the_origin_right_results_pass():
 def wrong(scene, solution, name):
     """The largest residuals of a solution with one output that is off by a millionth."""
     values = solution.series[name] * MILLIONTH
-    residuals = certify(
-        solution, written(Stated.of(scene.mechanism), np.array([*scene.mechanism.values().values()])), {Output.of(name): values}
-    )
+    residuals = certify(solution, declaration(scene, scene.mechanism.values(None)), {Output.of(name): values})
     return {residual: float(gaps.max()) for residual, gaps in residuals.items()}
 
 

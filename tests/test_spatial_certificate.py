@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from declarations import declaration
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.declare.stated import Stated
 from lagrange_casadi.judge.certificate import certify
-from lagrange_casadi.judge.spatial_placing import cross
-from lagrange_casadi.judge.written import written
+from lagrange_casadi.judge.vectors import GROUND, NIL, Axes, Vector
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -116,7 +115,7 @@ def test_equations_springs_and_point_masses_are_balanced(name):
     assert set(residuals(solution.certificate)) == WHOLE
     assert max(residuals(solution.certificate).values()) < 1e-13
     hidden = {Output.of(name): off(solution.array(name))}
-    assert residuals(certify(solution, written(Stated.of(scene.mechanism), np.zeros(0)), hidden))["balance"] > 1e-5
+    assert residuals(certify(solution, declaration(scene, {}), hidden))["balance"] > 1e-5
 
 
 def hung_on_masses(m):
@@ -212,7 +211,56 @@ def test_many_turns_do_not_blur_what_is_judged():
     assert solution.certified
 
 
-@pytest.mark.parametrize("shapes", [((3,), (3,)), ((7, 3), (3,)), ((3,), (7, 3)), ((7, 3), (7, 3))], ids=str)
-def test_products_of_vectors_are_numpys_to_the_bit(shapes):
-    a, b = (np.random.default_rng(k).normal(size=shape) for k, shape in enumerate(shapes))
-    assert cross(a, b).tobytes() == np.cross(a, b).tobytes()
+def drawn(generator):
+    """A vector each of whose components is zero by structure, one number, or an array; and the same as NumPy has it, (5, 3)."""
+    kinds = (lambda: 0.0, lambda: 1.0, lambda: float(generator.normal()), lambda: generator.normal(size=5))
+    vector = Vector(*(kinds[k]() for k in generator.integers(0, 4, 3)))
+    return vector, whole(vector)
+
+
+def whole(vector):
+    return np.stack([np.broadcast_to(component, 5) for component in vector.components], axis=1)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_vectors_are_those_of_numpy(seed):
+    """Whatever of them is zero by structure."""
+    generator = np.random.default_rng(seed)
+    (a, p), (b, q) = drawn(generator), drawn(generator)
+    near = {"rtol": 1e-14, "atol": 1e-15}
+    np.testing.assert_allclose(whole(a + b), p + q, **near)
+    np.testing.assert_allclose(whole(a - b), p - q, **near)
+    np.testing.assert_allclose(whole(-a), -p, **near)
+    np.testing.assert_allclose(whole(a.cross(b)), np.cross(p, q), **near)
+    np.testing.assert_allclose(np.broadcast_to(a.dot(b), 5), np.sum(p * q, axis=1), **near)
+    np.testing.assert_allclose(np.broadcast_to(a.size, 5), np.linalg.norm(p, axis=1), **near)
+    axis, angle = np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float), generator.normal(size=5)
+    axes = Axes.about(Vector(*axis.tolist()), angle)
+    turned = np.stack([rotation(axis, one) for one in angle])
+    np.testing.assert_allclose(whole(axes.turn(b)), (turned @ q[..., None])[..., 0], **near)
+    np.testing.assert_allclose(whole(axes.resolve(b)), (np.swapaxes(turned, 1, 2) @ q[..., None])[..., 0], **near)
+    np.testing.assert_allclose(whole(axes.carry(axes).x), (turned @ turned)[:, :, 0], **near)
+    np.testing.assert_allclose(whole(axes.inverse.turn(b)), whole(axes.resolve(b)), **near)
+    assert np.max(axes.under(axes).off(GROUND)) < 1e-15
+
+
+def rotation(axis, angle):
+    """The matrix of a turn, as the exponential of its generator, by its series."""
+    x, y, z = axis
+    generator = angle * np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    found, term = np.eye(3), np.eye(3)
+    for k in range(1, 40):
+        term = term @ generator / k
+        found = found + term
+    return found
+
+
+def test_nothing_is_computed_with_what_is_zero_by_structure():
+    """In a plane, z stays the number that it is."""
+    axes = Axes.about(Vector(0.0, 0.0, 1.0), np.ones(3))
+    arm, spin = axes.turn(Vector(0.3, 0.2, 0.0)), np.ones(3) * Vector(0.0, 0.0, 1.0)
+    for vector in (arm, spin.cross(arm), spin.cross(spin.cross(arm)), arm + spin.cross(arm)):
+        assert type(vector.z) is float
+        assert vector.z == 0.0
+    assert type(arm.cross(spin.cross(arm)).x) is float
+    assert NIL.size == 0.0

@@ -389,5 +389,5 @@ def test_the_certificate_knows_what_reported_angles_can_tell():
     solution = evaluate(scene, t=(1000.0, 1000.04, 201))
     assert np.max(solution.certificate["balance"]) < 1e-13
     # From the reported angles alone, as they stand in a file.
-    assert 1e-12 < np.max(certify(solution, ())["balance"]) < solution.tolerance
+    assert 1e-12 < np.max(certify(solution)["balance"]) < solution.tolerance
     assert solution.errors["effort:main"] < 1e-13 * abs(solution.peak("effort:main").value)

@@ -224,11 +224,12 @@ def describe(
     space has its coordinates in sequence, with their kinds; their ``axes`` and how the child's axes are ``turned``, both where all
     coordinates are zero; and its own axes, the ``triad``. Directions are in the parent's axes, a row each.
     """
-    return _template(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(values)
+    return template_of(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(values)
 
 
 @functools.lru_cache(maxsize=32)
-def _template(mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None) -> Template:
+def template_of(mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None) -> Template:
+    """The template of what :func:`describe` gives, made once."""
     return Template.of(mechanism, driven, drives)
 
 

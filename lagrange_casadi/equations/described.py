@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ..base.symbolic import symbolic
-from ..declare.description import Description, Template
+from ..declare.description import Description, Template, template_of
 from ..declare.scene import Scene
 from .tree import span
 
@@ -27,7 +27,7 @@ def template(scene: Scene) -> Template:
     ``unmeasured``.
     """
     mechanism = scene.mechanism
-    found = Template.of(mechanism, scene.laws, scene.weights)
+    found = template_of(mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights))
     if not mechanism.space:
         return found
     tree = span(scene.guided, scene.laws)

@@ -1,6 +1,8 @@
-"""What the digits of a solution leave open, and the sizes beside which its residuals are large or small."""
+"""What the digits of a solution leave open, beside which its residuals are large or small."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,33 +22,26 @@ def blur(solution: Solution) -> float:
     angles = [Output("motion", name) for name, kind in coordinates_of(solution.description).items() if kind == "angle"]
     angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
     reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
-    return rounding(solution) * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
+    return Digits.of(solution).rounding * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
 
 
-def rounding(solution: Solution) -> float:
-    """The largest relative error of one rounding."""
-    return ROUNDING["single" if solution.provenance.precision == "single" else "double"]
+@dataclass(frozen=True)
+class Digits:
+    """What a precision leaves open.
 
+    ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which what underflows is as small as a
+    rounding, and ``coarseness`` what a rounding is of the least residual that fails.
+    """
 
-def size(solution: Solution) -> float:
-    """The length of all links [m]."""
-    return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
+    rounding: float
+    least: float
+    coarseness: float
 
-
-def extent(solution: Solution) -> float:
-    """The size of the mechanism, and how far from the origin it stands: the largest of places."""
-    joints = solution.description["joints"].values()
-    points = [joint[side] for joint in joints for side in ("parent", "child")]
-    points += [point for load in solution.description["loads"].values() for point in load["points"]]
-    return size(solution) + max((abs(p[k]) for p in points if p["body"] == "ground" for k in "xyz" if k in p), default=0.0)
-
-
-def least(solution: Solution) -> float:
-    """The force beside which what underflows is as small as a rounding."""
-    precision: Precision = "single" if solution.provenance.precision == "single" else "double"
-    return float(np.finfo(DTYPES[precision]).tiny) / ROUNDING[precision]
-
-
-def coarseness(solution: Solution) -> float:
-    """What a rounding is of the least that fails."""
-    return ROUNDINGS * rounding(solution) / (LOOSE if solution.provenance.precision == "single" else TOLERANCE)
+    @classmethod
+    def of(cls, solution: Solution) -> Digits:
+        """The digits that a solution was made with."""
+        single = solution.provenance.precision == "single"
+        precision: Precision = "single" if single else "double"
+        rounding = ROUNDING[precision]
+        least = float(np.finfo(DTYPES[precision]).tiny) / rounding
+        return cls(rounding, least, ROUNDINGS * rounding / (LOOSE if single else TOLERANCE))

@@ -41,7 +41,6 @@ from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance
-from ..judge.written import written
 from ..sensitivity.series import series_slopes
 
 _BESIDE, _CHECKED = 8, 2
@@ -222,8 +221,7 @@ def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, wi
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
     """
-    equations = written(graph.data.stated, p)
-    return certify(solution, equations, _hidden(graph, out, solution.left_open), within)
+    return certify(solution, graph.data.declared(p), _hidden(graph, out, solution.left_open), within)
 
 
 def _hidden(graph: SceneGraph, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:

@@ -1,0 +1,100 @@
+"""Gaps of joints, of reported poses and of the users' equations: how far the bodies are from where they are said to be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..base.arrays import Array
+from ..base.quantities import Output
+from ..declare.declared import Equation
+from .digits import ROUNDINGS, Digits
+from .placing import Placed
+from .touching import idle
+from .unplaced import gaps_of, stacked
+from .vectors import Scalar, Vector, most
+
+Gaps = tuple[Array, float]
+"""Gaps (t,), and what they are to be compared with."""
+
+
+def closure(placed: Placed, digits: Digits) -> list[Gaps]:
+    """The largest gap of places and angles, beside the length of all links; and those of rates, beside the largest there are."""
+    worst = np.zeros_like(placed.reported.t)
+    for gaps in (_of_joints, _of_angles, _of_poses, _of_equations):
+        for gap in gaps(placed, digits):
+            worst = np.maximum(worst, gap)
+    return [(worst, placed.declared.size), *_of_rates(placed)]
+
+
+def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+    """How far a joint's child is from where, and from how, the joint's reported motion puts it."""
+    for name, joint in placed.declared.joints.items():
+        (near, far), motion = placed.ends(name), placed.relatives[name]
+        there = near.at + near.axes.turn(Vector(*joint.parent.at) + motion.slide[0])
+        yield (placed.pins[name][0] - there).size
+        if motion.whole:
+            yield near.axes.under(far.axes).off(motion.turned) * placed.declared.size
+
+
+def _of_rates(placed: Placed) -> list[Gaps]:
+    """What joints leave of velocities, angular velocities, and the changes of both."""
+    size = placed.declared.size
+    _, fastest, changes = placed.rates
+    gaps = [gaps_of(placed, name, placed.pins[name]) for name in placed.declared.joints]
+    largest = (fastest, fastest / size, changes, changes / size)
+    nothing = np.zeros_like(placed.reported.t)
+    return [(nothing + most(each[k].size for each in gaps), float(np.max(one))) for k, one in enumerate(largest)]
+
+
+def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+    """How far reported angles are from the phases that are known more closely; one of many turns has so many digits only."""
+    for output, phase in placed.reported.phases.items():
+        if output.part not in placed.reported.unmeasured:
+            angle = placed.reported.outputs[output]
+            known = ROUNDINGS * digits.rounding * np.abs(angle)
+            yield (np.abs(2.0 * np.sin((angle - phase) / 2.0)) - known) * placed.declared.size
+
+
+def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+    """How far bodies are from their reported poses, whose axes must be at right angles.
+
+    The y axis of a bar must be in the plane of the bar and the direction that was declared for it.
+    """
+    declared, reported = placed.declared, placed.reported
+    for name in declared.bodies:
+        body = placed.bodies[name]
+        yield (reported.place(name) - body.at).size
+        if not declared.oriented(name):
+            continue
+        axes = reported.axes(name)
+        if not reported.space:
+            known = ROUNDINGS * digits.rounding * np.abs(reported.outputs[Output("pose", name, "angle")])
+            yield (axes.off(body.axes) - known) * declared.size
+            continue
+        x, y, z = axes.x, axes.y, axes.z
+        yield axes.off(body.axes) * declared.size
+        yield most([*(way.dot(way) - 1.0 for way in (x, y, z)), x.dot(y), y.dot(z), z.dot(x)]) * declared.size
+        yield (x.cross(y) - z).size * declared.size
+        if name in reported.bars and name in declared.beside:
+            beside = Vector(*declared.beside[name])
+            yield np.where(beside.dot(y) >= 0.0, np.abs(beside.dot(z)), 1.0) * declared.size
+
+
+def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
+    """How far the users' equations are from zero, over their slopes; and that transmissions do no work."""
+    for equation in placed.declared.equations:
+        yield _missed(placed, equation) * placed.declared.size
+        for touch in equation.touches:
+            yield idle(touch, placed.bodies, placed.reported.t) * placed.declared.size
+
+
+def _missed(placed: Placed, equation: Equation) -> Array:
+    size, t = placed.declared.size, placed.reported.t
+    places, moving, changes = stacked(placed, equation)
+    units = [1.0 if entry.kind in ("coordinate", "direction") else size for entry in equation.entries]
+    sizes = np.reshape(units, (-1, 1)) + np.abs(moving if equation.row else places)
+    scale = np.sum(np.abs(equation.slopes_at(places, moving, t)) * sizes, axis=0)
+    missed = np.abs(equation.at(places, moving, changes, t)[0])
+    return np.asarray(np.divide(missed, scale, out=missed.copy(), where=scale > 0.0))
