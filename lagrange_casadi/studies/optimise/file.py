@@ -52,6 +52,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
         check_links(file)
+        _read("/", file)
         file.visititems(_read)
         for group in file["points"].values() if "points" in file else [file]:
             found += _contradictions(group)
@@ -65,8 +66,11 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
-    """Read all of a part. Raises what HDF5 does for one that is damaged."""
-    dict(item.attrs)
+    """Read all of a part. Raises what HDF5 does for one that is damaged, and ``ValueError`` for a text that cannot be shown."""
+    for value in item.attrs.values():
+        for text in np.ravel(value):
+            if not isinstance(text, np.generic) or isinstance(text, np.character):
+                shown(str(text))
     if isinstance(item, h5py.Dataset):
         item[()]
 
@@ -93,6 +97,8 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         shown(start.attrs["ending"])
         if start.attrs["ending"] == CONVERGED:
             ends.append(np.delete(came, 1))
+    if not any(_alike(start["end"], [group["parameters"][name][()] for name in names]) for start in group["starts"].values()):
+        yield f"{place}/parameters: are not a design at which a start has ended"
     check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
     check_dataset(optima["starts"], (len(optima["objective"]),))
     best = np.column_stack([optima["objective"], optima["designs"]])

@@ -10,7 +10,8 @@ from ...declare.mechanism import Mechanism
 from ...declare.scene import Wanted
 from ...errors import DeclarationError
 from ...strength.fatigue import strengths
-from ..sweep.strength import WAYS, tires
+from ..sweep.meanings import WAYS
+from ..sweep.strength import tires
 from .terms import Constraint
 
 _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")

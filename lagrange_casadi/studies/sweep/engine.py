@@ -6,12 +6,8 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from ...base.arrays import Array
-from ...instants.refusal import Status
 from ...instants.solution import Provenance
 from ..designs.engine import Outcome
-
-STATUSES: Mapping[int, tuple[str, str]] = {int(status): (status.name.lower(), status.meaning) for status in Status}
-"""A word and a sentence for each status."""
 
 
 class Engine(Protocol):

@@ -12,9 +12,7 @@ from ...base.tables import ANGLE, LENGTH
 from ...declare.even_points import points
 from ...declare.scene import Scene
 from ...declare.times import Timing
-
-OVER, CYCLE = "over", "cycle"
-"""Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""
+from .meanings import CYCLE, OVER
 
 _WORDS = {OVER: "the drive's coordinate", CYCLE: "the cycle"}
 
@@ -26,11 +24,9 @@ def in_words(axes: Sequence[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class InstantAxis:
-    """An axis: its name in the file, unit and meaning, and values (t,); ``joint`` is the drive by which instants are asked for."""
+    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are asked for."""
 
     name: str
-    unit: str
-    long_name: str
     values: Array
     joint: str = ""
     drive_unit: str = ""
@@ -39,12 +35,12 @@ class InstantAxis:
     def of(cls, scene: Scene, timing: Timing) -> InstantAxis:
         """That of a scene's designs."""
         if timing.shared:
-            return cls("t", "s", "time", scene.instants(timing, scene.mechanism.values()).t)
+            return cls("t", scene.instants(timing, scene.mechanism.values()).t)
         joint = timing.joint
         unit = "" if not joint else LENGTH if scene.guided.coordinates[joint][1].kind == "slide" else ANGLE
         if joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))
-            return cls(OVER, unit, f"coordinate of joint '{joint}'", coordinates, joint, unit)
+            return cls(OVER, coordinates, joint, unit)
         places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
-        return cls(CYCLE, "1", "place in the cycle, from the first instant of a design to its last", places, joint, unit)
+        return cls(CYCLE, places, joint, unit)

@@ -18,16 +18,13 @@ import numpy.typing as npt
 from ...arguments import Count, Index, Outputs, public
 from ...base.arrays import Array
 from ...base.seal import Seen, kind_of, verify
-from ...base.tables import ANGLE, LENGTH
-from ...declare.description import coordinates_of
 from ...errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
 from ...methods import method
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
-from .columns import STATUS
 from .contents import KeptColumn, contents
-from .instant_axis import CYCLE, OVER
+from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
 from .plan import READ, SCHEMA
 from .selection import matches
@@ -269,11 +266,15 @@ class Sweep:
                 raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
 
     @cached_property
+    def meanings(self) -> Meanings:
+        """What columns and axes mean, by their names."""
+        axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
+        return Meanings.of(self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else "")
+
+    @cached_property
     def _units(self) -> dict[str, str]:
         """The units of the axes of columns, those of instants first."""
-        joint = self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
-        slides = joint and coordinates_of(self.description)[joint] == "slide"
-        return {"t": "s", OVER: LENGTH if slides else ANGLE, CYCLE: "1", "xi": "1"}
+        return {axis: self.meanings.of_axis(axis)[0] for axis in ("t", OVER, CYCLE, "xi")}
 
     @cached_property
     def _over(self) -> dict[str, str]:
