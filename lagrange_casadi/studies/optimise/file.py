@@ -85,7 +85,7 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
     check_dataset(history, (len(history), len(_COLUMNS) + len(names)))
     if list(history.attrs["columns"]) != [*_COLUMNS, *names]:
         yield f"{place}/history: its columns are not those of a history"
-    ends = []
+    ways, ends = [], []
     for number, start in group["starts"].items():
         rows = history[()][history[:, 0] == int(number)]
         for end in ("start", "end"):
@@ -95,10 +95,12 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)):
             yield f"{start.name}: is not the way that the history tells"
         shown(start.attrs["ending"])
+        ways.append(np.delete(came, 1))
         if start.attrs["ending"] == CONVERGED:
-            ends.append(np.delete(came, 1))
-    if not any(_alike(start["end"], [group["parameters"][name][()] for name in names]) for start in group["starts"].values()):
-        yield f"{place}/parameters: are not a design at which a start has ended"
+            ends.append(ways[-1])
+    chosen = [group.attrs["objective"], *(group["parameters"][name][()] for name in names)]
+    if not any(_alike(chosen, way) for way in ways):
+        yield f"{place}/parameters: are not the design at which a start has ended, with its objective"
     check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
     check_dataset(optima["starts"], (len(optima["objective"]),))
     best = np.column_stack([optima["objective"], optima["designs"]])
