@@ -93,7 +93,7 @@ WRONG = {
     "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
     "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
-    "flags": (lambda s: prepare(s, flags=None), "prepare: flags: expected a text, got None"),
+    "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
     "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
     "default": (
         lambda s: Mechanism("m").parameter("l", "long", "m"),

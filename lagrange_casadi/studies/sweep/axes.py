@@ -105,6 +105,8 @@ class Values:
 
     def __post_init__(self) -> None:
         try:
+            if isinstance(self.values, bytes | set | frozenset):
+                raise TypeError
             told = [typed(value) for value in self.values]
             numbers = tuple(number(value, finite=False) for value, _ in told)
         except (TypeError, ValueError):
