@@ -37,6 +37,9 @@ Index: TypeAlias = Annotated[int, Within(0)]
 
 ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
 
+Elastic: TypeAlias = Annotated[tuple[float, float], "elastic"]
+"""Young's modulus and Poisson's ratio."""
+
 Numeric: TypeAlias = Annotated[Any, "numeric"]
 """A number, or an array of numbers of any shape."""
 
@@ -68,6 +71,14 @@ def public(thing: Thing) -> Thing:
     return thing
 
 
+def fitting(thing: Thing) -> Thing:
+    """A function for users, or a class, that looks at kinds of arguments itself: it refuses calls that do not fit its signature."""
+    if not isinstance(thing, type):
+        return typing.cast(Thing, _looking(thing, kinds=False))
+    type.__setattr__(thing, "__init__", _looking(vars(thing)["__init__"], kinds=False))
+    return thing
+
+
 class _Kind(NamedTuple):
     """A kind of values, in words; ``read`` makes of one what the function takes, and ``_NONE`` of what is of another kind."""
 
@@ -78,13 +89,13 @@ class _Kind(NamedTuple):
 _NONE: Any = object()
 
 
-def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that looks at its arguments before it runs."""
+def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., Any]:
+    """A function that looks at its arguments before it runs: whether they fit, and at their kinds."""
 
     @functools.cache
     def asked() -> tuple[inspect.Signature, dict[str, _Kind]]:  # a module's names are not all there when it is read
         signature = inspect.signature(function)
-        return signature, _kinds(function, signature)
+        return signature, _kinds(function, signature) if kinds else {}
 
     @functools.wraps(function)
     def called(*given: Any, **named: Any) -> Any:
@@ -117,9 +128,9 @@ def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _called(function: Callable[..., Any]) -> str:
-    """A function as users call it; of a class what makes an instance."""
+    """A function as users call it; a class or an instance that is called bears the name of the class."""
     owner, _, name = function.__qualname__.rpartition(".")
-    return owner if name == "__init__" else name
+    return owner if name.startswith("__") else name
 
 
 def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
@@ -250,6 +261,12 @@ def _array(value: Any) -> Any:
     return _NONE
 
 
+def _pair(value: Any) -> Any:
+    """Two numbers."""
+    found = _array(value)
+    return tuple(found.tolist()) if found is not _NONE and found.shape == (2,) else _NONE
+
+
 def _wholes(value: Any) -> Any:
     """A value as an array of whole numbers."""
     found = _array(value)
@@ -307,6 +324,7 @@ _ARRAYS = {
     np.dtype[np.int64]: _Kind("an array of whole numbers", _wholes),
 }
 _NAMED = {
+    "elastic": _Kind("Young's modulus [Pa] and Poisson's ratio", _pair),
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
     # What is none is told by who knows which outputs there are.

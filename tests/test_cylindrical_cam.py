@@ -285,4 +285,4 @@ def test_a_groove_that_the_roller_would_cut_is_refused_by_name():
     with pytest.raises(DeclarationError, match="cam 'cam': width must be positive, got 0 m"):
         sliding(lift=law(0.05), roller=0.01, width=0.0)
     with pytest.raises(DeclarationError, match=r"cam 'cam': elastic must be .*, got \(0.0, 0.3\)"):
-        sliding(lift=law(0.05), roller=0.01, width=0.01, elastic=(0.0, 0.3))
+        sliding(lift=law(0.05), elastic=(0.0, 0.3))

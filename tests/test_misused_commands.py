@@ -95,7 +95,7 @@ WRONG = {
     "--minimise": TEXTS,
     "--maximise": TEXTS,
     "--where": ["", "l", "l<", "<3", "l<x", "nothing<3", "l<<3", "l<nan"],
-    "--count": COUNTS,
+    "--count": COUNTS[:-1],
     "--rows": COUNTS[1:-1],
     "--column": TEXTS,
     "--accuracy": POSITIVE,

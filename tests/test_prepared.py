@@ -139,6 +139,13 @@ def test_what_equilibrium_leaves_open_is_no_number():
         assert np.isfinite(row).all() == solution.determined(name), name
 
 
+def test_values_by_name_and_in_mappings():
+    f = prepare(case("slider_crank"), wanted=["effort"])
+    named = f(r=0.11, l=0.25)["effort:O"].copy()
+    for given in (({"r": 0.11}, None, {"l": 0.25}), ({"r": 0.5, "l": 0.25}, {"r": 0.11})):
+        np.testing.assert_array_equal(f(*given)["effort:O"], named)
+
+
 def test_mistakes():
     scene = case("slider_crank")
     f = prepare(scene, wanted=["effort"])

@@ -144,6 +144,13 @@ def test_misuse_is_named(here, rows, options, error, says):
         read_samples(write(here / "axis.csv", ["t", "q"], rows), **options)
 
 
+@pytest.mark.parametrize("cell", ["nan", "-inf", "1_0", "\u0663", "1.2.3"])
+def test_a_first_row_that_is_no_head_is_not_passed_over(here, cell):
+    with pytest.raises(DeclarationError, match=r"axis\.csv, line 1: expected a finite number, got"):
+        read_samples(write(here / "axis.csv", ["0", cell], RAMP))
+    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).told.startswith(f"{len(RAMP)} samples of ")
+
+
 def test_files_that_cannot_be_read(here):
     with pytest.raises(PathError, match=r"none\.csv: no such file"):
         read_samples(here / "none.csv")

@@ -95,6 +95,9 @@ WRONG = {
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
     "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
     "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
+    "prepared numbers": (lambda s: prepare(s, backend="vm")(0.3, 0.2), "expected values by name, as {'l': 0.25}, got 0.3"),
+    "a scene's": (lambda s: Scene(), "Scene: missing a required argument: 'mechanism'; it takes mechanism, motion, wanted"),
+    "opened twice": (lambda s: Sweep.open("x.h5", "y.h5"), "open: too many positional arguments; it takes path"),
     "default": (
         lambda s: Mechanism("m").parameter("l", "long", "m"),
         "parameter 'l': expected a number [m], or a text such as '100 mm', got 'long'",

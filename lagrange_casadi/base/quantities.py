@@ -156,7 +156,7 @@ class Output:
             return kinds.outputs[self.part]
         if self.group == "friction":
             return self.quantity.unit_for(kinds.frictions[self.part])
-        found = kinds.coordinates.get(self.part) if self.group in ("motion", "effort") else None
+        found = kinds.coordinates.get(self.part) if self.group in ("motion", "effort", "holding") else None
         return self.quantity.unit_for(found or "angle")
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.publish import writing
 from ..studies.sweep import Sweep
-from ..studies.sweep.columns import STATUS
+from ..studies.sweep.meanings import STATUS
 from .echo import echo
 
 _WIDTH = 10

@@ -13,8 +13,8 @@ from ..errors import NoDesignError
 from ..studies.sweep import Sweep, chosen
 from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.best import conditions_in, missed, tally
-from ..studies.sweep.columns import STATUS
 from ..studies.sweep.instant_axis import in_words
+from ..studies.sweep.meanings import STATUS
 from .echo import echo
 from .rows import show, write_csv
 

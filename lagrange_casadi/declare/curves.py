@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import fitting, public
 from ..arithmetic import lookups
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, shown
@@ -66,6 +66,7 @@ class Curve:
     starts: tuple[float, ...]
     cells: tuple[Cell, ...]
 
+    @fitting
     def __call__(self, x: Any) -> Any:
         """The curve of an expression, as a ``casadi.SX`` expression; of numbers, as numbers.
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
@@ -119,6 +120,14 @@ def coordinates_of(description: Description) -> dict[str, str]:
     if not in_space(description):
         return {name: joint["coordinate"] for name, joint in description["joints"].items() if joint["coordinate"]}
     return {name: kind for joint in description["joints"].values() for name, kind in joint["coordinates"].items()}
+
+
+def kinds_of_described(description: Description) -> Kinds:
+    """The kinds of coordinates and of frictions of a described mechanism, and the units of the user's outputs."""
+    coordinates = coordinates_of(description)
+    rubbing = {name: load["friction"]["coordinate"] for name, load in description["loads"].items() if "friction" in load}
+    frictions = {name: coordinates[coordinate] for name, coordinate in rubbing.items()}
+    return Kinds(coordinates, frictions, description.get("outputs", {}))
 
 
 def measured_of(description: Description) -> list[str]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-from ..arguments import LATER, NotNegative, Positive, Symbolic, public
+from ..arguments import NotNegative, Positive, Symbolic, public
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 
@@ -45,7 +45,7 @@ class Plain:
     bore: Symbolic
     width: Symbolic
     pressure: Positive | None = None
-    speed: Annotated[float | None, LATER] = None
+    speed: Symbolic | None = None
     heating: Positive | None = None
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import fitting, public
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError, shown
 from .curves import curve, rows
@@ -46,6 +46,7 @@ class Motion:
     told: str = ""
     unit: str = ""
 
+    @fitting
     def __call__(self, x: Any) -> Any:
         """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
         if self.knots:

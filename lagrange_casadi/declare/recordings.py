@@ -118,11 +118,20 @@ def _finite(what: str, value: object) -> None:
         raise DeclarationError(f"{what}: {error}") from None
 
 
+def _is_meant(cell: str) -> bool:
+    """Whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``, or digits of another script."""
+    endless = cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
+    return endless or (any(map(str.isdigit, cell)) and not any(map(str.isalpha, cell)))
+
+
 def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
     """The two columns of a file."""
     rows = read_rows(path, "columns of times and values")
     first = next(rows)
-    headed = any(math.isnan(first.number(cell)) for cell in first.cells)
+    unread = [cell for cell in first.cells if math.isnan(first.number(cell))]
+    if meant := [cell for cell in unread if _is_meant(cell)]:
+        raise DeclarationError(f"{first.where}: expected a finite number, got {meant[0]!r}")
+    headed = bool(unread)
     wanted = [_column(path.name, column, first.cells if headed else (), len(first.cells)) for column in (time, value)]
     found: list[list[float]] = []
     for row in rows if headed else chain([first], rows):

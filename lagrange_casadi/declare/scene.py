@@ -10,7 +10,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from ..arguments import Outputs, public, texts
+from ..arguments import Outputs, fitting, public, texts
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import number, within
@@ -198,6 +198,7 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
 
 
 @symbolic
+@fitting
 @dataclass(frozen=True, eq=False)
 class Scene(Graphs):
     """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and of section ratios.
@@ -346,6 +347,7 @@ class Scene(Graphs):
         """
         method("Scene.report")(self, path, parameters, wanted, live)
 
+    @fitting
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
 

@@ -14,7 +14,7 @@ from typing import Any, cast
 
 import casadi as ca
 
-from ..arguments import Count, public
+from ..arguments import Count, Elastic, public
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -22,7 +22,7 @@ from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
-from .hertz import STEEL, largest_pressure
+from .hertz import STEEL, largest_pressure, stiffness_of
 from .lift import rise_of
 
 
@@ -83,7 +83,7 @@ def disc_cam(
     flat: bool = False,
     side: int = 1,
     width: Expression | None = None,
-    elastic: tuple[float, float] = STEEL,
+    elastic: Elastic = STEEL,
 ) -> Cam:
     """Declare the contact of a disc cam with its follower in a plane, from the follower's motion.
 
@@ -112,6 +112,7 @@ def disc_cam(
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
+    stiffness = stiffness_of(what, elastic)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base_radius)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
@@ -122,7 +123,7 @@ def disc_cam(
     touched = follower.child if flat and follower.kind == "revolute" else layout.held
     constraint = _contact(mechanism, name, cam, touched, design, rise)
     made = Cam(name, mechanism, constraint, design)
-    _outputs(made, cam, width, elastic)
+    _outputs(made, cam, width, stiffness)
     profile = made.profile()
     if not profile.closes:
         raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
@@ -314,7 +315,7 @@ def progress(design: Design) -> Any:
     return _cross(design.normal, moved)
 
 
-def _outputs(made: Cam, cam: Joint, width: Expression | None, elastic: tuple[float, float]) -> None:
+def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) -> None:
     mechanism, name = made.mechanism, made.name
     force = mechanism.results.multiplier(made.constraint)
     here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
@@ -326,5 +327,5 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, elastic: tuple[flo
     if width is not None:
         roller = made.design.roller
         rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
-        pressure = largest_pressure(f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, elastic)
+        pressure = largest_pressure(f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, stiffness)
         mechanism.output(f"{name}_hertz", pressure, unit="Pa")

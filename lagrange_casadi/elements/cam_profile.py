@@ -15,9 +15,9 @@ import numpy.typing as npt
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.publish import check_writable, writing
-from ..errors import DeclarationError, LagrangeCasadiError
+from ..errors import DeclarationError, LagrangeCasadiError, shown
 
-_LEAST = 16
+_LEAST, _MOST = 16, 1 << 20
 _SAME = 1e-9
 """Of its size: by how much a profile may be open, by rounding."""
 
@@ -89,11 +89,17 @@ class CamProfile:
             file.write(text.encode())
 
 
+def turn_in(name: str, count: int) -> Array:
+    """Angles of one turn of a cam in so many steps, from 0 to 2 pi. Raises :class:`.DeclarationError` for too few or too many."""
+    if not _LEAST <= count <= _MOST:
+        bound = f"at least {_LEAST}" if count < _LEAST else f"at most {_MOST}"
+        raise DeclarationError(f"cam '{name}': count must be a whole number of {bound}, got {shown(count)}")
+    return np.asarray(np.arange(count + 1) * (math.tau / count), float)
+
+
 def profile_of(name: str, function: Any, p: Sequence[float], count: int) -> CamProfile:
     """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure angle, radius, progress."""
-    if type(count) is not int or count < _LEAST:
-        raise DeclarationError(f"cam '{name}': count must be a whole number of at least {_LEAST}, got {count!r}")
-    angle: Array = np.asarray(np.arange(count + 1) * (math.tau / count), float)
+    angle = turn_in(name, count)
     found = function(angle[None], list(p)).full()
     # A straight profile has no radius.
     if not np.isfinite(np.delete(found, 5, axis=0)).all():

@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import Count, Symbolic, public
+from ..arguments import Count, Elastic, Symbolic, public
 from ..base.arrays import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -29,13 +29,13 @@ from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
-from .hertz import STEEL, largest_pressure
+from .cam_profile import turn_in
+from .hertz import STEEL, largest_pressure, stiffness_of
 from .lift import rise_of
 
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
 
-_LEAST = 16
 _LOOKED_AT = 721
 
 
@@ -76,15 +76,13 @@ class CylindricalCam:
     def groove(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> Array:
         """The path of the roller's centre on the drum at ``count`` angles of one turn, in the drum's own axes, (count, 3) [m].
 
-        Raises :class:`.DeclarationError` for a count below 16.
+        Raises :class:`.DeclarationError` for a count below 16, and above a million.
         """
-        if type(count) is not int or count < _LEAST:
-            raise DeclarationError(f"cam '{self.name}': count must be a whole number of at least {_LEAST}, got {count!r}")
+        angles = turn_in(self.name, count)[:-1]
         x, values = self.design.angle, self.mechanism.values(parameters)
         turned = _carried(self.cam, x)
         here = plus(turned.resolve(minus(self.design.place, self.design.centre)), self.cam.child.place)
         function = ca.Function("groove", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, here)))])
-        angles = np.arange(count) * (math.tau / count)
         return np.asarray(function(angles[None], list(values.values())).full().T)
 
 
@@ -100,7 +98,7 @@ def cylindrical_cam(
     point: Point | None = None,
     roller: Symbolic | None = None,
     width: Symbolic | None = None,
-    elastic: tuple[float, float] = STEEL,
+    elastic: Elastic = STEEL,
 ) -> CylindricalCam:
     """Declare the contact of a drum's groove with the roller of its follower in space, from the follower's motion.
 
@@ -126,6 +124,7 @@ def cylindrical_cam(
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
+    stiffness = stiffness_of(what, elastic)
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
         if own.joint(joint).kind not in kinds or not mechanism.space or not isinstance(joint.parent.body, Ground):
             raise DeclarationError(
@@ -160,7 +159,7 @@ def cylindrical_cam(
         # The flank is as far beside the path as the roller's radius, on the side from which it pushes.
         bend = ca.sign(force) * ca.substitute(ca.SX(design.bend), x, turn)
         curvature = 1.0 / (round_ * (1.0 + bend * round_))
-        pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, elastic)
+        pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, stiffness)
         mechanism.output(f"{name}_hertz", pressure, unit="Pa")
     return made
 

@@ -19,19 +19,21 @@ STEEL = (210e9, 0.3)
 """Young's modulus [Pa] and Poisson's ratio."""
 
 
-def largest_pressure(
-    what: str, mechanism: Mechanism, force: Any, curvature: Any, width: Expression, elastic: tuple[float, float]
-) -> Any:
-    """The largest pressure [Pa] of two bodies of one material, by force [N], width [m] and the sum of their curvatures [1/m].
+def stiffness_of(what: str, elastic: tuple[float, float]) -> float:
+    """The stiffness [Pa] of the contact of two bodies of one material. Raises :class:`.DeclarationError` for constants of none."""
+    if not (0.0 < elastic[0] < math.inf and 0.0 <= elastic[1] <= 0.5):
+        raise DeclarationError(f"{what}: elastic must be Young's modulus [Pa] and Poisson's ratio, 0 to 0.5, got {elastic!r}")
+    return elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
 
-    Raises :class:`.DeclarationError` for a width that is not positive, and constants of no material.
+
+def largest_pressure(what: str, mechanism: Mechanism, force: Any, curvature: Any, width: Expression, stiffness: float) -> Any:
+    """The largest pressure [Pa] of two bodies, by force [N], width [m], the sum of their curvatures [1/m], and stiffness [Pa].
+
+    Raises :class:`.DeclarationError` for a width that is not positive.
     """
     wide = mechanism.own.expression(f"{what}: width", width, "m")
     if isinstance(wide, ca.SX):
         wide = wide * sound(wide > 0.0)
     elif wide <= 0.0:
         raise DeclarationError(f"{what}: width must be positive, got {wide:g} m")
-    if not (len(elastic) == 2 and elastic[0] > 0.0 and 0.0 <= elastic[1] <= 0.5):
-        raise DeclarationError(f"{what}: elastic must be Young's modulus [Pa] and Poisson's ratio, 0 to 0.5, got {elastic!r}")
-    stiffness = elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
     return ca.sqrt(force * ca.fmax(curvature, 0.0) * stiffness / (math.pi * wide))

@@ -17,7 +17,7 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import Table
-from ..declare.description import Description, coordinates_of, density_of
+from ..declare.description import Description, density_of, kinds_of_described
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
@@ -273,12 +273,7 @@ class Solution:
         output = self._output(name)
         if output.group not in ("certificate", "holding") and not self._over_time(output):
             self._of_section(output)
-        if output.group == "output":
-            return str(self.description["outputs"][output.part])
-        kinds, part = coordinates_of(self.description), output.part
-        if output.group == "friction":
-            return output.quantity.unit_for(kinds[self.description["loads"][part]["friction"]["coordinate"]])
-        return output.quantity.unit_for(kinds.get(part, "angle") if output.group in ("motion", "effort", "holding") else "angle")
+        return output.unit(kinds_of_described(self.description))
 
     def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.

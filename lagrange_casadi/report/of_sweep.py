@@ -23,8 +23,8 @@ from ..errors import DeclarationError, shown
 from ..studies.evaluate import evaluate
 from ..studies.sweep.axes import DESIGN
 from ..studies.sweep.best import best
-from ..studies.sweep.columns import STATUS
 from ..studies.sweep.default_figures import usual_pair, varied
+from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
 from . import Live, assembled, live_digest, page, with_motion, write_page
 from .arrays import Arrays

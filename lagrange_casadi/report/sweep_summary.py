@@ -7,7 +7,7 @@ from html import escape
 import numpy as np
 
 from ..studies.sweep.axes import counted
-from ..studies.sweep.columns import STATUS
+from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
 
 _ROWS = 12

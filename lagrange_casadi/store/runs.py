@@ -25,7 +25,7 @@ from ..base.arrays import Array
 from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..base.quantities import Output
 from ..base.seal import kind_of, seal
-from ..base.tables import CF, SPACE
+from ..base.tables import SPACE
 from ..declare.description import check_places, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
@@ -35,12 +35,13 @@ from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
-from ..judge.certificate import LOOSE, blur, certify
+from ..judge.certificate import LOOSE, TOLERANCE, blur, certify
 from .numbers import check_numbers, drive_axis, numbers
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
 from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_links, parsed, shown
+from .words import conventions, say, unlike, unlike_conventions
 
 SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
@@ -53,7 +54,7 @@ _LATEST = ("friction", "stress", "utilisation", "deflection")
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
-_AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
+_AXES = {"t": ("s", {"long_name": "time"}), "xi": ("1", {"long_name": "place along a link, ratio xi/l"})}
 _OVER = "over"
 _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 """Attributes that a dataset may have beside those of what it holds."""
@@ -160,16 +161,17 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
+            found += unlike_conventions(file, solution.table)
             found += _check_axes(file, solution)
             found += _check_drive_axis(solution)
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += check_slopes(file, solution)
-            found += _check_certificate(solution)
+            found += _check_certificate(file, solution)
     return found
 
 
-def _check_certificate(solution: Solution) -> Iterator[str]:
-    """The stored residuals, and the same computed anew from what is stored."""
+def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
+    """The stored residuals and what is said of them, and the same computed anew from what is stored."""
     worse = f"is worse than the tolerance {solution.tolerance:.3g}"
     for name, value in solution.failed.items():
         yield f"certificate/{name}: {value:.3g} {worse}"
@@ -177,6 +179,8 @@ def _check_certificate(solution: Solution) -> Iterator[str]:
     if solution.certificate and blur(solution) < LOOSE:
         for name, value in replace(solution, certificate=certify(solution)).failed.items():
             yield f"{name}: {value:.3g}, computed anew, {worse}"
+    if not TOLERANCE <= solution.tolerance <= LOOSE or bool(file.attrs["certified"]) != solution.certified:
+        yield "certificate: the verdict or its tolerance is not what follows from the residuals"
 
 
 def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
@@ -189,11 +193,7 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
             yield f"{place}: holds values that are not finite"
         if quantity.axes == ("t", "xi") and gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
-    if dataset.attrs.get("units") != solution.unit(name):
-        yield f"{place}: units {dataset.attrs.get('units')!r}, expected {solution.unit(name)!r}"
-    for key, value in quantity.attributes.items():
-        if dataset.attrs.get(key) != value:
-            yield f"{place}: {key} is not the schema's"
+    yield from unlike(dataset, solution.unit(name), quantity.attributes)
     if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
         yield f"{place}: {min(strange)} is not the schema's"
     for axis, scale in enumerate(quantity.axes):
@@ -206,11 +206,10 @@ def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         if not np.isfinite(values).all():
             yield f"{axis}: holds values that are not finite"
-        if (file[axis].attrs.get("units"), file[axis].attrs.get("long_name")) != _AXES[axis]:
-            yield f"{axis}: its unit or meaning is not the schema's"
+        yield from unlike(file[axis], *_AXES[axis])
     told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told:
-        yield "parameters: differ from those of the mechanism"
+    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or solution.case != solution.description["name"]:
+        yield "case or parameters: differ from those of the mechanism"
 
 
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
@@ -253,7 +252,7 @@ def _place(output: Output) -> str:
 def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[[], None]) -> None:
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
-        scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
+        say(scale, *_AXES[axis])
         scale.make_scale(axis)
     scales = Scales(file)
     if solution.over:
@@ -275,7 +274,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["schema"] = SCHEMA
     file.attrs["schema_version"] = _version(solution)
     file.attrs["case"] = solution.case
-    file.attrs["Conventions"], file.attrs["conventions"] = CF, solution.table.conventions
+    file.attrs.update(conventions(solution.table))
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
     file.attrs["certified"] = solution.certified
@@ -339,9 +338,7 @@ def _empty(file: h5py.File, place: str, shape: tuple[int, ...]) -> h5py.Dataset:
 def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
     quantity, name = output.meant(solution.table), str(output)
     dataset = _empty(file, _place(output), shape)
-    dataset.attrs["units"] = solution.unit(output)
-    for key, text in quantity.attributes.items():
-        dataset.attrs[key] = text
+    say(dataset, solution.unit(output), quantity.attributes)
     if name in solution.errors:
         dataset.attrs["error_estimate"] = solution.errors[name]
     scales.attach(dataset, quantity.axes)

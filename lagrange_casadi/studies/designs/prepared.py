@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,8 @@ from ...instants.solution import Solution
 from ..evaluate import evaluate
 from .engine import DesignEngine, Outcome
 from .gradients import MeanSlopes
+
+_Values: TypeAlias = Mapping[str, Any] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,8 +189,8 @@ class Prepared:
         """Another one with arrays of its own, for answers that are needed side by side; nothing is derived or compiled for it."""
         return Prepared(self._engine, self._explain)
 
-    def __call__(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Mapping[str, Array]:
-        """The series (t,) of all outputs, by name, for values of parameters, by name or in a mapping; the defaults for others.
+    def __call__(self, /, *values: _Values, **named: Any) -> Mapping[str, Array]:
+        """The series (t,) of all outputs, by name, for values of parameters, by name or in mappings; the defaults for others.
 
         Where a joint that rubs is at rest, what depends on its friction is NaN at these instants, as in :func:`.evaluate`.
         This thread's next evaluation overwrites the arrays. Raises :class:`UnknownNameError` and :class:`ParameterError` for what
@@ -206,7 +208,7 @@ class Prepared:
         self._refuse(self._watched(answers.instants[1], answers.history), p)
         return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
 
-    def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
+    def peaks(self, /, *values: _Values, **named: Any) -> Peaks:
         """Peaks and means for values of parameters; this thread's next evaluation overwrites the arrays.
 
         Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told. Where a joint that rubs is at rest,
@@ -214,7 +216,7 @@ class Prepared:
         """
         return self._peaks(self._set(values, named))
 
-    def gradient(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Gradient:
+    def gradient(self, /, *values: _Values, **named: Any) -> Gradient:
         """Peaks and their derivatives by all parameters, for values of these.
 
         They are exact, by automatic differentiation. The first call derives and compiles them, in doubles; a later one takes a few
@@ -225,7 +227,7 @@ class Prepared:
         look, add_up = partial(self._engine.tied, p, value, found), partial(self._engine.mean_slopes, p)
         return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, self.efforts, look, add_up)
 
-    def curvature(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Curvature:
+    def curvature(self, /, *values: _Values, **named: Any) -> Curvature:
         """The second derivatives of peaks by all parameters, for values of these: how their gradient changes.
 
         They are exact, by automatic differentiation, as peaks move in time and along links. The first call derives and compiles
@@ -255,20 +257,22 @@ class Prepared:
         self._refuse(self._watched(answers.instants[0], answers.even), p)
         return answers.seen
 
-    def _kept_peaks(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
+    def _kept_peaks(self, values: Sequence[_Values], named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
         """The parameters (parameters,), and of the peaks there the values, times and ratios, as copies that stay."""
         p = self._set(values, named)
         peaks = self._peaks(p)
         return p[0].copy(), peaks.value.copy(), peaks.t.copy(), peaks.xi.copy()
 
-    def _set(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> Array:
+    def _set(self, values: Sequence[_Values], named: Mapping[str, Any]) -> Array:
         """Put values of parameters into this thread's row of them (1, parameters)."""
         p: Array = self._answers.p
         row = p[0]
         row[:] = self._defaults
-        if not (values is None or isinstance(values, Mapping)):
-            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(values)}")
-        for given in (values, named) if values else (named,):
+        for given in (*values, named) if values else (named,):
+            if given is None:
+                continue
+            if type(given) is not dict and not isinstance(given, Mapping):
+                raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(given)}")
             for name, value in given.items():
                 parameter = self._declared.get(name)
                 if parameter is None:

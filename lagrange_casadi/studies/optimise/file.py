@@ -52,6 +52,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
         check_links(file)
+        _read("/", file)
         file.visititems(_read)
         for group in file["points"].values() if "points" in file else [file]:
             found += _contradictions(group)
@@ -65,8 +66,11 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
-    """Read all of a part. Raises what HDF5 does for one that is damaged."""
-    dict(item.attrs)
+    """Read all of a part. Raises what HDF5 does for one that is damaged, and ``ValueError`` for a text that cannot be shown."""
+    for value in item.attrs.values():
+        for text in np.ravel(value):
+            if not isinstance(text, np.generic) or isinstance(text, np.character):
+                shown(str(text))
     if isinstance(item, h5py.Dataset):
         item[()]
 
@@ -81,7 +85,7 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
     check_dataset(history, (len(history), len(_COLUMNS) + len(names)))
     if list(history.attrs["columns"]) != [*_COLUMNS, *names]:
         yield f"{place}/history: its columns are not those of a history"
-    ends = []
+    ways, ends = [], []
     for number, start in group["starts"].items():
         rows = history[()][history[:, 0] == int(number)]
         for end in ("start", "end"):
@@ -91,8 +95,12 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)):
             yield f"{start.name}: is not the way that the history tells"
         shown(start.attrs["ending"])
+        ways.append(np.delete(came, 1))
         if start.attrs["ending"] == CONVERGED:
-            ends.append(np.delete(came, 1))
+            ends.append(ways[-1])
+    chosen = [group.attrs["objective"], *(group["parameters"][name][()] for name in names)]
+    if not any(_alike(chosen, way) for way in ways):
+        yield f"{place}/parameters: are not the design at which a start has ended, with its objective"
     check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
     check_dataset(optima["starts"], (len(optima["objective"]),))
     best = np.column_stack([optima["objective"], optima["designs"]])

@@ -83,7 +83,7 @@ def optimise(
     subject_to: Sequence[str] = (),
     starts: Starts = 4,
     screen: Annotated[int, Within(1, MOST)] = 256,
-    points: Annotated[int, Within(2)] = POINTS,
+    points: Annotated[int, Within(2, MOST)] = POINTS,
     transmission: float = 0.05,
     t: Times | None = None,
     parameters: Mapping[str, float] | None = None,

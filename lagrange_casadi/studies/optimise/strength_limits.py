@@ -10,7 +10,7 @@ from ...declare.mechanism import Mechanism
 from ...declare.scene import Wanted
 from ...errors import DeclarationError
 from ...strength.fatigue import strengths, tires
-from ..sweep.strength import WAYS
+from ..sweep.meanings import WAYS
 from .terms import Constraint
 
 _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")

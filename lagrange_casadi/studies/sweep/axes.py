@@ -105,6 +105,8 @@ class Values:
 
     def __post_init__(self) -> None:
         try:
+            if isinstance(self.values, bytes | set | frozenset):
+                raise TypeError
             told = [typed(value) for value in self.values]
             numbers = tuple(number(value, finite=False) for value, _ in told)
         except (TypeError, ValueError):
@@ -315,6 +317,22 @@ def check_known(names: Sequence[str], parameters: Collection[str], head_of: str 
             raise DeclarationError(": ".join(filter(None, (place([column]), not_parameter(name)))))
     if unknown:
         raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place(unknown))
+
+
+def are_described(described: Mapping[str, str], values: Mapping[str, Array]) -> bool:
+    """Whether values of parameters are those that ``describe`` told."""
+    if list(described) != list(values):
+        return Listed(tuple(values), np.stack(list(values.values()), axis=1)).describe() == described
+    return all(_are_along(words, values[name]) for name, words in described.items())
+
+
+def _are_along(words: str, values: Array) -> bool:
+    """Whether values are those of an axis in words."""
+    start, *rest = words.split(":")
+    if not rest:
+        return str(Values(tuple(values.tolist()))) == words
+    told = Range(float(start), float(rest[0]), int(rest[1]), rest[2:] == ["log"])
+    return np.array_equal(told.at(np.arange(told.count)), values)
 
 
 def size_of(described: Mapping[str, str]) -> int:

@@ -17,7 +17,7 @@ from ...base.arrays import Array
 from ...base.numerals import real
 from ...base.units import typed
 from ...errors import DeclarationError, check_kind
-from .columns import STATUS
+from .meanings import STATUS
 from .reading import Sweep, names_in
 from .selection import absent, near
 

@@ -8,13 +8,15 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ...declare.even_points import points
 from ...errors import one_line
 from ...instants.refusal import Status
-from ...store.untrusted import check_chunks, told_as
-from .axes import counted, grouped, size_of
+from ...store.untrusted import check_chunks, parsed, told_as
+from ...store.words import unlike, unlike_conventions
+from .axes import are_described, counted, grouped, size_of
 from .blocks import slabs
-from .columns import STATUS
 from .contents import KeptColumn
+from .meanings import STATUS
 from .parts import Folder
 from .reading import Sweep
 
@@ -22,15 +24,18 @@ from .reading import Sweep
 def check_sweep(path: str | Path) -> list[str]:
     """What is wrong with a file, one line each; nothing where it is whole and consistent.
 
-    Every dataset is read, so every checksum is verified; every axis must have its scale, and where a design has a result, and only
-    there, its columns must have numbers, but for what equilibrium leaves open; and no design may fail its certificate.
+    Every dataset is read, so every checksum is verified; every unit, sign and status must be the schema's, every axis have its
+    scale and the values that were asked for; where a design has a result, and only there, its columns must have numbers, but for
+    what equilibrium leaves open; and no design may fail its certificate.
 
     Raises :class:`StoreError` for what is not a whole file of a sweep, :class:`PathError` for none.
     """
     sweep = Sweep.open(path)
     found: list[str] = []
     with sweep.opened() as file:
+        found += unlike_conventions(file, sweep.meanings.table)
         found += _check_scales(file, sweep)
+        found += _check_asked(file, sweep)
         for kept in sweep.columns.values():
             try:
                 found += _check_column(file, sweep, kept)
@@ -65,11 +70,26 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
                 check_chunks(item)
                 if not np.isfinite(item[()]).all():
                     found.append(f"{place}: holds values that are not finite")
+                found.extend(unlike(item, *sweep.meanings.of_axis(place.rpartition("/")[2])))
             except Exception as error:
                 found.append(f"{place}: damaged: {one_line(error)}")
 
     file.visititems(visit)
     return found
+
+
+def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
+    """Compare what a file tells twice: the case and its parameters, and the axes with what was asked for."""
+    identity, description = sweep.identity, sweep.description
+    told = {name: parameter["value"] for name, parameter in description["parameters"].items()}
+    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or sweep.case != description["name"]:
+        yield "case or parameters: differ from those of the mechanism"
+    values = {name: file["grid"][name][()] for name in sweep.parameters}
+    if not are_described(identity["grid"], values):
+        yield "grid: is not what was asked for"
+    for axis in ("t", "xi"):
+        if axis in file and axis not in sweep.dimensions and not np.array_equal(file[axis][()], points(identity[axis])):
+            yield f"{axis}: is not what was asked for"
 
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:
@@ -79,6 +99,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[s
         if file[name] not in dataset.dims[axis].values():
             yield f"{kept.name}: axis {axis} has no scale {name}"
     check_chunks(dataset)
+    yield from unlike(dataset, *sweep.meanings.of_column(kept.name, sweep.columns))
     dims = tuple(sweep.dimensions.values())
     missing = surplus = unknown = wrong = 0
     for _, _, where in slabs(dims, dataset.chunks[: len(dims)]):

@@ -6,7 +6,6 @@ as everywhere; the same with slashes is its place in the file.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...base.quantities import Output, quotient
+from ...base.quantities import Output
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
 from ...declare.wanted_slopes import SENSITIVITY
@@ -27,26 +26,16 @@ from ...instants.statistics import of_counted
 from ..designs.engine import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
-from .engine import STATUSES, Engine
+from .engine import Engine
 from .instant_axis import InstantAxis
 from .matter import Matter
-from .strength import LEAST, LIFE, MASS, Kept
-
-STATUS = "status"
-"""The one column whose name stands alone: why a design has no result, 0 where it has one."""
-
-TIMES = "history:t"
-"""The times of a design's instants, where these are over anything else."""
+from .meanings import LEAST, LIFE, MASS, STATUS, TIMES, Meanings
+from .strength import Kept
 
 KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSITIVITY, "peak_at", "history", LEAST, LIFE, MASS)
 """What columns are of, in the order in which they are listed."""
 
-
-NO_SLOPE = "NaN for designs of which it has no derivative"
-
 _MEANS = ("mean", "rms")
-SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
-"""What derivatives are kept of, in words."""
 
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
@@ -92,38 +81,35 @@ class Harvest:
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All columns, in the order of :meth:`evaluate`."""
-        engine, over = self.engine, (self.axis.name,)
-        found = [self._status()]
-        for name in engine.quantities:
-            found += self._peak(name)
-        for name in engine.efforts:
-            output = Output.of(name)
-            unit, words = output.unit(self.data.kinds), output.meant(self._table).attributes
-            mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
-            found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
-            found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
+        engine, over = self.engine, self.axis.name
+        names = {STATUS: tuple[str, ...]()}
+        names |= {f"{kind}:{quantity}": () for quantity in self._quantities for kind in self._of_peaks(quantity)}
+        names |= {f"{kind}:{name}": () for name in engine.efforts for kind in _MEANS}
         for parameter in self.by:
-            found += [self._slope(parameter, "peak", name) for name in engine.quantities]
-            found += [self._slope(parameter, kind, name) for kind in _MEANS for name in engine.efforts]
-        found += [
-            self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
-            for link in self._links
-            for force in self._table.forces
-            if self.xi.size
-        ]
-        for name in self._series:
-            output = Output.of(name)
-            words = output.meant(self._table).attributes | self._open(name)
-            found.append(Column(f"history:{name}", output.unit(self.data.kinds), words, over, (self.axis.values.size,)))
+            names |= {f"{SENSITIVITY}:{parameter}:peak:{name}": () for name in engine.quantities}
+            names |= {f"{SENSITIVITY}:{parameter}:{kind}:{name}": () for kind in _MEANS for name in engine.efforts}
+        sections = [f"section:{link}:{force}" for link in self._links for force in self._table.forces if self.xi.size]
+        names |= {f"peak_at:{name}": ("xi",) for name in sections}
+        names |= {f"history:{name}": (over,) for name in self._series}
         if self._own_times:
-            found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
-        if self.keep == "histories" and self.xi.size:
-            found += [
-                self._along(f"history:section:{link}:{force}", "", (*over, "xi"))
-                for link in self._links
-                for force in self._table.forces
-            ]
-        return (*found, *self.strength.columns)
+            names[TIMES] = (over,)
+        if self.keep == "histories":
+            names |= {f"history:{name}": (over, "xi") for name in sections}
+        names |= dict.fromkeys(self.strength.columns, ())
+        lengths, meanings = {over: self.axis.values.size, "xi": self.xi.size}, self.meanings
+        found = []
+        for name, axes in names.items():
+            unit, words = meanings.of_column(name, names)
+            open_ = self.strength.columns.get(name, name.partition(":")[2] in engine.doubtful)
+            words |= {"missing": MISSING} if open_ else {}
+            found.append(Column(name, unit, words, axes, tuple(lengths[axis] for axis in axes), "|i1" if name == STATUS else "<f8"))
+        return tuple(found)
+
+    @property
+    def meanings(self) -> Meanings:
+        """What columns and axes mean."""
+        units = {name: parameter.unit for name, parameter in self.data.parameters.items()}
+        return Meanings(self._table, self.data.kinds, units, self.axis.name, self.axis.joint, self.axis.drive_unit)
 
     @property
     def block(self) -> int:
@@ -231,47 +217,10 @@ class Harvest:
             return ()
         return tuple(name for name in self.engine.columns if self.keep == "histories" or Output.of(name).along)
 
-    def _status(self) -> Column:
-        told = {number: words for number, words in STATUSES.items() if self.axis.name != "t" or number != Status.NO_INSTANTS}
-        words = {
-            "long_name": "whether a design has a result, or why it has none",
-            "flag_meanings": " ".join(word for word, _ in told.values()),
-            "sentences": json.dumps({number: sentence for number, (_, sentence) in told.items()}),
-        }
-        return Column(STATUS, "1", words, dtype="|i1")
-
-    def _peak(self, name: str) -> list[Column]:
-        """The columns of one quantity of the engine's."""
-        output, open_ = Output.of(name), self._open(name)
-        unit, words = output.unit(self.data.kinds), output.meant(self._table).attributes
-        what = words["long_name"]
-        found = [
-            Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
-            Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
-        ]
-        if self.axis.joint:
-            where = f"coordinate of joint '{self.axis.joint}' at the peak: {what}"
-            found.append(Column(f"peak_over:{name}", self.axis.drive_unit, {"long_name": where} | open_))
-        if output.group == "section":
-            found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
-        return found
-
-    def _slope(self, parameter: str, kind: str, name: str) -> Column:
-        """The column of the derivative of a peak, or of a mean."""
-        output = Output.of(name)
-        unit = quotient(output.unit(self.data.kinds), self.data.parameters[parameter].unit)
-        what = f"derivative by {parameter} of the {SLOPES_OF[kind]}: {output.meant(self._table).long_name}"
-        return Column(f"{SENSITIVITY}:{parameter}:{kind}:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
-
-    def _open(self, name: str) -> dict[str, str]:
-        """What a file says of a quantity that is not determined for every design."""
-        return {"missing": MISSING} if name in self.engine.doubtful else {}
-
-    def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
-        quantity = Output.of(name.partition(":")[2]).meant(self._table)
-        words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
-        lengths = tuple({self.axis.name: self.axis.values.size, "xi": self.xi.size}[axis] for axis in axes)
-        return Column(name, quantity.unit, words, axes, lengths)
+    def _of_peaks(self, quantity: Output) -> list[str]:
+        """The kinds of columns of the peak of a quantity."""
+        over = ["peak_over"] if self.axis.joint else []
+        return ["peak", "peak_t", *over, *(["peak_xi"] if quantity.group == "section" else [])]
 
     def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
         """Of each link and force what is largest over the instants, (designs, xi), and, where it is kept, all, (designs, t, xi)."""

@@ -11,8 +11,9 @@ import numpy as np
 
 from ...store.untrusted import check_dataset, check_links, check_shape, parsed, shown
 from .axes import DESIGN
-from .columns import KINDS, STATUS
+from .columns import KINDS
 from .file import WORDS
+from .meanings import STATUS
 from .plan import IDENTITY
 
 _NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")

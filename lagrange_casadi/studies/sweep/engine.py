@@ -7,12 +7,8 @@ from typing import Protocol
 
 from ...base.arrays import Array
 from ...equations.scene_graph import SceneGraph
-from ...instants.refusal import Status
 from ...instants.solution import Provenance
 from ..designs.engine import Outcome
-
-STATUSES: Mapping[int, tuple[str, str]] = {int(status): (status.name.lower(), status.meaning) for status in Status}
-"""A word and a sentence for each status."""
 
 
 class Engine(Protocol):

@@ -16,18 +16,18 @@ import h5py
 import numpy as np
 
 from ...base.publish import PatientFile
-from ...base.tables import CF, table_of
 from ...declare.wanted_slopes import SENSITIVITY
 from ...errors import DeclarationError
 from ...store.scales import LARGE, Scales
+from ...store.words import conventions, say
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
 from .column import Column
 from .columns import KINDS
 from .instant_axis import InstantAxis
+from .meanings import LEAST, LIFE, MASS
 from .plan import SCHEMA, Plan
-from .strength import LEAST, LIFE, MASS
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
@@ -36,7 +36,6 @@ _CHUNK = 1 << 15
 _SOME = ("peak_over", SENSITIVITY, LEAST, LIFE, MASS)
 """Kinds of columns that not every file has."""
 
-_XI = ("1", "place along a link, ratio xi/l")
 _TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")
 
 
@@ -90,32 +89,30 @@ def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Cal
 def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], None]) -> None:
     """Scales and attributes."""
     grid = file.create_group("grid", track_order=True)
-    parameters = plan.graph.data.parameters
-    designs = plan.designs
+    designs, meanings = plan.designs, plan.harvest.meanings
     if not isinstance(designs, Grid):
         scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64, breathe)
         scale.make_scale(DESIGN)
-        scale.attrs["units"], scale.attrs["long_name"] = "1", "number of the design"
+        say(scale, *meanings.of_axis(DESIGN))
     for name in designs.names:
         length = designs.dimensions.get(name, designs.size)
         scale = _stream(grid, name, (length,), lambda start, stop, name=name: designs.scale(name, start, stop), np.float64, breathe)
-        scale.attrs["units"], scale.attrs["long_name"] = parameters[name].unit, f"parameter {name}"
+        say(scale, *meanings.of_axis(name))
         if isinstance(designs, Grid):
             file[name] = scale
             scale.make_scale(name)
         else:
             scales.attach(scale, [DESIGN])
     instants = plan.harvest.axis
-    axes = {instants.name: (instants.values, instants.unit, instants.long_name), "xi": (plan.harvest.xi, *_XI)}
-    for axis, (values, unit, meaning) in axes.items():
+    for axis, values in ((instants.name, instants.values), ("xi", plan.harvest.xi)):
         if any(axis in column.axes for column in plan.columns):
             scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
-            scale.attrs["units"], scale.attrs["long_name"] = unit, meaning
+            say(scale, *meanings.of_axis(axis))
             scale.make_scale(axis)
     file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():
         file.attrs[key] = json.dumps(value) if key in WORDS else value
-    file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.graph.data.space).conventions
+    file.attrs.update(conventions(meanings.table))
     file.attrs["parameters"] = json.dumps(dict(plan.values))
     file.attrs["columns"] = len(plan.columns)
 
@@ -141,8 +138,6 @@ def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> Any
     """The dataset of a column, empty."""
     shape, chunk = (*plan.dims, *column.lengths), (*plan.chunk, *column.lengths)
     dataset = file.create_dataset(column.place, shape, column.dtype, chunks=chunk, fillvalue=_nothing(column.dtype), **FILTERS)
-    dataset.attrs["units"] = column.unit
-    for key, text in column.attributes.items():
-        dataset.attrs[key] = text
+    say(dataset, column.unit, column.attributes)
     scales.attach(dataset, (*plan.designs.dimensions, *column.axes))
     return dataset

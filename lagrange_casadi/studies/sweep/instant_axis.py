@@ -11,9 +11,7 @@ from ...base.arrays import Array
 from ...declare.even_points import points
 from ...declare.times import Timing, instants_of
 from ...equations.model_data import ModelData
-
-OVER, CYCLE = "over", "cycle"
-"""Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""
+from .meanings import CYCLE, OVER
 
 _WORDS = {OVER: "the drive's coordinate", CYCLE: "the cycle"}
 
@@ -25,11 +23,9 @@ def in_words(axes: Sequence[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class InstantAxis:
-    """An axis: its name in the file, unit and meaning, and values (t,); ``joint`` is the drive by which instants are asked for."""
+    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are asked for."""
 
     name: str
-    unit: str
-    long_name: str
     values: Array
     joint: str = ""
     drive_unit: str = ""
@@ -38,12 +34,12 @@ class InstantAxis:
     def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
         """That of a mechanism's designs."""
         if timing.shared:
-            return cls("t", "s", "time", instants_of(data.laws, timing, data.values(data.defaults)).t)
+            return cls("t", instants_of(data.laws, timing, data.values(data.defaults)).t)
         joint = timing.joint
         unit = timing.unit if joint else ""
         if joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))
-            return cls(OVER, unit, f"coordinate of joint '{joint}'", coordinates, joint, unit)
+            return cls(OVER, coordinates, joint, unit)
         places = points((0.0, 1.0, timing.count)) if timing.count > 1 else np.zeros(1)
-        return cls(CYCLE, "1", "place in the cycle, from the first instant of a design to its last", places, joint, unit)
+        return cls(CYCLE, places, joint, unit)

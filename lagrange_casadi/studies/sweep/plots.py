@@ -15,8 +15,8 @@ from ...errors import NoDesignError
 from ...instants.ordering import table_of_described
 from ...shapes.pictures import one_at_a_time, save
 from .best import best, chosen, size
-from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays
+from .meanings import STATUS
 from .reading import Sweep
 from .scale import Scale, edges, even_in_ratios, logarithmic, number
 from .selection import near

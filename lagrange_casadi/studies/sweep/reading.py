@@ -15,19 +15,16 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ...arguments import Count, Index, Outputs, public
+from ...arguments import Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.seal import Seen, kind_of, verify
-from ...base.tables import ANGLE, LENGTH
-from ...declare.description import coordinates_of
-from ...errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
+from ...errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line, shown
 from ...methods import method
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
-from .columns import STATUS
 from .contents import KeptColumn, contents
-from .instant_axis import CYCLE, OVER
+from .meanings import CYCLE, OVER, STATUS, Meanings
 from .parts import Folder
 from .plan import READ, SCHEMA
 from .selection import matches
@@ -64,15 +61,10 @@ class Sweep:
     seen: Seen | None = None
 
     @classmethod
-    def open(cls, path: str | Path, keeper: Any = None, seen: Seen | None = None) -> Sweep:
-        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep.
-
-        It is compared with its seal, unless it is the one that was ``seen`` already. ``keeper`` is kept alive as long as the sweep.
-        """
+    def open(cls, path: str | Path) -> Sweep:
+        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep."""
         _refuse_unfinished(path)
-        seen = seen if seen and seen.is_at(path) else verify(path)
-        with _opened(path, seen) as file:
-            return cls(Path(path), **contents(file), keeper=keeper, seen=seen)
+        return opened_sweep(path)
 
     def __repr__(self) -> str:
         return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
@@ -269,11 +261,15 @@ class Sweep:
                 raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
 
     @cached_property
+    def meanings(self) -> Meanings:
+        """What columns and axes mean, by their names."""
+        axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
+        return Meanings.of(self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else "")
+
+    @cached_property
     def _units(self) -> dict[str, str]:
         """The units of the axes of columns, those of instants first."""
-        joint = self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
-        slides = joint and coordinates_of(self.description)[joint] == "slide"
-        return {"t": "s", OVER: LENGTH if slides else ANGLE, CYCLE: "1", "xi": "1"}
+        return {axis: self.meanings.of_axis(axis)[0] for axis in ("t", OVER, CYCLE, "xi")}
 
     @cached_property
     def _over(self) -> dict[str, str]:
@@ -365,10 +361,22 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
     return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
 
 
+def opened_sweep(path: str | Path, seen: Seen | None = None, keeper: Any = None) -> Sweep:
+    """A sweep, compared with its seal unless its file was ``seen`` already. ``keeper`` is kept alive as long as the sweep.
+
+    Raises :class:`StoreError` for what is not a whole file of a sweep.
+    """
+    seen = seen if seen and seen.is_at(path) else verify(path)
+    with _opened(path, seen) as file:
+        return Sweep(Path(path), **contents(file), keeper=keeper, seen=seen)
+
+
 def names_in(given: str | Sequence[str]) -> list[str]:
     """Names, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
-    check_kind("columns", given, "a name, or a list of names", str, Sequence)
-    return [given] if isinstance(given, str) else list(given)
+    found = [given] if isinstance(given, str) else texts(given)
+    if found is None:
+        raise DeclarationError(f"columns: expected a name, or a list of names, got {shown(given)}")
+    return found
 
 
 def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]) -> Array:

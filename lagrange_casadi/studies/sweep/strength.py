@@ -27,15 +27,9 @@ from ...strength.fibres import FibreStresses
 from ...strength.member import Member
 from ...strength.stress import Stress
 from ...strength.worst import FEW, worst
-from .column import MISSING
-from .column import Column as Dataset
 from .matter import Matter
+from .meanings import LEAST, LIFE, MASS, WAYS
 
-LEAST, LIFE, MASS = "least", "life", "mass"
-"""Kinds of columns."""
-
-WAYS = ("yield", "buckling", "fatigue")
-_MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
 _NUMBERS = 1 << 19
 """Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory next to a processor."""
 
@@ -71,21 +65,11 @@ class Kept:
         return tuple(name for name in self.data.template.content["bodies"] if name in (*self.safety, *self.life))
 
     @cached_property
-    def columns(self) -> tuple[Dataset, ...]:
-        """The columns, in the order of :meth:`evaluate`."""
-        found = []
-        for link in self._judged:
-            ways = self._ways(link)
-            words = f"least factor of safety, the smallest of those {', '.join(_MEANT[way] for way in ways)}"
-            found.append(self._column(LEAST, "safety", link, words))
-            found += [self._column(LEAST, way, link, f"least factor of safety {_MEANT[way]}") for way in ways]
-        for link in self._lives:
-            found.append(self._column(LIFE, "", link, "life in cycles, each the whole span"))
-        for link in self.links:
-            found.append(Dataset(f"{MASS}:{link}", "kg", {"long_name": "mass of the link"}))
-        if self.links:
-            found.append(Dataset(f"{MASS}:{ALL}", "kg", {"long_name": "mass of all links and point masses"}))
-        return tuple(found)
+    def columns(self) -> Mapping[str, bool]:
+        """The names of the columns, in the order of :meth:`evaluate`, and which may lack numbers where there is a result."""
+        found = {f"{LEAST}:{way}:{link}": link in self.doubtful for link in self._judged for way in ("safety", *self._ways(link))}
+        found |= {f"{LIFE}:{link}": link in self.doubtful for link in self._lives}
+        return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
 
     def evaluate(self, status: npt.NDArray[np.int8], value: Array, series: Array | None, times: Array, p: Array) -> list[Array]:
         """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n, outputs, t), ``times`` (n, t)."""
@@ -102,10 +86,6 @@ class Kept:
         found += [tired[link][1] for link in self._lives]
         masses = np.atleast_2d(self._masses(p.T).full())
         return found + [np.where(status == 0, row, np.nan) for row in masses]
-
-    def _column(self, kind: str, way: str, link: str, words: str) -> Dataset:
-        missing = {"missing": MISSING} if link in self.doubtful else {}
-        return Dataset(":".join(filter(None, (kind, way, link))), "1", {"long_name": words, **missing})
 
     def _ways(self, link: str) -> list[str]:
         known = [way for way in WAYS[:2] if f"utilisation:{link}:{way}" in self.quantities]

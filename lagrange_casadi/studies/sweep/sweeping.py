@@ -23,7 +23,7 @@ from ...methods import method
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
 from .plan import Plan
-from .reading import Sweep
+from .reading import Sweep, opened_sweep
 from .workers import Threads, Workers
 
 
@@ -108,7 +108,7 @@ def sweep(
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     hands = hired(workers, dask)
     seen = carry_out(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
-    return Sweep.open(target, keeper, seen)
+    return opened_sweep(target, seen, keeper)
 
 
 class _Temporary:

@@ -1,0 +1,33 @@
+"""What files say of their datasets and of themselves, beside numbers: units, meanings, signs and conventions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ..base.tables import CF, Table
+
+
+def conventions(table: Table) -> dict[str, str]:
+    """What a file says of all that it holds, by attribute."""
+    return {"Conventions": CF, "conventions": table.conventions}
+
+
+def say(dataset: Any, unit: str, words: Mapping[str, str]) -> None:
+    """Write the unit of a dataset, and other words about it, by attribute."""
+    dataset.attrs["units"] = unit
+    for key, text in words.items():
+        dataset.attrs[key] = text
+
+
+def unlike(dataset: Any, unit: str, words: Mapping[str, str]) -> Iterator[str]:
+    """Yield what a dataset says otherwise, a line each."""
+    place = dataset.name.removeprefix("/")
+    if dataset.attrs.get("units") != unit:
+        yield f"{place}: units {dataset.attrs.get('units')!r}, expected {unit!r}"
+    yield from (f"{place}: {key} is not the schema's" for key, text in words.items() if dataset.attrs.get(key) != text)
+
+
+def unlike_conventions(file: Any, table: Table) -> Iterator[str]:
+    """Yield what a file says otherwise of all that it holds, a line each."""
+    yield from (f"{key}: not the schema's" for key, text in conventions(table).items() if file.attrs.get(key) != text)
