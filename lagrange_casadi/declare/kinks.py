@@ -21,6 +21,7 @@ import numpy.typing as npt
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError
 from .clearance import Clearance, bound
 from .limits_beside import Flags, Side, between, vanishes
@@ -44,6 +45,9 @@ _SLACK = 10.0
 _DIP, _TOUCH = 0.3, 1e-12
 """Of what is beside it: how near to zero an argument seems to come, and what is zero."""
 
+_APART = (-1.0, -(2.0**-10), -(2.0**-20), 2.0**-20, 2.0**-10, 1.0)
+"""How many steps from an instant it is first compared with what is beside it."""
+
 _ROUNDING = 16 * np.finfo(float).eps
 
 _AT_ONCE = 1 << 17
@@ -59,9 +63,8 @@ class Kink:
     at: Mapping[str, float]
 
     def __str__(self) -> str:
-        place = ", ".join(f"{name} = {value:.6g}" for name, value in self.at.items())
         does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
-        return f"its {self.what} {does} where {place}"
+        return f"its {self.what} {does} where {_place(self.at)}"
 
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` has the kink."""
@@ -69,6 +72,25 @@ class Kink:
             f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a curve "
             "whose slope does not jump, of CasADi's functions: in place of a table, a curve(x, y), a "
             "polynomial or a Fourier sum"
+        )
+
+
+@dataclass(frozen=True)
+class Isolated:
+    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides of it."""
+
+    what: str
+    at: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return f"its {self.what} where {_place(self.at)} is not that on either side"
+
+    def refused(self, what: str) -> DeclarationError:
+        """The error for ``what`` is isolated at an instant."""
+        return DeclarationError(
+            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a curve without "
+            "if_else, fabs, sign, floor and the like that touch a place there: in place of if_else(x == 0, 1, sin(x)/x) "
+            "a series where x is small"
         )
 
 
@@ -126,7 +148,24 @@ class Smooth:
         if not found:
             return None
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
-        return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
+        return Kink(what, jump, self._named(place))
+
+    def isolated(self, path: Array, values: Sequence[float], *, between: bool = False) -> Isolated | None:
+        """An instant of a path (symbols, n), or a place ``between`` two, at which something is other than on both sides of it."""
+        found = next(self._isolated(np.asarray(path, float)[None], np.array(values, float)[None], between), None)
+        return None if found is None else Isolated(found[1], self._named(found[2]))
+
+    def _named(self, place: Array) -> dict[str, float]:
+        return {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)}
+
+    @cached_property
+    @symbolic
+    def _bends(self) -> Any:
+        """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second one along a way."""
+        x, p, way = self.turns.sx_in()
+        slopes = self.slopes(x, p)
+        along = ca.jtimes(ca.dot(slopes[1:], way), x, way)
+        return ca.Function("bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True})
 
     @cached_property
     def clearance(self) -> Clearance:
@@ -135,12 +174,11 @@ class Smooth:
 
     def broken(self, paths: Array, p: Array) -> Flags:
         """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
-        found = np.zeros(len(paths), bool)
-        size = max(1, _AT_ONCE // max(paths.shape[2], 1))
-        for start in range(0, len(paths), size):
-            some = slice(start, start + size)
-            found[[start + k for k, *_ in self._kinks(paths[some], p[some])]] = True
-        return found
+        return _owners(self._kinks, paths, p)
+
+    def isolates(self, paths: Array, p: Array, *, between: bool = False) -> Flags:
+        """Which paths (d, symbols, n) have an isolated instant, or place ``between``, for values ``p`` (d, fixed) of each."""
+        return _owners(partial(self._isolated, between=between), paths, p)
 
     def _kinks(self, paths: Array, p: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Every kink: the number of its path, what jumps, by what part of it, and where."""
@@ -150,21 +188,66 @@ class Smooth:
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
             marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
-            passed, touched = self._places(_Steps.of(paths, p), marks)
+            passed, touched, _ = self._places(_Steps.of(paths, p), marks)
             if not (passed.owner.size or touched.owner.size):
                 return
-            usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
-            usual = np.where(np.isfinite(usual), usual, 0.0)
-            # A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope
-            # beside a pole says nothing of what is added up elsewhere.
-            terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
-            value = np.maximum(usual[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
-            usual = np.array([value, usual[1:].max(axis=(0, 2))])
+            usual = _usual(_called(self.slopes, flat, fixed).reshape(-1, count, n), paths)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
-    def _places(self, steps: _Steps, marks: Array) -> tuple[_Steps, _Steps]:
-        """Where marks pass, and where something is open: steps from just before to just after."""
+    def _isolated(self, paths: Array, p: Array, between: bool) -> Iterator[tuple[int, str, Array]]:
+        """Every instant with a value, slope or curvature of its own: the number of its path, what it is, and where.
+
+        It is where an operation's mark is zero, or a whole number, to the last bit. Where one of them jumps, what lies between both
+        sides is no other.
+        """
+        count, symbols, n = paths.shape
+        if not count:
+            return
+        flat, fixed = np.moveaxis(paths, 1, 0).reshape(symbols, -1), np.repeat(p.T, n, axis=1)
+        with np.errstate(all="ignore"):
+            marks = _called(self.marks, flat, fixed)
+            steps = _Steps.through(paths, p)
+            steps = steps.some(self._exact(marks).any(axis=0).nonzero()[0])
+            if between and n > 1:
+                passed, _, turned = self._places(_Steps.of(paths, p), marks.reshape(-1, count, n))
+                ends = [of.to(end, end) for of in (passed, turned) for end in (of.low, of.high)]
+                steps = _Steps.joined([steps, *ends])
+            # It is no place alone where a mark stays as it is.
+            exact, *beside = (self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART))
+            steps = steps.some((exact & ~np.all(beside, axis=0)).any(axis=0).nonzero()[0])
+            if not steps.owner.size:
+                return
+            here = _called(self._bends, steps.at(steps.low), steps.p, steps.way)
+            # Most are at rest, or go on as they are.
+            others = [_called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART]
+            some = np.isfinite(here).all(axis=0) & ~np.all([row == here for row in others], axis=(0, 1))
+            if not some.any():
+                return
+            steps, here = steps.some(np.flatnonzero(some)), here[:, some]
+            rows = _called(self._bends, flat, fixed, _Steps.through(paths, p).way).reshape(-1, count, n)
+            usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[:, steps.owner]
+            kinds = np.array([0, *[1] * symbols, 2])
+            sides = [Side(side.value - here[:, None], side.off, side.there) for side in _sides(self._bends, steps, steps.low)]
+            same, signs = [], []
+            for side in sides:
+                sizes = np.abs(side.value) + np.abs(here)[:, None]
+                sizes = np.array([sizes[kinds == kind].max(axis=0) for kind in range(3)])
+                least = _SLACK * (_SAME * sizes + _FAINT * usual[:, None])
+                same.append(vanishes(side, sizes[kinds], least[kinds])[0])
+                signs.append(side.nearest_signs)
+        other = ~(same[0] | same[1] | (signs[0] * signs[1] < 0.0))
+        places = steps.at(steps.low)
+        for k in np.flatnonzero(other.any(axis=0)):
+            what = ("value", "slope", "curvature")[kinds[other[:, k].argmax()]]
+            yield int(steps.owner[k]), what, places[:, k]
+
+    def _exact(self, marks: Array) -> Flags:
+        """Which marks (marks, m) are zero, or a whole number, to the last bit."""
+        return np.asarray(marks == np.where(self.whole[:, None], np.rint(marks), 0.0))
+
+    def _places(self, steps: _Steps, marks: Array) -> tuple[_Steps, _Steps, _Steps]:
+        """Where marks pass, where something is open, and where marks turn back: steps from just before to just after."""
         states = self._states(marks)
         changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
         turned, row = self._turned(steps, marks)
@@ -190,7 +273,7 @@ class Smooth:
             passed.append(found.some((changes & ~open_).any(axis=0)))
             touched.append(found.some((changes & open_).any(axis=0)))
             waiting = [found.to(found.high, rest.high)]
-        return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched)
+        return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched), turned
 
     def _turned(self, steps: _Steps, marks: Array) -> tuple[_Steps, npt.NDArray[np.intp]]:
         """Where marks turn back near zero between instants, or near a whole number; and which."""
@@ -244,20 +327,11 @@ class Smooth:
 
         What is beyond the path's ends has no say.
         """
-        many, middle = steps.owner.size, (steps.low + steps.high) / 2
-        if not many:
+        if not steps.owner.size:
             return
-        far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-        wide, shape = _Steps.joined([steps] * _LIMITS), (len(self.symbols) + 1, _LIMITS, many)
-        sides = []
-        for way in (-1, 1):
-            share = middle + way * far
-            places, there = wide.at(share.ravel()), (share >= steps.least) & (share <= steps.most)
-            value, off = (of(self.slopes, places, wide.p).reshape(shape) for of in (_called, running_errors))
-            sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
-        before, after = sides
+        before, after = sides = _sides(self.slopes, steps, (steps.low + steps.high) / 2)
         # The largest of slopes says what is large or small for all of them.
-        rows = np.minimum(np.arange(shape[0]), 1)
+        rows = np.minimum(np.arange(len(self.symbols) + 1), 1)
 
         faint = _FAINT * usual[:, steps.owner]
 
@@ -299,6 +373,17 @@ class _Steps:
         return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
 
     @classmethod
+    def through(cls, paths: Array, p: Array) -> _Steps:
+        """From all instants on, or where the path rests there, as it came; as far as is asked for. A single one goes anywhere."""
+        count, symbols, n = paths.shape
+        ahead = np.diff(paths, append=paths[..., -1:])
+        came = np.diff(paths, prepend=paths[..., :1])
+        ways = np.where((ahead != 0.0).any(axis=1, keepdims=True), ahead, came) if n > 1 else np.ones(paths.shape)
+        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths, ways))
+        owner, none = np.repeat(np.arange(count), n), np.zeros(count * n)
+        return cls(x, way, p.T[:, owner], owner, none, none, none - np.inf, none + np.inf)
+
+    @classmethod
     def joined(cls, parts: Sequence[_Steps]) -> _Steps:
         """Several as one."""
         return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS))
@@ -336,6 +421,10 @@ class _Steps:
         return self.to(low, high)
 
 
+def _place(at: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.6g}" for name, value in at.items())
+
+
 _STEPS = tuple(entry.name for entry in fields(_Steps))
 
 
@@ -348,6 +437,46 @@ def _called(function: Any, *columns: Array) -> Array:
         array[...] = values.T
     call()
     return np.ascontiguousarray(found[0].T)
+
+
+def _sides(function: Any, steps: _Steps, middle: Any) -> tuple[Side, Side]:
+    """What a function of places, fixed symbols and ways gives at ever smaller distances before and after a share of each step."""
+    far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
+    wide, shape = _Steps.joined([steps] * _LIMITS), (function.size1_out(0), _LIMITS, steps.owner.size)
+    sides = []
+    for way in (-1, 1):
+        share = middle + way * far
+        given, there = (wide.at(share.ravel()), wide.p, wide.way), (share >= steps.least) & (share <= steps.most)
+        value, off = (of(function, *given[: function.n_in()]).reshape(shape) for of in (_called, running_errors))
+        sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
+    return sides[0], sides[1]
+
+
+def _usual(slopes: Array, paths: Array) -> Array:
+    """How large the value and the slopes (rows, d, n) along paths (d, symbols, n) are, (2, d).
+
+    A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope beside a pole
+    says nothing of what is added up elsewhere.
+    """
+    sizes = _finite(slopes)
+    terms = (sizes[1:] * np.abs(np.moveaxis(paths, 1, 0))).sum(axis=0)
+    value = np.maximum(sizes[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
+    return np.array([value, sizes[1:].max(axis=(0, 2))])
+
+
+def _finite(rows: Array) -> Array:
+    """Sizes, without those that are no numbers."""
+    return np.where(np.isfinite(rows), np.abs(rows), 0.0)
+
+
+def _owners(look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array) -> Flags:
+    """Of which paths (d, symbols, n) anything is found."""
+    found = np.zeros(len(paths), bool)
+    size = max(1, _AT_ONCE // max(paths.shape[2], 1))
+    for start in range(0, len(paths), size):
+        some = slice(start, start + size)
+        found[[start + k for k, *_ in look(paths[some], p[some])]] = True
+    return found
 
 
 def _both(rows: Array) -> Array:
