@@ -14,7 +14,6 @@ from ...base.arrays import Array
 from ...base.vocabulary import Backend
 from ...declare.scene import Scene, Wanted
 from ...declare.times import Times, Timing
-from ...equations.described import described
 from ...equations.fingerprint import fingerprint, sources
 from ...errors import DeclarationError, UnknownNameError, check_kind
 from ...instants.rung import Rung
@@ -191,7 +190,7 @@ class Question:
             "sources": sources(),
             "compiler": f"{made.backend} {made.compiler} {made.flags} {made.rung}",
             "scene": fingerprint(scene, wanted) or "cannot be told",
-            "mechanism": described(scene, scene.mechanism.values()),
+            "mechanism": engine.graph.data.description(scene.mechanism.values()),
             "t": self.timing.words(scene.mechanism.symbols),
             "minimise": list(map(str, self.objectives)),
             "subject_to": [c.words for c in self.constraints],

@@ -22,7 +22,6 @@ from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, s
 from ...declare.times import Over, Times, Timing
 from ...declare.wanted_slopes import SENSITIVITY, by_parameters
 from ...equations.derive import derive
-from ...equations.described import described
 from ...equations.fingerprint import fingerprint, sources
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ...instants.rung import Rung
@@ -222,8 +221,8 @@ class Plan:
 
     @property
     def description(self) -> Description:
-        """The mechanism, the swept parameters at their defaults."""
-        return described(self.scene, self.values)
+        """The mechanism with the axes and places that are used, the swept parameters at their defaults."""
+        return derive(self.scene, self.task.wanted).data.description(self.values)
 
     @cached_property
     def identity(self) -> dict[str, Any]:
