@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -19,13 +19,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError
-from .clearance import Clearance, bound
+from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
 from .marks import marks_of
+from .steps import Steps, called, sides_of
 
 _SAME, _FAINT = 1e-6, 1e-9
 """What is no jump: of the value or slope there, and of the largest along the path."""
@@ -33,11 +33,8 @@ _SAME, _FAINT = 1e-6, 1e-9
 _MOST_PLACES = 0.9
 """At which share of instants a constraint's terms are no larger than what they are measured by."""
 
-_HALVINGS, _ROUNDS = 64, 8
-"""How often a step is halved, and how many places are looked for in one."""
-
-_WIDEST, _LIMITS = 2048.0, 47
-"""From how many steps away a limit is taken, and at how many distances, each half of the one before."""
+_ROUNDS = 8
+"""How many places are looked for in a step."""
 
 _SLACK = 10.0
 """By how much more limits may differ, which are extrapolated."""
@@ -187,11 +184,11 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
-            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
-            passed, touched, _ = self._places(_Steps.of(paths, p), marks)
+            marks = called(self.marks, flat, fixed).reshape(-1, count, n)
+            passed, touched, _ = self._places(Steps.of(paths, p), marks)
             if not (passed.owner.size or touched.owner.size):
                 return
-            usual = _usual(_called(self.slopes, flat, fixed).reshape(-1, count, n), paths)
+            usual = _usual(called(self.slopes, flat, fixed).reshape(-1, count, n), paths)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
@@ -206,29 +203,29 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(symbols, -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
-            marks = _called(self.marks, flat, fixed)
-            steps = _Steps.through(paths, p)
+            marks = called(self.marks, flat, fixed)
+            steps = Steps.through(paths, p)
             steps = steps.some(self._exact(marks).any(axis=0).nonzero()[0])
             if between and n > 1:
-                passed, _, turned = self._places(_Steps.of(paths, p), marks.reshape(-1, count, n))
+                passed, _, turned = self._places(Steps.of(paths, p), marks.reshape(-1, count, n))
                 ends = [of.to(end, end) for of in (passed, turned) for end in (of.low, of.high)]
-                steps = _Steps.joined([steps, *ends])
+                steps = Steps.joined([steps, *ends])
             # It is no place alone where a mark stays as it is.
             exact, *beside = (self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART))
             steps = steps.some((exact & ~np.all(beside, axis=0)).any(axis=0).nonzero()[0])
             if not steps.owner.size:
                 return
-            here = _called(self._bends, steps.at(steps.low), steps.p, steps.way)
+            here = called(self._bends, steps.at(steps.low), steps.p, steps.way)
             # Most are at rest, or go on as they are.
-            others = [_called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART]
+            others = [called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART]
             some = np.isfinite(here).all(axis=0) & ~np.all([row == here for row in others], axis=(0, 1))
             if not some.any():
                 return
             steps, here = steps.some(np.flatnonzero(some)), here[:, some]
-            rows = _called(self._bends, flat, fixed, _Steps.through(paths, p).way).reshape(-1, count, n)
+            rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(-1, count, n)
             usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[:, steps.owner]
             kinds = np.array([0, *[1] * symbols, 2])
-            sides = [Side(side.value - here[:, None], side.off, side.there) for side in _sides(self._bends, steps, steps.low)]
+            sides = [Side(side.value - here[:, None], side.off, side.there) for side in sides_of(self._bends, steps, steps.low)]
             same, signs = [], []
             for side in sides:
                 sizes = np.abs(side.value) + np.abs(here)[:, None]
@@ -246,7 +243,7 @@ class Smooth:
         """Which marks (marks, m) are zero, or a whole number, to the last bit."""
         return np.asarray(marks == np.where(self.whole[:, None], np.rint(marks), 0.0))
 
-    def _places(self, steps: _Steps, marks: Array) -> tuple[_Steps, _Steps, _Steps]:
+    def _places(self, steps: Steps, marks: Array) -> tuple[Steps, Steps, Steps]:
         """Where marks pass, where something is open, and where marks turn back: steps from just before to just after."""
         states = self._states(marks)
         changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
@@ -262,7 +259,7 @@ class Smooth:
             waiting += [turned.to(0.0, turned.low), turned.to(turned.low, 1.0)]
         passed = []
         for _ in range(_ROUNDS):
-            rest = _Steps.joined(waiting)
+            rest = Steps.joined(waiting)
             ends = [self._states(self._marks(rest, x)) for x in (rest.low, rest.high)]
             rest = rest.some((ends[0] != ends[1]).any(axis=0))
             if not rest.owner.size:
@@ -273,9 +270,9 @@ class Smooth:
             passed.append(found.some((changes & ~open_).any(axis=0)))
             touched.append(found.some((changes & open_).any(axis=0)))
             waiting = [found.to(found.high, rest.high)]
-        return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched), turned
+        return Steps.joined(passed or [steps.some([])]), Steps.joined(touched), turned
 
-    def _turned(self, steps: _Steps, marks: Array) -> tuple[_Steps, npt.NDArray[np.intp]]:
+    def _turned(self, steps: Steps, marks: Array) -> tuple[Steps, npt.NDArray[np.intp]]:
         """Where marks turn back near zero between instants, or near a whole number; and which."""
         n = marks.shape[2]
         if n < 3:
@@ -288,33 +285,33 @@ class Smooth:
         number = np.concatenate([owner * (n - 1) + place, owner * (n - 1) + place + 1])
         row, some = np.concatenate([row, row]), steps.some(number)
 
-        def rises(x: Any, of: _Steps = some, rows: Any = row) -> Array:
-            slopes = _called(self.turns, of.at(x), of.p, of.way)
+        def rises(x: Any, of: Steps = some, rows: Any = row) -> Array:
+            slopes = called(self.turns, of.at(x), of.p, of.way)
             return np.asarray(slopes[rows, np.arange(rows.size)] > 0.0)[None]
 
         turning = (rises(some.low) != rises(some.high))[0]
         some, row = some.some(turning), row[turning]
         return some.halved(lambda x: rises(x, some, row)), row
 
-    def _state(self, steps: _Steps, x: Any) -> Array:
+    def _state(self, steps: Steps, x: Any) -> Array:
         return self._states(self._marks(steps, x))
 
-    def _marks(self, steps: _Steps, x: Any) -> Array:
-        return _called(self.marks, steps.at(x), steps.p)
+    def _marks(self, steps: Steps, x: Any) -> Array:
+        return called(self.marks, steps.at(x), steps.p)
 
     def _states(self, marks: Array) -> Array:
         """On which side of a place each mark is."""
         whole = self.whole.reshape(-1, *[1] * (marks.ndim - 1))
         return np.where(whole, np.floor(marks), marks > 0.0)
 
-    def _compared(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+    def _compared(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Kinks where marks pass, by what is just before and just after; what seems one must have other limits on both sides.
 
         A size of what only touches zero has a slope of zero where rounding makes it nothing. Where the path ends there is one side.
         """
         off = steps.off(4.0, 1.0)
         # Off the place itself, where a size has the slope of neither side.
-        before, after = (_called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
+        before, after = (called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
         gaps = _both(np.abs(after - before))
         sizes = _both(np.maximum(np.abs(before), np.abs(after)))
         broken = gaps > _SAME * sizes + _FAINT * usual[:, steps.owner]
@@ -322,14 +319,14 @@ class Smooth:
         yield from _worst(steps.some(at_end), (gaps / sizes)[:, at_end], broken[:, at_end])
         yield from self._limits(steps.some(broken.any(axis=0) & ~at_end), usual)
 
-    def _limits(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+    def _limits(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Kinks where something may be without bound: both sides must have limits, and the same ones.
 
         What is beyond the path's ends has no say.
         """
         if not steps.owner.size:
             return
-        before, after = sides = _sides(self.slopes, steps, (steps.low + steps.high) / 2)
+        before, after = sides = sides_of(self.slopes, steps, (steps.low + steps.high) / 2)
         # The largest of slopes says what is large or small for all of them.
         rows = np.minimum(np.arange(len(self.symbols) + 1), 1)
 
@@ -347,109 +344,8 @@ class Smooth:
         yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
 
 
-@dataclass(frozen=True, eq=False)
-class _Steps:
-    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which path (``owner``).
-
-    A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the path ends.
-    """
-
-    x: Array
-    way: Array
-    p: Array
-    owner: npt.NDArray[np.intp]
-    low: Array
-    high: Array
-    least: Array
-    most: Array
-
-    @classmethod
-    def of(cls, paths: Array, p: Array) -> _Steps:
-        """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
-        count, symbols, n = paths.shape
-        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths[..., :-1], np.diff(paths)))
-        number = np.tile(np.arange(n - 1.0), count)
-        owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
-        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
-
-    @classmethod
-    def through(cls, paths: Array, p: Array) -> _Steps:
-        """From all instants on, or where the path rests there, as it came; as far as is asked for. A single one goes anywhere."""
-        count, symbols, n = paths.shape
-        ahead = np.diff(paths, append=paths[..., -1:])
-        came = np.diff(paths, prepend=paths[..., :1])
-        ways = np.where((ahead != 0.0).any(axis=1, keepdims=True), ahead, came) if n > 1 else np.ones(paths.shape)
-        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths, ways))
-        owner, none = np.repeat(np.arange(count), n), np.zeros(count * n)
-        return cls(x, way, p.T[:, owner], owner, none, none, none - np.inf, none + np.inf)
-
-    @classmethod
-    def joined(cls, parts: Sequence[_Steps]) -> _Steps:
-        """Several as one."""
-        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS))
-
-    def some(self, which: Any) -> _Steps:
-        """Some of the steps."""
-        which = np.asarray(which) if len(which) else np.zeros(0, np.intp)
-        return _Steps(*(getattr(self, name)[..., which] for name in _STEPS))
-
-    def to(self, low: Any, high: Any) -> _Steps:
-        """Other shares of the steps."""
-        return replace(self, low=low + 0.0 * self.low, high=high + 0.0 * self.high)
-
-    def at(self, share: Any) -> Array:
-        """The places at shares of the steps, not beyond the path."""
-        return np.asarray(self.x + np.clip(share, self.least, self.most) * self.way)
-
-    def off(self, roundings: float, least: float) -> Array:
-        """The shares that move by so many roundings of places, or of ``least``."""
-        sizes = np.maximum(np.maximum(np.abs(self.x), np.abs(self.x + self.way)), least)
-        moves = np.abs(self.way) / np.spacing(sizes)
-        return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
-
-    def halved(self, state: Callable[[Any], Array]) -> _Steps:
-        """To where the state of each, (rows, m), changes from what it is at its low share."""
-        low, high = self.low, self.high
-        before = state(low)
-        for _ in range(_HALVINGS if self.owner.size else 0):
-            middle = (low + high) / 2
-            if not ((low < middle) & (middle < high)).any():
-                # No number is between them.
-                break
-            same = (state(middle) == before).all(axis=0)
-            low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return self.to(low, high)
-
-
 def _place(at: Mapping[str, float]) -> str:
     return ", ".join(f"{name} = {value:.6g}" for name, value in at.items())
-
-
-_STEPS = tuple(entry.name for entry in fields(_Steps))
-
-
-def _called(function: Any, *columns: Array) -> Array:
-    """The rows (rows, m) of a function of columns."""
-    if not columns[0].shape[1]:
-        return np.zeros((function.size1_out(0), 0))
-    given, found, call, _ = bound(function, columns[0].shape[1])
-    for array, values in zip(given, columns, strict=True):
-        array[...] = values.T
-    call()
-    return np.ascontiguousarray(found[0].T)
-
-
-def _sides(function: Any, steps: _Steps, middle: Any) -> tuple[Side, Side]:
-    """What a function of places, fixed symbols and ways gives at ever smaller distances before and after a share of each step."""
-    far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-    wide, shape = _Steps.joined([steps] * _LIMITS), (function.size1_out(0), _LIMITS, steps.owner.size)
-    sides = []
-    for way in (-1, 1):
-        share = middle + way * far
-        given, there = (wide.at(share.ravel()), wide.p, wide.way), (share >= steps.least) & (share <= steps.most)
-        value, off = (of(function, *given[: function.n_in()]).reshape(shape) for of in (_called, running_errors))
-        sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
-    return sides[0], sides[1]
 
 
 def _usual(slopes: Array, paths: Array) -> Array:
@@ -484,7 +380,7 @@ def _both(rows: Array) -> Array:
     return np.array([rows[0], rows[1:].max(axis=0)])
 
 
-def _worst(steps: _Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
+def _worst(steps: Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
     """Kinks by what part of it jumps of the value and of slopes, (2, m); without bound where there is no limit."""
     places = steps.at(steps.high)
     for k in np.flatnonzero(broken.any(axis=0)):
