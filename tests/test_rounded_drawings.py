@@ -9,7 +9,7 @@ from spatial_draft import orientation
 from spatial_twin import planar, twin
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, load, load_case, prepare, save, sweep, tolerances
-from lagrange_casadi.errors import ParameterError
+from lagrange_casadi.errors import AssemblyError, ParameterError
 from lagrange_casadi.motion import polynomial
 
 FACTOR = 100.0
@@ -122,6 +122,7 @@ def hung(noise):
 def test_a_bar_of_hard_points_may_be_loaded(noise):
     found = vm(hung(noise))
     assert rounded(found)
+    assert 0.0 < found.description["rounded"]["pull"][1] < 2 * noise
     assert_near(found, vm(hung(0.0)), noise)
 
 
@@ -195,6 +196,8 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     exact, rough = pressing(0.0), pressing(noise)
     grid = {"length": (0.06, 0.12, 3), "tilt": [0.0, 1e-7, 0.1]}
     one, other = (sweep(scene, grid, wanted=["effort"]) for scene in (exact, rough))
+    assert "rounded" not in one.description
+    assert 0.0 < max(map(max, other.description["rounded"].values())) < 2 * noise
     for joint in ("swing", "O"):
         name = f"peak:effort:{joint}"
         peaks, found = (np.array([kept.values(k, name)[name] for k in range(kept.size)]) for kept in (one, other))
@@ -215,23 +218,29 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     assert (tmp_path / "exported" / "export.json").is_file()
 
 
-@pytest.mark.parametrize("raised", [1.0, 3.0, -2.0])
-def test_corrections_are_sought_for_the_parameters_in_use(raised):
-    """What a place is off goes with a parameter: one correction does not serve all."""
+def offset(by, default):
+    """A four-bar with a pivot that is off its plane, by a parameter."""
+    m = SpatialMechanism("offset")
+    by = by * m.parameter("k", default)
+    crank, rod, rocker = (m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("C", m.ground.at(0.3, 0.05, by), rocker)
+    m.revolute("B", rod.tip, rocker.tip)
+    return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
 
-    def offset(by):
-        m = SpatialMechanism("offset")
-        by = by * m.parameter("k", 1.0)
-        crank, rod, rocker = (m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
-        m.revolute("O", m.ground, crank)
-        m.revolute("A", crank.tip, rod)
-        m.revolute("C", m.ground.at(0.3, 0.05, by), rocker)
-        m.revolute("B", rod.tip, rocker.tip)
-        return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
 
-    exact, found = (evaluate(offset(by), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))
+@pytest.mark.parametrize(("default", "raised"), [(1.0, 1.0), (1.0, 3.0), (1.0, -2.0), (0.0, 1.0), (0.0, 0.01)])
+def test_corrections_are_sought_for_the_parameters_in_use(default, raised):
+    """One correction does not serve all of them, and loops that close by default may not for others."""
+    exact, found = (evaluate(offset(by, default), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))
     assert rounded(found)
     assert_near(found, exact, 2e-7)
+
+
+def test_loops_that_are_off_by_more_for_the_parameters_in_use_are_refused():
+    with pytest.raises(AssemblyError, match="over-constrained and do not fit"):
+        evaluate(offset(1.0, 0.0), parameters={"k": 2e-5}, backend="vm")
 
 
 @pytest.mark.parametrize("beyond", [1e-10, -3e-7])
@@ -248,6 +257,7 @@ def test_a_station_that_was_rounded_beyond_an_end_is_there(beyond):
     end = (lambda m: m.parameters["l"].symbol) if beyond > 0.0 else (lambda m: 0.0)
     found, exact = (evaluate(shelf(lambda m, off=off: end(m) + off), backend="vm") for off in (beyond, 0.0))
     assert found.effort("O") == pytest.approx(exact.effort("O"), rel=1e-15)
+    assert found.notes == (f"places of joint 'W' are taken as ends of links, moved by up to {abs(beyond):.2g} m",)
     for station in (lambda m: end(m) + 10 * beyond * 1e6, lambda m: m.parameter("x", 0.3 + abs(beyond), "m")):
         with pytest.raises(ParameterError, match="outside link"):
             shelf(station)
@@ -268,5 +278,27 @@ def test_a_second_axis_of_parameters_is_made_exact(off):
     values = {"phase": 0.3}
     found, exact = (evaluate(crossed(size), parameters=values, backend="vm") for size in (off, 0.0))
     assert_near(found, exact, abs(off))
+    assert found.notes == (f"axes of joint 'C' are taken as at right angles, moved by up to {abs(off):.2g} rad",)
+    assert exact.notes == ()
     with pytest.raises(ParameterError, match="right angles"):
         evaluate(crossed(off), parameters={"lean": 1e-3})
+
+
+@pytest.mark.parametrize("off", [(-1e-8, 2e-7), (0.0, 1e-9), (-2e-7, 0.0)])
+def test_a_load_along_a_link_that_was_rounded_beyond_an_end_ends_there(off):
+    """Of a link whose length is a parameter too; and not where it is off by more."""
+
+    def shelf(before, after):
+        m = Mechanism("shelf")
+        length = m.parameter("l", 0.3, "m")
+        arm = m.link("arm", length=length, mass=1.0)
+        m.revolute("O", m.ground, arm)
+        m.line_load("wind", arm, y=(-20.0, -40.0), between=(before, length + after))
+        return Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 3), xi=(0, 1, 5), wanted=["effort", "section"])
+
+    found, exact = (evaluate(shelf(*ends), parameters={"l": 0.4}, backend="vm") for ends in (off, (0.0, 0.0)))
+    np.testing.assert_array_equal(found.effort("O"), exact.effort("O"))
+    np.testing.assert_array_equal(found.section("arm").bending, exact.section("arm").bending)
+    assert found.notes == (f"places of load 'wind' are taken as ends of links, moved by up to {max(map(abs, off)):.2g} m",)
+    with pytest.raises(ParameterError, match="but link 'arm' is from 0 to"):
+        shelf(off[0], 1e-6)

@@ -11,6 +11,7 @@ import click
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
+from ..declare.notes import drawing_notes
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..instants.refusal import Status
@@ -81,7 +82,7 @@ def sweep(
     _report(found)
     turns = turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings))
     rests = resting_note(loaded.scene, found, parameters(settings), t=t, over=over, wanted=want or None)
-    for note in filter(None, (rests, turns)):
+    for note in filter(None, (*drawing_notes(found.description), rests, turns)):
         echo(f"note: {note}")
     echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:

@@ -61,6 +61,16 @@ class Corners(Graphs):
         laws, constraints = ({name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2])
         return cls(laws, constraints, words[2])
 
+    def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
+        """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than on both sides of it.
+
+        With ``between`` also for one that is so between instants, where peaks may be sought.
+        """
+        for joint, smooth in self.laws.items():
+            found = smooth.isolated(t[None], p, between=between)
+            if found is not None:
+                raise found.refused(f"the motion of joint '{joint}'")
+
     def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
         """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for parameters ``p``."""
         for joint, smooth in self.laws.items():
@@ -68,19 +78,21 @@ class Corners(Graphs):
             if found is not None:
                 raise found.refused(f"the motion of joint '{joint}'")
 
-    def refuse_constraints(self, seen: Callable[[str], Array], p: Sequence[float]) -> None:
-        """Raise :class:`.DeclarationError` for a constraint with a kink, for parameters ``p``.
+    def refuse_constraints(self, seen: Callable[[str], Array], p: Sequence[float], *, between: bool = False) -> None:
+        """Raise :class:`.DeclarationError` for a constraint with a kink, or isolated at an instant, for parameters ``p``.
 
-        ``seen`` gives what a constraint sees over the instants, (symbols, t).
+        ``seen`` gives what a constraint sees over the instants, (symbols, t); ``between`` is that of motions.
         """
         for name, smooth in self.constraints.items():
-            found = smooth.kink(seen(name), p)
+            path = seen(name)
+            found = smooth.kink(path, p) or smooth.isolated(path, p, between=between)
             if found is not None:
                 raise found.refused(f"cam '{name}': its lift" if name in self.cams else f"constraint '{name}'")
 
-    def broken_laws(self, start: Array, stop: Array, p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""
+    def broken_laws(self, t: Array, p: Array) -> npt.NDArray[np.bool_]:
+        """Of which designs ``p`` (d, parameters) a motion has a kink between their instants ``t`` (1 or d, t), or is isolated."""
         found = np.zeros(len(p), bool)
+        start, stop = (np.broadcast_to(t[:, k], len(p)) for k in (0, -1))
         for smooth in self.laws.values():
             near = smooth.clearance.near(start[:, None], stop[:, None], p, lambda some: _instants(start[some], stop[some]))
             if not near.any():
@@ -89,10 +101,15 @@ class Corners(Graphs):
             rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])[near]
             each, number = np.unique(rows, axis=0, return_inverse=True)
             found[near] |= _broken_law(smooth, each.tobytes())[number.ravel()]
+            if len(t) > 1:
+                found[near] |= smooth.isolates(t[near, None], p[near], between=True)
+            else:
+                at = np.broadcast_to(t[:, None], (len(each), 1, t.shape[1]))
+                found[near] |= smooth.isolates(at, each[:, 2:], between=True)[number.ravel()]
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs a constraint has a kink; ``seen`` as above, (d, symbols, t)."""
+        """Of which designs a constraint has a kink, or is isolated; ``seen`` as above, (d, symbols, t)."""
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
             paths = seen(name)
@@ -118,5 +135,6 @@ def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np
     """Which of the paths (d, symbols, t) have a kink; designs often share what a cam sees."""
     rows = np.concatenate([paths.reshape(len(paths), -1), p], axis=1)
     _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    found = smooth.broken(paths[which], p[which])[number.ravel()]
-    return np.asarray(found, bool)
+    paths, p = paths[which], p[which]
+    found = smooth.broken(paths, p) | smooth.isolates(paths, p, between=True)
+    return np.asarray(found[number.ravel()], bool)

@@ -81,6 +81,7 @@ def shape_of(value: Any) -> dict[str, Any]:
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
     optional = {"outlines": {str: [[float, float]]}, "losses": [str], "beside": {str: _VECTOR}, "rounded": {str: [float]}}
+    optional["snapped"] = {str: [float]}
     optional["unturned"] = [str]
     return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
 
@@ -203,6 +204,8 @@ class Template(Graphs):
             content["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
         if mechanism.rounded:
             content["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
+        if mechanism.snapped:
+            content["snapped"] = {name: list(by) for name, by in mechanism.snapped.items()}
         if drives is not None:
             content |= {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
         return cls.over(content, asked, mechanism.symbols)

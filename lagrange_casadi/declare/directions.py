@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 
@@ -16,11 +16,11 @@ from .joints import Triad
 from .limits import ROUNDED
 from .parts import Body, Expression, Link, Point
 
+if TYPE_CHECKING:
+    from .ownership import Ownership
+
 Checked = Callable[..., Expression]
 """Takes what is said of an expression, the expression, and its unit if a text may tell it."""
-
-Number = Callable[[Expression], float]
-"""Gives the value of an expression for the default parameters."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
@@ -74,28 +74,31 @@ def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
     return x, y, z
 
 
-def triad_of(what: str, axis: Any, second: Any, checked: Checked, number: Number) -> Triad:
+def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and at right angles to both.
 
     A second one that is off a right angle by the rounding of a drawing is made exact: its part across the first is taken. Where
     parameters set them, so it is if their defaults are off; what other values are off by more than that is left, to be refused.
-    Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is off by more.
+    It is noted for the joint ``what``. Raises :class:`DeclarationError`, which names a ``part`` of it, for an axis of length zero,
+    and for a second one that is off by more.
     """
+    said = f"{what}{part}"
     if axis is None:
         if second is not None:
-            raise DeclarationError(f"{what}: second goes with axis, at right angles to it")
+            raise DeclarationError(f"{said}: second goes with axis, at right angles to it")
         return AXES
-    u = _unit(f"{what}: axis", vector(f"{what}: axis", axis, checked))
+    u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, own.expression))
     if second is None:
         v = across(u)
     else:
-        v = _unit(f"{what}: second axis", vector(f"{what}: second axis", second, checked))
+        v = _unit(f"{said}: second axis", vector(f"{said}: second axis", second, own.expression))
         cosine = dot(u, v)
         if isinstance(cosine, float) and abs(cosine) > ROUNDED:
-            raise DeclarationError(not_right(what, cosine))
-        if SAME < abs(number(cosine)) <= ROUNDED:
+            raise DeclarationError(not_right(said, cosine))
+        if SAME < abs(off := own.at_defaults(cosine)) <= ROUNDED:
             along = cosine if isinstance(cosine, float) else ca.fmax(-ROUNDED, ca.fmin(ROUNDED, cosine))
-            v = _unit(f"{what}: second axis", minus(v, times(along, u)))
+            v = _unit(f"{said}: second axis", minus(v, times(along, u)))
+            own.snapped(what, angle=abs(off))
     return u, v, cross(u, v)
 
 
@@ -123,19 +126,19 @@ def across(axis: Vector) -> Vector:
     return 1 + sign * x * x * factor, sign * x * y * factor, -sign * x
 
 
-def turned_by(what: str, turned: Any, checked: Checked, number: Number) -> tuple[Vector, Vector]:
+def turned_by(what: str, turned: Any, own: Ownership) -> tuple[Vector, Vector]:
     """The directions of a body's x and y axes: as told, or after turns in sequence, each about an axis that those before carry."""
     expected = "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the child's x and y axes"
     if not isinstance(turned, (list, tuple)):
         raise DeclarationError(f"{what}: turned is {expected}, got {turned!r}")
     if len(turned) == 2 and all(isinstance(one, (tuple, list)) and len(one) == 3 for one in turned):
-        x, y, _ = triad_of(f"{what}: turned", turned[0], turned[1], checked, number)
+        x, y, _ = triad_of(what, turned[0], turned[1], own, ": turned")
         return x, y
     found = Rotation()
     for turn in turned:
         if not isinstance(turn, (tuple, list)) or len(turn) != 2 or turn[0] not in ("x", "y", "z"):
             raise DeclarationError(f"{what}: turned is {expected}, got {turn!r}")
-        angle = checked(f"{what}: turned", turn[1], "rad")
+        angle = own.expression(f"{what}: turned", turn[1], "rad")
         found = found.then(Rotation.about(AXES["xyz".index(turn[0])], *direction(angle), angle))
     return found.x, found.y
 

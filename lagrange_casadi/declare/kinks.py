@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -19,12 +19,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
-from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
+from ..base.symbolic import symbolic
 from ..errors import DeclarationError
-from .clearance import Clearance, bound
+from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
 from .marks import marks_of
+from .steps import Steps, called, sides_of
 
 _SAME, _FAINT = 1e-6, 1e-9
 """What is no jump: of the value or slope there, and of the largest along the path."""
@@ -32,17 +33,14 @@ _SAME, _FAINT = 1e-6, 1e-9
 _MOST_PLACES = 0.9
 """At which share of instants a constraint's terms are no larger than what they are measured by."""
 
-_HALVINGS, _ROUNDS = 64, 8
-"""How often a step is halved, and how many places are looked for in one."""
-
-_WIDEST, _LIMITS = 2048.0, 47
-"""From how many steps away a limit is taken, and at how many distances, each half of the one before."""
-
-_SLACK = 10.0
-"""By how much more limits may differ, which are extrapolated."""
+_ROUNDS, _SLACK = 8, 10.0
+"""How many places are looked for in a step; and by how much more limits may differ, which are extrapolated."""
 
 _DIP, _TOUCH = 0.3, 1e-12
 """Of what is beside it: how near to zero an argument seems to come, and what is zero."""
+
+_APART = (-1.0, -(2.0**-10), -(2.0**-20), 2.0**-20, 2.0**-10, 1.0)
+"""How many steps from an instant it is first compared with what is beside it."""
 
 _ROUNDING = 16 * np.finfo(float).eps
 
@@ -59,9 +57,8 @@ class Kink:
     at: Mapping[str, float]
 
     def __str__(self) -> str:
-        place = ", ".join(f"{name} = {value:.6g}" for name, value in self.at.items())
         does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
-        return f"its {self.what} {does} where {place}"
+        return f"its {self.what} {does} where {_place(self.at)}"
 
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` has the kink."""
@@ -69,6 +66,25 @@ class Kink:
             f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a curve "
             "whose slope does not jump, of CasADi's functions: in place of a table, a curve(x, y), a "
             "polynomial or a Fourier sum"
+        )
+
+
+@dataclass(frozen=True)
+class Isolated:
+    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides of it."""
+
+    what: str
+    at: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return f"its {self.what} where {_place(self.at)} is not that on either side"
+
+    def refused(self, what: str) -> DeclarationError:
+        """The error for ``what`` is isolated at an instant."""
+        return DeclarationError(
+            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a curve without "
+            "if_else, fabs, sign, floor and the like that touch a place there: in place of if_else(x == 0, 1, sin(x)/x) "
+            "a series where x is small"
         )
 
 
@@ -123,11 +139,8 @@ class Smooth:
     def words(self) -> list[Any]:
         """Write it for JSON; functions as the text in which CasADi writes them."""
         functions = [f.serialize() for f in (self.marks, self.turns, self.slopes)]
-        return [
-            [symbol.name() for symbol in self.symbols],
-            *functions,
-            *(flags.tolist() for flags in (self.whole, self.open, self.uses)),
-        ]
+        flags = [own.tolist() for own in (self.whole, self.open, self.uses)]
+        return [[symbol.name() for symbol in self.symbols], *functions, *flags]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Smooth:
@@ -143,7 +156,24 @@ class Smooth:
         if not found:
             return None
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
-        return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
+        return Kink(what, jump, self._named(place))
+
+    def isolated(self, path: Array, values: Sequence[float], *, between: bool = False) -> Isolated | None:
+        """An instant of a path (symbols, n), or a place ``between`` two, at which something is other than on both sides of it."""
+        found = next(self._isolated(np.asarray(path, float)[None], np.array(values, float)[None], between), None)
+        return None if found is None else Isolated(found[1], self._named(found[2]))
+
+    def _named(self, place: Array) -> dict[str, float]:
+        return {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)}
+
+    @cached_property
+    @symbolic
+    def _bends(self) -> Any:
+        """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second one along a way."""
+        x, p, way = self.turns.sx_in()
+        slopes = self.slopes(x, p)
+        along = ca.jtimes(ca.dot(slopes[1:], way), x, way)
+        return ca.Function("bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True})
 
     @cached_property
     def clearance(self) -> Clearance:
@@ -152,12 +182,11 @@ class Smooth:
 
     def broken(self, paths: Array, p: Array) -> Flags:
         """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
-        found = np.zeros(len(paths), bool)
-        size = max(1, _AT_ONCE // max(paths.shape[2], 1))
-        for start in range(0, len(paths), size):
-            some = slice(start, start + size)
-            found[[start + k for k, *_ in self._kinks(paths[some], p[some])]] = True
-        return found
+        return _owners(self._kinks, paths, p)
+
+    def isolates(self, paths: Array, p: Array, *, between: bool = False) -> Flags:
+        """Which paths (d, symbols, n) have an isolated instant, or place ``between``, for values ``p`` (d, fixed) of each."""
+        return _owners(partial(self._isolated, between=between), paths, p)
 
     def _kinks(self, paths: Array, p: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Every kink: the number of its path, what jumps, by what part of it, and where."""
@@ -166,22 +195,67 @@ class Smooth:
             return
         flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
-            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
-            passed, touched = self._places(_Steps.of(paths, p), marks)
+            marks = called(self.marks, flat, fixed).reshape(-1, count, n)
+            passed, touched, _ = self._places(Steps.of(paths, p), marks)
             if not (passed.owner.size or touched.owner.size):
                 return
-            usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
-            usual = np.where(np.isfinite(usual), usual, 0.0)
-            # A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope
-            # beside a pole says nothing of what is added up elsewhere.
-            terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
-            value = np.maximum(usual[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
-            usual = np.array([value, usual[1:].max(axis=(0, 2))])
+            usual = _usual(called(self.slopes, flat, fixed).reshape(-1, count, n), paths)
             found = [*self._compared(passed, usual), *self._limits(touched, usual)]
         yield from found
 
-    def _places(self, steps: _Steps, marks: Array) -> tuple[_Steps, _Steps]:
-        """Where marks pass, and where something is open: steps from just before to just after."""
+    def _isolated(self, paths: Array, p: Array, between: bool) -> Iterator[tuple[int, str, Array]]:
+        """Every instant with a value, slope or curvature of its own: the number of its path, what it is, and where.
+
+        It is where an operation's mark is zero, or a whole number, to the last bit. Where one of them jumps, what lies between both
+        sides is no other.
+        """
+        count, symbols, n = paths.shape
+        if not count:
+            return
+        flat, fixed = np.moveaxis(paths, 1, 0).reshape(symbols, -1), np.repeat(p.T, n, axis=1)
+        with np.errstate(all="ignore"):
+            marks = called(self.marks, flat, fixed)
+            steps = Steps.through(paths, p)
+            steps = steps.some(self._exact(marks).any(axis=0).nonzero()[0])
+            if between and n > 1:
+                passed, _, turned = self._places(Steps.of(paths, p), marks.reshape(-1, count, n))
+                ends = [of.to(end, end) for of in (passed, turned) for end in (of.low, of.high)]
+                steps = Steps.joined([steps, *ends])
+            # It is no place alone where a mark stays as it is.
+            exact, *beside = (self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART))
+            steps = steps.some((exact & ~np.all(beside, axis=0)).any(axis=0).nonzero()[0])
+            if not steps.owner.size:
+                return
+            here = called(self._bends, steps.at(steps.low), steps.p, steps.way)
+            # Most are at rest, or go on as they are.
+            others = [called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART]
+            some = np.isfinite(here).all(axis=0) & ~np.all([row == here for row in others], axis=(0, 1))
+            if not some.any():
+                return
+            steps, here = steps.some(np.flatnonzero(some)), here[:, some]
+            rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(-1, count, n)
+            usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[:, steps.owner]
+            kinds = np.array([0, *[1] * symbols, 2])
+            sides = [Side(side.value - here[:, None], side.off, side.there) for side in sides_of(self._bends, steps, steps.low)]
+            same, signs = [], []
+            for side in sides:
+                sizes = np.abs(side.value) + np.abs(here)[:, None]
+                sizes = np.array([sizes[kinds == kind].max(axis=0) for kind in range(3)])
+                least = _SLACK * (_SAME * sizes + _FAINT * usual[:, None])
+                same.append(vanishes(side, sizes[kinds], least[kinds])[0])
+                signs.append(side.nearest_signs)
+        other = ~(same[0] | same[1] | (signs[0] * signs[1] < 0.0))
+        places = steps.at(steps.low)
+        for k in np.flatnonzero(other.any(axis=0)):
+            what = ("value", "slope", "curvature")[kinds[other[:, k].argmax()]]
+            yield int(steps.owner[k]), what, places[:, k]
+
+    def _exact(self, marks: Array) -> Flags:
+        """Which marks (marks, m) are zero, or a whole number, to the last bit."""
+        return np.asarray(marks == np.where(self.whole[:, None], np.rint(marks), 0.0))
+
+    def _places(self, steps: Steps, marks: Array) -> tuple[Steps, Steps, Steps]:
+        """Where marks pass, where something is open, and where marks turn back: steps from just before to just after."""
         states = self._states(marks)
         changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
         turned, row = self._turned(steps, marks)
@@ -196,7 +270,7 @@ class Smooth:
             waiting += [turned.to(0.0, turned.low), turned.to(turned.low, 1.0)]
         passed = []
         for _ in range(_ROUNDS):
-            rest = _Steps.joined(waiting)
+            rest = Steps.joined(waiting)
             ends = [self._states(self._marks(rest, x)) for x in (rest.low, rest.high)]
             rest = rest.some((ends[0] != ends[1]).any(axis=0))
             if not rest.owner.size:
@@ -207,9 +281,9 @@ class Smooth:
             passed.append(found.some((changes & ~open_).any(axis=0)))
             touched.append(found.some((changes & open_).any(axis=0)))
             waiting = [found.to(found.high, rest.high)]
-        return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched)
+        return Steps.joined(passed or [steps.some([])]), Steps.joined(touched), turned
 
-    def _turned(self, steps: _Steps, marks: Array) -> tuple[_Steps, npt.NDArray[np.intp]]:
+    def _turned(self, steps: Steps, marks: Array) -> tuple[Steps, npt.NDArray[np.intp]]:
         """Where marks turn back near zero between instants, or near a whole number; and which."""
         n = marks.shape[2]
         if n < 3:
@@ -222,33 +296,33 @@ class Smooth:
         number = np.concatenate([owner * (n - 1) + place, owner * (n - 1) + place + 1])
         row, some = np.concatenate([row, row]), steps.some(number)
 
-        def rises(x: Any, of: _Steps = some, rows: Any = row) -> Array:
-            slopes = _called(self.turns, of.at(x), of.p, of.way)
+        def rises(x: Any, of: Steps = some, rows: Any = row) -> Array:
+            slopes = called(self.turns, of.at(x), of.p, of.way)
             return np.asarray(slopes[rows, np.arange(rows.size)] > 0.0)[None]
 
         turning = (rises(some.low) != rises(some.high))[0]
         some, row = some.some(turning), row[turning]
         return some.halved(lambda x: rises(x, some, row)), row
 
-    def _state(self, steps: _Steps, x: Any) -> Array:
+    def _state(self, steps: Steps, x: Any) -> Array:
         return self._states(self._marks(steps, x))
 
-    def _marks(self, steps: _Steps, x: Any) -> Array:
-        return _called(self.marks, steps.at(x), steps.p)
+    def _marks(self, steps: Steps, x: Any) -> Array:
+        return called(self.marks, steps.at(x), steps.p)
 
     def _states(self, marks: Array) -> Array:
         """On which side of a place each mark is."""
         whole = self.whole.reshape(-1, *[1] * (marks.ndim - 1))
         return np.where(whole, np.floor(marks), marks > 0.0)
 
-    def _compared(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+    def _compared(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Kinks where marks pass, by what is just before and just after; what seems one must have other limits on both sides.
 
         A size of what only touches zero has a slope of zero where rounding makes it nothing. Where the path ends there is one side.
         """
         off = steps.off(4.0, 1.0)
         # Off the place itself, where a size has the slope of neither side.
-        before, after = (_called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
+        before, after = (called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
         gaps = _both(np.abs(after - before))
         sizes = _both(np.maximum(np.abs(before), np.abs(after)))
         broken = gaps > _SAME * sizes + _FAINT * usual[:, steps.owner]
@@ -256,25 +330,16 @@ class Smooth:
         yield from _worst(steps.some(at_end), (gaps / sizes)[:, at_end], broken[:, at_end])
         yield from self._limits(steps.some(broken.any(axis=0) & ~at_end), usual)
 
-    def _limits(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+    def _limits(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
         """Kinks where something may be without bound: both sides must have limits, and the same ones.
 
         What is beyond the path's ends has no say.
         """
-        many, middle = steps.owner.size, (steps.low + steps.high) / 2
-        if not many:
+        if not steps.owner.size:
             return
-        far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-        wide, shape = _Steps.joined([steps] * _LIMITS), (len(self.symbols) + 1, _LIMITS, many)
-        sides = []
-        for way in (-1, 1):
-            share = middle + way * far
-            places, there = wide.at(share.ravel()), (share >= steps.least) & (share <= steps.most)
-            value, off = (of(self.slopes, places, wide.p).reshape(shape) for of in (_called, running_errors))
-            sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
-        before, after = sides
+        before, after = sides = sides_of(self.slopes, steps, (steps.low + steps.high) / 2)
         # The largest of slopes says what is large or small for all of them.
-        rows = np.minimum(np.arange(shape[0]), 1)
+        rows = np.minimum(np.arange(len(self.symbols) + 1), 1)
 
         faint = _FAINT * usual[:, steps.owner]
 
@@ -290,81 +355,35 @@ class Smooth:
         yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
 
 
-@dataclass(frozen=True, eq=False)
-class _Steps:
-    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which path (``owner``).
+def _place(at: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.6g}" for name, value in at.items())
 
-    A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the path ends.
+
+def _usual(slopes: Array, paths: Array) -> Array:
+    """How large the value and the slopes (rows, d, n) along paths (d, symbols, n) are, (2, d).
+
+    A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope beside a pole
+    says nothing of what is added up elsewhere.
     """
-
-    x: Array
-    way: Array
-    p: Array
-    owner: npt.NDArray[np.intp]
-    low: Array
-    high: Array
-    least: Array
-    most: Array
-
-    @classmethod
-    def of(cls, paths: Array, p: Array) -> _Steps:
-        """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
-        count, symbols, n = paths.shape
-        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths[..., :-1], np.diff(paths)))
-        number = np.tile(np.arange(n - 1.0), count)
-        owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
-        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
-
-    @classmethod
-    def joined(cls, parts: Sequence[_Steps]) -> _Steps:
-        """Several as one."""
-        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS))
-
-    def some(self, which: Any) -> _Steps:
-        """Some of the steps."""
-        which = np.asarray(which) if len(which) else np.zeros(0, np.intp)
-        return _Steps(*(getattr(self, name)[..., which] for name in _STEPS))
-
-    def to(self, low: Any, high: Any) -> _Steps:
-        """Other shares of the steps."""
-        return replace(self, low=low + 0.0 * self.low, high=high + 0.0 * self.high)
-
-    def at(self, share: Any) -> Array:
-        """The places at shares of the steps, not beyond the path."""
-        return np.asarray(self.x + np.clip(share, self.least, self.most) * self.way)
-
-    def off(self, roundings: float, least: float) -> Array:
-        """The shares that move by so many roundings of places, or of ``least``."""
-        sizes = np.maximum(np.maximum(np.abs(self.x), np.abs(self.x + self.way)), least)
-        moves = np.abs(self.way) / np.spacing(sizes)
-        return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
-
-    def halved(self, state: Callable[[Any], Array]) -> _Steps:
-        """To where the state of each, (rows, m), changes from what it is at its low share."""
-        low, high = self.low, self.high
-        before = state(low)
-        for _ in range(_HALVINGS if self.owner.size else 0):
-            middle = (low + high) / 2
-            if not ((low < middle) & (middle < high)).any():
-                # No number is between them.
-                break
-            same = (state(middle) == before).all(axis=0)
-            low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return self.to(low, high)
+    sizes = _finite(slopes)
+    terms = (sizes[1:] * np.abs(np.moveaxis(paths, 1, 0))).sum(axis=0)
+    value = np.maximum(sizes[0].max(axis=1), np.quantile(terms, _MOST_PLACES, axis=1))
+    return np.array([value, sizes[1:].max(axis=(0, 2))])
 
 
-_STEPS = tuple(entry.name for entry in fields(_Steps))
+def _finite(rows: Array) -> Array:
+    """Sizes, without those that are no numbers."""
+    return np.where(np.isfinite(rows), np.abs(rows), 0.0)
 
 
-def _called(function: Any, *columns: Array) -> Array:
-    """The rows (rows, m) of a function of columns."""
-    if not columns[0].shape[1]:
-        return np.zeros((function.size1_out(0), 0))
-    given, found, call, _ = bound(function, columns[0].shape[1])
-    for array, values in zip(given, columns, strict=True):
-        array[...] = values.T
-    call()
-    return np.ascontiguousarray(found[0].T)
+def _owners(look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array) -> Flags:
+    """Of which paths (d, symbols, n) anything is found."""
+    found = np.zeros(len(paths), bool)
+    size = max(1, _AT_ONCE // max(paths.shape[2], 1))
+    for start in range(0, len(paths), size):
+        some = slice(start, start + size)
+        found[[start + k for k, *_ in look(paths[some], p[some])]] = True
+    return found
 
 
 def _both(rows: Array) -> Array:
@@ -372,7 +391,7 @@ def _both(rows: Array) -> Array:
     return np.array([rows[0], rows[1:].max(axis=0)])
 
 
-def _worst(steps: _Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
+def _worst(steps: Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
     """Kinks by what part of it jumps of the value and of slopes, (2, m); without bound where there is no limit."""
     places = steps.at(steps.high)
     for k in np.flatnonzero(broken.any(axis=0)):

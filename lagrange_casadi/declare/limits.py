@@ -73,19 +73,25 @@ def margins(point: Point, precision: Precision) -> list[Expression]:
     return [point.x + slack, (point.body.length - point.x) + slack]
 
 
-def on_link(point: Point, number: Callable[[Expression], float]) -> Point:
-    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections, the point at that end.
+def on_link(point: Point, number: Callable[[Expression], float]) -> tuple[Point, float]:
+    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections, the end; and how far it was."""
+    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+        return point, 0.0
+    x, moved = along_link(point.x, point.body.length, number)
+    return (replace(point, x=x), moved) if moved else (point, 0.0)
+
+
+def along_link(x: Expression, length: Expression, number: Callable[[Expression], float]) -> tuple[Expression, float]:
+    """A place along a link [m]; or where the rounding of a drawing put it beyond an end, that end, and by how much it was moved.
 
     So far as it is beyond for any parameters; ``number`` has the value of an expression for the default ones.
     """
-    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
-        return point
-    for end, beyond in ((0.0, -point.x), (point.body.length, point.x - point.body.length)):
+    for end, beyond in ((0.0, -x), (length, x - length)):
         if ca.jacobian(ca.SX(beyond), ca.vertcat(ca.SX(0, 1), *ca.symvar(ca.SX(beyond)))).is_zero():
-            length = number(point.body.length)
-            if END["double"] * length < number(beyond) <= ROUNDED * length:
-                return replace(point, x=end)
-    return point
+            size, far = number(length), number(beyond)
+            if END["double"] * size < far <= ROUNDED * size:
+                return end, far
+    return x, 0.0
 
 
 def at_end(point: Point) -> Expression:

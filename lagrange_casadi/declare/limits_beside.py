@@ -47,6 +47,13 @@ class Side:
         large = np.abs(self.value)
         return np.maximum(large[:, 1:], large[:, :-1])
 
+    @property
+    def nearest_signs(self) -> Array:
+        """Their signs (rows, m) at the least distance that rounding does not hide; zero where it hides all."""
+        clear = self.there & np.isfinite(self.value) & (np.abs(self.value) > self.off)
+        last = self.value.shape[1] - 1 - clear[:, ::-1].argmax(axis=1)[:, None]
+        return np.asarray(np.where(clear.any(axis=1), np.sign(np.take_along_axis(self.value, last, 1)[:, 0]), 0.0))
+
 
 def between(before: Side, after: Side) -> Side:
     """What is different on both sides."""

@@ -43,7 +43,8 @@ def line_load(own: Ownership, name: str, link: Link, components: Sequence[Spread
     else:
         if not isinstance(between, tuple | list) or len(between) != 2:
             raise DeclarationError(f"{what}: between must be two distances from the base of '{body.name}' [m], got {between!r}")
-        start, end = (own.expression(f"{what}: between", place, "m") for place in between)
+        places = (own.expression(f"{what}: between", place, "m") for place in between)
+        start, end = (own.along(what, place, body) for place in places)
         if isinstance(start, float) and isinstance(end, float) and not start < end:
             raise DeclarationError(f"{what}: between must be two distances from the base that rise, got {start:g} and {end:g} m")
     found = [_powers(what, value, start, end, checked) for value in components]

@@ -9,6 +9,8 @@ import casadi as ca
 
 from ..arithmetic.lookups import is_entry
 
+_TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+
 
 def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
     """What makes an operation a kink where it passes zero, or a whole number; and whether it is open there."""
@@ -18,11 +20,11 @@ def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, boo
     elif operation in (ca.OP_FABS, ca.OP_SIGN, ca.OP_COPYSIGN):
         yield from ((one, False, False) for one in operands)
     elif operation in (ca.OP_EQ, ca.OP_NE):
-        yield ca.fabs(x - y), False, False
+        yield from ((one, False, False) for one in _zeros(x - y))
     elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):
-        yield ca.fabs(x), False, False
+        yield from ((one, False, False) for one in _zeros(x))
     elif operation in (ca.OP_AND, ca.OP_OR):
-        yield from ((ca.fabs(one), False, False) for one in operands)
+        yield from ((mark, False, False) for one in operands for mark in _zeros(one))
     elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
         # What a table has for a cell is a whole number already.
         if not is_entry(x):
@@ -50,3 +52,9 @@ def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, boo
         yield x * x + y * y, False, True
     elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (y.is_constant() and float(y) >= 0.0 and float(y).is_integer()):
         yield x, False, True
+
+
+def _zeros(x: Any) -> Iterator[Any]:
+    """Marks of where something is zero, for a stretch or at a place that it passes; a comparison has marks of its own."""
+    if x.op() not in _TRUTHS:
+        yield from (ca.fabs(x), x)

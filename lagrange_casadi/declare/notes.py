@@ -32,12 +32,7 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
     yield from _across(description)
     if resting.any():
         yield rest_note(t, outputs, resting)
-    if rounded := description.get("rounded"):
-        angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
-        yield (
-            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are taken as parallel or coincident, "
-            f"moved by up to {angle:.2g} rad and {distance:.2g} m"
-        )
+    yield from drawing_notes(description)
     for name, joint in description["joints"].items():
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
@@ -60,6 +55,20 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
                 f"{high:.4g}): beyond its ends it loads the link as through a bracket"
             )
+
+
+def drawing_notes(description: Description) -> Iterator[str]:
+    """What was moved because a drawing rounds it, and by how much: to ends of links and right angles, and so that loops close."""
+    snapped = description.get("snapped", {})
+    for k, what, exact, unit in ((0, "axes", "at right angles", "rad"), (1, "places", "ends of links", "m")):
+        if moved := {part: by[k] for part, by in snapped.items() if by[k]}:
+            yield f"{what} of {', '.join(moved)} are taken as {exact}, moved by up to {max(moved.values()):.2g} {unit}"
+    if rounded := description.get("rounded"):
+        angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
+        yield (
+            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are taken as parallel or coincident, "
+            f"moved by up to {angle:.2g} rad and {distance:.2g} m"
+        )
 
 
 def _across(description: Description) -> Iterator[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..errors import DeclarationError
 from .expressions import scalar
 from .joints import Axis, Joint
-from .limits import on_link
+from .limits import along_link, on_link
 from .names import Part, check_free
 from .parts import Body, Expression, Link, Point
 
@@ -30,11 +30,25 @@ class Ownership:
             raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
         if self.mechanism.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'")
-        what = f"{what}: place on '{point.body.name}'"
-        x, y, z = (self.expression(what, number, "m") for number in point.place)
+        place_of = f"{what}: place on '{point.body.name}'"
+        x, y, z = (self.expression(place_of, number, "m") for number in point.place)
         if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
-            raise DeclarationError(f"{what}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
-        return on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
+            raise DeclarationError(f"{place_of}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
+        found, moved = on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
+        self.snapped(what, distance=moved)
+        return found
+
+    def along(self, what: str, x: Expression, link: Link) -> Expression:
+        """A place along a link of a part ``what``, at an end where rounding puts it beyond."""
+        found, moved = along_link(x, link.length, self.at_defaults)
+        self.snapped(what, distance=moved)
+        return found
+
+    def snapped(self, what: str, *, angle: float = 0.0, distance: float = 0.0) -> None:
+        """Note by how much an axis [rad] or a place [m] of a part is taken as the exact one that a drawing rounded."""
+        if (angle or distance) and not self.mechanism.frozen:
+            most = self.mechanism.snapped.get(what, (0.0, 0.0))
+            self.mechanism.snapped[what] = max(most[0], angle), max(most[1], distance)
 
     def joint(self, joint: Joint) -> Joint:
         """A joint."""

@@ -393,10 +393,8 @@ class Scene(Graphs):
             "which the other process loads anew, or call there the function that makes the scene"
         )
 
-    def __copy__(self) -> Scene:
+    def __deepcopy__(self, _memo: object = None) -> Scene:
         """Itself: nothing of it changes."""
         return self
 
-    def __deepcopy__(self, _memo: object) -> Scene:
-        """Itself: nothing of it changes."""
-        return self
+    __copy__ = __deepcopy__

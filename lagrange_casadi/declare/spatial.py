@@ -331,11 +331,11 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
-        directions: Triad = triad_of(what, axis, second, self.own.expression, self.own.at_defaults)
+        directions: Triad = triad_of(what, axis, second, self.own)
         placed = at is not None
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, turned, self.own.expression, self.own.at_defaults)
+            zero = turned_by(what, turned, self.own)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.seen(far), True

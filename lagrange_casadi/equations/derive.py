@@ -40,8 +40,8 @@ from .strength import stresses, utilisation
 _FITS = 2e-14
 """How far equations that are too many may miss where they are exact, of the links' length."""
 
-_SERVES = 1e-9
-"""How far they may miss for other parameters, and a correction serves for these too."""
+_SERVES = 1e-10
+"""How far they may miss at the start for other parameters, and graphs serve for these too: a tenth of what certificates allow."""
 
 _STEPS = 50
 
@@ -103,7 +103,7 @@ def assembled(
 ) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
-    So it is too where rounded axes were corrected for its own parameters, and loops close with these but do not with ``values``.
+    So it is too where loops close with its own parameters but not with ``values``, and axes are corrected for one or the other.
 
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
@@ -115,11 +115,11 @@ def assembled(
         there = _at(scene, tuple(values.items()))
         derive(there, wanted, elastic=elastic)
         return there
-    if graph.data.rounding and _misses(graph, values, iterated=False) > _SERVES:
+    if scene.mechanism.space and scene.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            derive(there, wanted, elastic=elastic)
-            return there
+            if derive(there, wanted, elastic=elastic).data.rounding or graph.data.rounding:
+                return there
     return scene
 
 

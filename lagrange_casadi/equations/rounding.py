@@ -74,7 +74,7 @@ def nearest(scene: Scene) -> Scene | None:
     for mechanism in (_closed(scene, plain, size) if moved else None, least):
         moves = {} if mechanism is None else _moves(declared, mechanism, values)
         if mechanism is not None and moves and max(max(a, d / size) for a, d in moves.values()) <= scene.rounding:
-            mechanism.rounded = moves
+            mechanism.rounded = moves | _moved_loads(declared, mechanism, values)
             return replace(scene, mechanism=mechanism)
     return None
 
@@ -101,6 +101,18 @@ def _moves(declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float
         *angles, near, far = np.ravel(ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full())
         found[name] = max(angles), max(near, far)
     return {name: (float(angle), float(distance)) for name, (angle, distance) in found.items() if angle or distance}
+
+
+def _moved_loads(declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """By how much points of loads were moved, as joints are told to be."""
+    found = {}
+    for name, load in mechanism.loads.items():
+        if load is not declared.loads[name] and not isinstance(load, Friction):
+            pairs = zip(load.points, declared.loads[name].points, strict=True)
+            gaps = [ca.norm_2(ca.vertcat(*minus(one.place, other.place))) for one, other in pairs]
+            far = np.ravel(ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full())
+            found[name] = 0.0, float(far.max())
+    return {name: by for name, by in found.items() if by[1]}
 
 
 def _where(joint: Joint) -> list[Vector]:

@@ -85,7 +85,8 @@ _MEANINGS = {
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
     Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
     Status.AT_REST: "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction",
-    Status.CORNER: "the slope of a motion, a constraint or a lift jumps, and forces there are without bound",
+    Status.CORNER: "the slope of a motion, a constraint or a lift jumps, and forces there are without bound; or one is other at a "
+    "place than on both sides",
     Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
 

@@ -61,7 +61,8 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     ``least`` the largest size that was found. More instants may help. What equilibrium does not determine is NaN too, without a
     ``least``; what elasticity tells of it has the peak of the instants.
 
-    Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
+    Raises :class:`DeclarationError` where the solution is not of this scene, or a motion or constraint is other at a place between
+    instants than on both sides of it; :class:`UnknownNameError` for a name that is none.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
     found = ContinuousSolution.of(scene, solution.by_equilibrium)
@@ -242,6 +243,7 @@ class ContinuousSolution:
         sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:
             return list(sampled)
+        self._refuse_isolated()
         turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
@@ -256,6 +258,14 @@ class ContinuousSolution:
             elif abs(value[k]) > abs(peak.value):
                 found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
         return [found[Output.of(peak.name)] for peak in sampled]
+
+    def _refuse_isolated(self) -> None:
+        """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between instants than on both sides."""
+        corners, t, p = self.graph.data.corners, self.solution.t, self.p.tolist()
+        corners.refuse_isolated_laws(t, p, between=True)
+        if corners.constraints:
+            out = self.stages.instant(*self.stages.drive(t[None], self.p), self.z, self.p).full()
+            corners.refuse_constraints(lambda name: self.graph.seen(name, out), p, between=True)
 
     def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""

@@ -85,6 +85,7 @@ def solve(
     instants, places = instants_of(graph.laws, timing, values), points(ratios)
     times = instants.t
     p = np.array(list(values.values()))
+    Corners.of(scene).refuse_isolated_laws(times, p.tolist())
     left_open: tuple[Output, ...] = ()
     if rung.table is not None:
         graph, left_open = determinate(graph, times, p)

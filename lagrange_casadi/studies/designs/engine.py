@@ -271,8 +271,10 @@ class DesignEngine:
         if found.times is not None:
             found.times[:] = asked
         together = found.series is not None and asked is even
-        self._evaluate(p, even, found if together else replace(found, series=None), threads)
-        self._refuse_motions(p, even, found, found.series if together else None)
+        shape = (len(p), len(self.graph.columns), self.count)
+        columns = found.series if together else np.empty(shape) if self.watch.columns else None
+        self._evaluate(p, even, replace(found, series=columns), threads)
+        self._refuse_motions(p, even, found, columns)
         if found.series is None or together:
             return
         others = np.zeros(len(p), np.int8)
@@ -310,23 +312,15 @@ class DesignEngine:
         return np.array(known) if known else np.zeros((1, 0), bool)
 
     def _refuse_motions(self, p: Array, t: Array, found: Outcome, columns: Array | None) -> None:
-        """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if they are known."""
+        """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if these are watched."""
         if not self.watch:
             return
-        if columns is None and self.watch.columns:
-            columns = self._columns(p, t)
         status = self.watch.statuses(p, t, found.status, columns)
         some = status != found.status
         found.status[some] = status[some]
         for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
             if array is not None:
                 array[some] = np.nan
-
-    def _columns(self, p: Array, t: Array) -> Array:
-        """The columns (n, columns, t) of designs at any instants."""
-        columns = np.empty((len(p), len(self.graph.columns), self.count))
-        self._series(p, t, np.zeros(len(p), np.int8), columns, 1)
-        return columns
 
     @cached_property
     def slopes(self) -> Slopes:

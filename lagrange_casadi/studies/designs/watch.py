@@ -64,8 +64,7 @@ class Watch:
         some: Any = slice(None) if ok.all() else ok
         p, broken = p[some], np.zeros(np.count_nonzero(ok), bool)
         if self._corners.laws:
-            start, stop = ((t[some, k] if len(t) > 1 else np.full(broken.size, t[0, k])) for k in (0, -1))
-            broken |= self._corners.broken_laws(start, stop, p)
+            broken |= self._corners.broken_laws(t[some] if len(t) > 1 else t, p)
         if columns is not None and self.columns:
             rows = columns[some]
             broken |= self._corners.broken_constraints(lambda name: rows[:, self._seen[name]], p)

@@ -22,7 +22,6 @@ from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, s
 from ...declare.times import Over, Times, Timing
 from ...declare.wanted_slopes import SENSITIVITY, by_parameters
 from ...equations.derive import derive
-from ...equations.described import described
 from ...equations.fingerprint import sources
 from ...equations.scene_graph import SceneGraph
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
@@ -162,7 +161,7 @@ class Plan:
             size = f"{largest.width / 2**30:.3g} GiB"
             raise SizeError(f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer instants or ratios")
         require("a design and what it is made from", (_TIMES, sum(column.width for column in harvest.columns) // 8))
-        return cls(graph, described(scene, values), designs, values, task, harvest)
+        return cls(graph, graph.data.at(list(values.values())), designs, values, task, harvest)
 
     @property
     def size(self) -> int:

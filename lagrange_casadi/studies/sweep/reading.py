@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from ...declare.scene import Scene
 
 _BLOCK = 1 << 15
-
 Values = npt.NDArray[Any]
 
 
@@ -384,9 +383,8 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
     if name not in axes:
         return _taken(dataset, where[0])
     axis = axes.index(name)
-    kept = [
-        len(range(*place.indices(length))) if isinstance(place, slice) else 1 for place, length in zip(where, dims, strict=True)
-    ]
+    both = zip(where, dims, strict=True)
+    kept = [len(range(*place.indices(length))) if isinstance(place, slice) else 1 for place, length in both]
     shape = [1] * len(dims)
     shape[axis] = kept[axis]
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
