@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from lagrange_casadi import Scene, SpatialMechanism, derive
+from lagrange_casadi import Scene, SpatialMechanism, compile_scene
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.scene_graph import SceneGraph
+from lagrange_casadi.equations.program import Program
 from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution
@@ -21,7 +21,7 @@ FORCES = SPACE.forces[:6]
 LINK = "link2"
 
 
-def graph(wanted: tuple[str, ...]) -> SceneGraph:
+def graph(wanted: tuple[str, ...]) -> Program:
     """The arm, every joint driven."""
     m = SpatialMechanism("arm")
     links = [m.link(f"link{k}", length=l, mass=mass) for k, (l, mass) in enumerate(zip(LENGTHS, MASSES, strict=True), 1)]
@@ -29,7 +29,7 @@ def graph(wanted: tuple[str, ...]) -> SceneGraph:
         turned = [("y", "-90 deg")] if k == 0 else []
         m.revolute(f"joint{k}", links[k - 1].tip if k else m.ground, link, axis=axis, turned=turned)
     laws = {f"joint{k}": polynomial(FIRST[k], RATE[k], TURN[k]) for k in range(len(links))}
-    return derive(Scene(m, laws, wanted=wanted))
+    return compile_scene(Scene(m, laws, wanted=wanted))
 
 
 def arm_efforts(t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:

@@ -80,10 +80,10 @@ _GRID = (
 )
 _STAGES = """
 import time
-from lagrange_casadi import codegen, derive, load_case
+from lagrange_casadi import codegen, compile_scene, load_case
 scene = load_case("cases/{0}").scene
 start = time.perf_counter()
-graph = derive(scene)
+graph = compile_scene(scene)
 derived = time.perf_counter()
 source = codegen.emit(graph)
 said = f"{{sum(graph.instructions.values())}} instructions; derive {{1e3 * (derived - start):.0f}} ms, "

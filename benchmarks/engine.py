@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
+from lagrange_casadi import Mechanism, Scene, codegen, compile_scene, load_case
 from lagrange_casadi.base.quantities import FORCES
 from lagrange_casadi.base.room import cores
 from lagrange_casadi.base.vocabulary import Backend
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.scene_graph import SceneGraph
+from lagrange_casadi.equations.program import Program
 from lagrange_casadi.instants.backends import rows, run
 from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.rung import Rung
@@ -24,7 +24,7 @@ from .peers.paper_case import Array, SliderCrank, Work
 SCENE = load_case(Path(__file__).parent.parent / "cases" / "slider_crank").scene
 
 
-def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
+def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> Program:
     """An open chain of n uniform links that are driven at every joint."""
     m = Mechanism("chain")
     near: Any = m.ground
@@ -34,18 +34,18 @@ def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
         m.revolute(f"joint{i}", near, link)
         motion[f"joint{i}"] = polynomial(0.1 * i, 1.0, 0.2)
         near = link.tip
-    return derive(Scene(m, motion, wanted=wanted))
+    return compile_scene(Scene(m, motion, wanted=wanted))
 
 
 def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Every column of ``wanted="all"``, (columns, t)."""
-    return columns_of(derive(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
+    return columns_of(compile_scene(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
 
 
 def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     p = np.array(case.parameters)
-    work = columns_of(derive(SCENE, ["all"]), p, t, backend, threads)
+    work = columns_of(compile_scene(SCENE, ["all"]), p, t, backend, threads)
 
     def call() -> Array:
         for length in lengths:
@@ -92,10 +92,10 @@ def efforts(n: int, t: Array, backend: Backend = "lanes", threads: int = 1) -> W
 
 def columns() -> tuple[str, ...]:
     """The names of what :func:`instants` gives."""
-    return tuple(map(str, derive(SCENE, ["all"]).outputs))
+    return tuple(map(str, compile_scene(SCENE, ["all"]).outputs))
 
 
-def columns_of(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
+def columns_of(graph: Program, p: Array, t: Array, backend: Backend, threads: int) -> Work:
     """The outputs, the same array at every call, (columns, t)."""
     compiler = codegen.find_compiler("c++" if backend == "lanes" else "c")
     if compiler is None:
@@ -116,7 +116,7 @@ def columns_of(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads:
 
 def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     """What works out the rod's law, and the law, whose arrays that fills."""
-    graph = derive(SCENE, ["section:rod"])
+    graph = compile_scene(SCENE, ["section:rod"])
     work = columns_of(graph, np.array(case.parameters), t, backend, threads)
     description = graph.data.at(case.parameters)
     outputs = in_order(dict(zip(graph.outputs, work(), strict=True)), description)

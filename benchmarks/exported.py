@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from lagrange_casadi import codegen, derive, export, load_case
+from lagrange_casadi import codegen, compile_scene, export, load_case
 from lagrange_casadi.codegen.compiler import FLAGS
 from lagrange_casadi.instants.backends import rows
 
@@ -23,7 +23,7 @@ _ROUNDS = 300
 def report(case: str) -> str:
     """Nanoseconds an instant of both, all outputs, the best of many rounds that take turns."""
     scene = load_case(Path(__file__).parent.parent / "cases" / case).scene
-    graph, compiler = derive(scene), codegen.find_compiler("c")
+    graph, compiler = compile_scene(scene), codegen.find_compiler("c")
     if compiler is None or graph.newton is not None:
         raise RuntimeError("needs a C compiler, and a case without iterated loops")
     t, p = np.linspace(*scene.t[:2], N), np.array(list(scene.mechanism.values().values()))

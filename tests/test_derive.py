@@ -18,7 +18,7 @@ from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, derive,
 from lagrange_casadi.declare.motion import Motion, expression, harmonic, polynomial, samples
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
-from lagrange_casadi.equations.scene_graph import SceneGraph
+from lagrange_casadi.equations.program import Program
 from lagrange_casadi.errors import PickleError
 
 pytestmark = pytest.mark.quick
@@ -112,7 +112,7 @@ def test_mechanisms_in_space_have_names_too(fresh_cache):
     assert name_of(sleeve(apart=True)) == names[2]
     derive(scenes[0])
     assert [path.stem for path in fresh_cache.glob("*.graph")] == names[:1]
-    again = SceneGraph.loads(next(fresh_cache.glob("*.graph")).read_text().partition("\n")[2])
+    again = Program.loads(next(fresh_cache.glob("*.graph")).read_text().partition("\n")[2])
     assert codegen.emit(again) == codegen.emit(derive(scenes[0]))
 
 

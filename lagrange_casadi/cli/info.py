@@ -12,7 +12,7 @@ import click
 from ..case import load_case
 from ..declare.description import Description, coordinates_of
 from ..declare.scene import Scene, kinds, outputs
-from ..equations.derive import derive
+from ..equations.derive import compile_scene
 from ..equations.described import described
 from ..instants.solution import Solution
 from ..store import runs as store
@@ -45,7 +45,7 @@ def info(target: Path, want: tuple[str, ...]) -> None:
 
 def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     mechanism = scene.mechanism
-    graph = derive(scene, want or None)
+    graph = compile_scene(scene, want or None)
     _describe_mechanism(described(scene, mechanism.values()))
     for line in scene_lines(scene):
         echo(line)

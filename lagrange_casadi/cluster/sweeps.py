@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..base.arrays import Array
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line, warn
 from ..studies.sweep.blocks import Queue
 from ..studies.sweep.columns import Harvest
@@ -308,6 +308,6 @@ def _evaluate(sent: bytes, task: Task, told: Mapping[str, Any], p: Array, room: 
 
 
 @functools.lru_cache(maxsize=4)
-def _built(sent: bytes, task: Task) -> tuple[SceneGraph, Harvest]:
+def _built(sent: bytes, task: Task) -> tuple[Program, Harvest]:
     graph, whole = pickle.loads(sent)
     return graph, task.harvest(graph, whole)

@@ -12,7 +12,7 @@ import numpy as np
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
 from ..declare.limits import END
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..equations.turns import LEAP
 from ..summits.sharpness import Watch
 from .calls import Call
@@ -117,7 +117,7 @@ class Reduction:
         return Tables.of(self.curves, self.units, self.watches, self.knots, precision)
 
 
-def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction) -> str:
+def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
     """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
     parts = Parts.of(graph, stages)
     text = emit(graph, stages, newton)
@@ -133,7 +133,7 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
     return text + "".join(_source(name) for name in _FILES)
 
 
-def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts) -> dict[str, object]:
+def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
     checks, curves = len(reduction.checks), len(reduction.curves)
     quantities = len(reduction.quantities) + sum(len(link.places) for link in reduction.links)

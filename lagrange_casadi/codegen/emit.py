@@ -15,7 +15,7 @@ import casadi as ca
 
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from .calls import Call
 from .compiler import LANES_PLACE
 from .printer import function_name, literal, print_functions
@@ -213,7 +213,7 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
 """
 
 
-def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = None) -> str:
+def emit(graph: Program, stages: Stages | None = None, newton: int | None = None) -> str:
     """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi.
 
     ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps iterated loops take an
@@ -241,7 +241,7 @@ class Parts:
     drive: str
 
     @classmethod
-    def of(cls, graph: SceneGraph, stages: Stages) -> Parts:
+    def of(cls, graph: Program, stages: Stages) -> Parts:
         """Those of a scene."""
         constants, instant = hoisted(stages.instant)
         narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
@@ -250,7 +250,7 @@ class Parts:
         return cls(narrow, wide, sizes, _DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else "")
 
 
-def following(graph: SceneGraph, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
+def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
     """The function that closes iterated loops, by so many steps an instant; its name is ``sizes["follow"]``."""
     assert graph.newton is not None
     number = literal(stages.precision)
@@ -290,7 +290,7 @@ def _told(newton: int | None) -> str:
    too large to believe."""
 
 
-def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
+def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
     """What the templates are filled with."""
     columns = len(graph.columns)
     return {

@@ -26,7 +26,7 @@ from ..arithmetic.lookups import Lookup
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 
 FEW_TURNS = 128.0
 """Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""
@@ -52,7 +52,7 @@ class Stages(Graphs):
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def plain(graph: SceneGraph) -> Stages:
+def plain(graph: Program) -> Stages:
     """The stages of a graph in doubles that count turns themselves."""
     t, d, rate, acceleration, z, p = graph.instant.sx_in()
     counted = ca.vertcat(t, d)
@@ -67,7 +67,7 @@ def plain(graph: SceneGraph) -> Stages:
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def compensated(graph: SceneGraph, precision: Precision) -> Stages:
+def compensated(graph: Program, precision: Precision) -> Stages:
     """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
     pairs, single = Pairs(precision), precision == "single"
     time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
@@ -99,7 +99,7 @@ class Controlled(Graphs):
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def controlled(graph: SceneGraph, precision: Precision, fixed: tuple[float, ...] | None = None) -> Controlled:
+def controlled(graph: Program, precision: Precision, fixed: tuple[float, ...] | None = None) -> Controlled:
     """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.
 
     Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other constants. Raises
@@ -136,7 +136,7 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any
     return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
 
 
-def turns_many(graph: SceneGraph, t: Array, p: Array) -> bool:
+def turns_many(graph: Program, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
     functions = (graph.instant, graph.laws.motion, *([graph.newton.step] if graph.newton else []))
     if not all(followable(function) for function in functions):
@@ -146,7 +146,7 @@ def turns_many(graph: SceneGraph, t: Array, p: Array) -> bool:
 
 
 @functools.lru_cache(maxsize=256)
-def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
+def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
     """The largest counted angle under a sine or cosine [rad], or of which whole turns are taken.
 
     What is counted is a row over the instants, what parameters set a number, and anything else nothing.
@@ -255,7 +255,7 @@ _FOLLOWED = {
 }
 
 
-def _counted(graph: SceneGraph, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:
+def _counted(graph: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:
     """What the drive hands on of time and driven coordinates, and the loops and the instant that take it."""
     counting = _Counting(pairs)
     _, _, rate, acceleration, z, symbols = graph.instant.sx_in()

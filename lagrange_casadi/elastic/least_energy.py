@@ -26,7 +26,7 @@ from ..declare.description import Description, density_of, in_space
 from ..declare.giving import Elastic
 from ..equations.checks import Column
 from ..equations.open_forces import OpenForces
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..equations.stress import FORCES
 from ..errors import DeclarationError, one_line
 from ..instants.laws import law_of
@@ -59,7 +59,7 @@ class Completed:
 
 
 def complete(
-    graph: SceneGraph,
+    graph: Program,
     out: Array,
     iterated: Array,
     t: Array,
@@ -127,7 +127,7 @@ def _sloping(free: OpenForces, given: tuple[Any, ...], x: Array) -> Array:
 class _State:
     """The columns at instants at which they are numbers, and their ``slopes`` (open columns, t, count)."""
 
-    graph: SceneGraph
+    graph: Program
     told: Description
     t: Array
     p: Array

@@ -31,9 +31,9 @@ from .moving import Moving
 from .multibody import column
 from .open_forces import open_forces
 from .own import own_outputs
+from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
-from .scene_graph import SceneGraph
 from .stations import gathered
 from .strength import stresses, utilisation
 
@@ -48,7 +48,7 @@ _STEPS = 50
 
 @public
 @symbolic
-def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> SceneGraph:
+def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> Program:
     """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
     What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
@@ -87,7 +87,7 @@ derive = compile_scene
 @symbolic
 def as_derived(scene: Scene, wanted: Outputs) -> Scene:
     """Return the scene that :func:`compile_scene` makes a graph of: itself, or one whose rounded axes are corrected."""
-    derive(scene, wanted)
+    compile_scene(scene, wanted)
     found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
     assert isinstance(found, _Derived)
     return found.scene
@@ -108,17 +108,17 @@ def assembled(
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
-        graph = derive(scene, wanted, elastic=elastic)
+        graph = compile_scene(scene, wanted, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
         there = _at(scene, tuple(values.items()))
-        derive(there, wanted, elastic=elastic)
+        compile_scene(there, wanted, elastic=elastic)
         return there
     if scene.mechanism.space and scene.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            if derive(there, wanted, elastic=elastic).data.rounding or graph.data.rounding:
+            if compile_scene(there, wanted, elastic=elastic).data.rounding or graph.data.rounding:
                 return there
     return scene
 
@@ -137,7 +137,7 @@ def _nearest(scene: Scene) -> Scene | None:
 class _Derived:
     """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do not close as declared."""
 
-    graph: SceneGraph
+    graph: Program
     scene: Scene
 
 
@@ -148,7 +148,7 @@ def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError
     key = f"{identity}-elastic" if identity and elastic else identity
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
-        graph = SceneGraph.loads(text)
+        graph = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
         return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
     try:
@@ -170,7 +170,7 @@ def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError
     return _Derived(graph, scene)
 
 
-def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -> float:
+def _misses(graph: Program, values: Mapping[str, float], *, iterated: bool) -> float:
     """By how much loops with too many equations miss at the start, of the links' length: all of them, or those ``iterated``."""
     rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
     if not rows:
@@ -219,7 +219,7 @@ class _Borne:
         return cls(acting, forces.free, rubbed.forces)
 
 
-def _derive(scene: Scene, asked: Wanted, elastic: bool) -> SceneGraph:
+def _derive(scene: Scene, asked: Wanted, elastic: bool) -> Program:
     mechanism = scene.mechanism
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
     moving = Moving.of(scene, want)
@@ -238,7 +238,7 @@ def _derive(scene: Scene, asked: Wanted, elastic: bool) -> SceneGraph:
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(
+    return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
         instant=instant,

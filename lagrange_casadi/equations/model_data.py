@@ -38,7 +38,7 @@ from .section_function import Section
 
 @dataclass(frozen=True, eq=False)
 class ModelData(Graphs):
-    """A mechanism and its motion as plain data, beside the functions of a :class:`.SceneGraph`.
+    """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
 
     ``kinds`` are the kinds of its coordinates, those of guides too, of its frictions and outputs. ``closings`` are the words for
     what closes loops: "joint", "path", "bar"; any other is a constraint. ``laws`` are the motions of the driven coordinates.

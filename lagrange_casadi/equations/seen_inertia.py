@@ -20,7 +20,7 @@ from .checks import Column
 from .kinematics import Start
 from .model_data import ModelData
 from .multibody import column
-from .scene_graph import SceneGraph
+from .program import Program
 from .tree import span
 
 
@@ -28,13 +28,13 @@ from .tree import span
 class SeenInertia:
     """A graph whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
 
-    graph: SceneGraph
+    graph: Program
     motions: tuple[str, ...]
     drives: tuple[str, ...]
 
 
 def seen_inertia(scene: Scene) -> SeenInertia:
-    """The graph of a scene. Raises as :func:`.derive` does."""
+    """The graph of a scene. Raises as :func:`.compile_scene` does."""
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
@@ -57,5 +57,5 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
     columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
     data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
-    graph = SceneGraph(data, want, instant, solved.newton, tuple(columns), {})
+    graph = Program(data, want, instant, solved.newton, tuple(columns), {})
     return SeenInertia(graph, driven, drives)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..portable.contract import Contract, Member, Setting
 from ..portable.source import Source
 from ..version import __version__
@@ -148,7 +148,7 @@ class Description:
 _KINDS = {"ModelExchange": "completedIntegratorStepNotNeeded", "CoSimulation": "canHandleVariableCommunicationStepSize"}
 
 
-def reached(graph: SceneGraph) -> dict[str, frozenset[str]]:
+def reached(graph: Program) -> dict[str, frozenset[str]]:
     """What each column of a graph depends on by its structure: ``time``, ``motion:...`` and ``parameter:NAME``."""
     named = [
         ["time"],

@@ -21,7 +21,7 @@ from ..base.room import cores
 from ..base.vocabulary import Backend
 from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from ..codegen.stages import Stages, compensated, plain, turns_many
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import CompilerError, warn
 from ..version import __version__
 from . import grids
@@ -58,7 +58,7 @@ class Evaluated:
 
 
 def run(
-    graph: SceneGraph,
+    graph: Program,
     t: Array,
     p: Array,
     rung: Rung | None = None,
@@ -91,13 +91,13 @@ def run(
     return evaluated, provenance(used, compiler.version, " ".join(library.flags), rung)
 
 
-def begun(graph: SceneGraph, t: float, p: Array) -> tuple[float, ...]:
+def begun(graph: Program, t: float, p: Array) -> tuple[float, ...]:
     """The iterated coordinates at a time, closed, as the motion leads there from the scene's own start; none without loops."""
     return _begin(graph, False, t, tuple(p.tolist()))
 
 
 @functools.lru_cache(maxsize=256)
-def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
+def _begin(graph: Program, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
     """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``.
 
     The motion is followed from the scene's own start, as far from which another branch may be nearer; by many steps, unless they
@@ -122,7 +122,7 @@ def _paired(values: Array, out: Array) -> Array:
     return out
 
 
-def _compiled(graph: SceneGraph, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
+def _compiled(graph: Program, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
     """The library that a backend takes, and what built it; None for the virtual machine."""
     return compiled(rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler))
 
@@ -160,11 +160,11 @@ def searching(backend: str) -> codegen.Search | None:
 
 
 @functools.lru_cache(maxsize=32)
-def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
+def _library(graph: Program, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
     return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
 
 
-def unevaluated(graph: SceneGraph, stages: Stages, size: int) -> Evaluated:
+def unevaluated(graph: Program, stages: Stages, size: int) -> Evaluated:
     """What is to be filled."""
     dtype = DTYPES[stages.precision]
     out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
@@ -192,7 +192,7 @@ def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenanc
     return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
-def _interpret(graph: SceneGraph, t: Array, p: Array, evaluated: Evaluated, begin: Sequence[float], newton: int | None) -> None:
+def _interpret(graph: Program, t: Array, p: Array, evaluated: Evaluated, begin: Sequence[float], newton: int | None) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
     stages = evaluated.stages
     guess = np.array(begin)
@@ -206,7 +206,7 @@ def _interpret(graph: SceneGraph, t: Array, p: Array, evaluated: Evaluated, begi
 
 
 def follow(
-    graph: SceneGraph, t: Array, p: Array, guess: Array | None = None, *, stages: Stages | None = None, newton: int | None = None
+    graph: Program, t: Array, p: Array, guess: Array | None = None, *, stages: Stages | None = None, newton: int | None = None
 ) -> tuple[Array, npt.NDArray[np.int32]]:
     """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or the graph's own; and statuses.
 
@@ -227,7 +227,7 @@ def follow(
 
 
 def _iterate(
-    graph: SceneGraph, loops: ca.Function, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
+    graph: Program, loops: ca.Function, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
 ) -> tuple[Array, int]:
     assert graph.newton is not None
     z, size, before, step = guess, 1.0, 1.0, 0

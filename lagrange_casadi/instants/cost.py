@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from .rung import Rung
 
 _RATE, _RATE_INTERPRETED = 3e9, 3e6
 """Instructions a second of a core."""
 
 
-def seconds(graph: SceneGraph, instants: float, rung: Rung, *, interpreted: bool) -> float:
+def seconds(graph: Program, instants: float, rung: Rung, *, interpreted: bool) -> float:
     """Seconds that a core takes for so many instants, within a factor of three or so; ``interpreted`` is by the virtual machine."""
     counts = graph.instructions
     steps = counts.pop("loops", 0) * (rung.newton or 1)

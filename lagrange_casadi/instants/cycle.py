@@ -21,7 +21,7 @@ from ..base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.kinematics import describe_coordinate, where
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import DeclarationError
 
 TURNS = 4
@@ -107,7 +107,7 @@ class Course:
 class Drive:
     """A scene's one drive, that of a joint that turns: where it starts, the sign of the way it goes, and the terms by its angle."""
 
-    graph: SceneGraph
+    graph: Program
     p: Array
     joint: str
     start: float
@@ -116,7 +116,7 @@ class Drive:
 
     @classmethod
     @symbolic
-    def of(cls, graph: SceneGraph, p: Array) -> Drive:
+    def of(cls, graph: Program, p: Array) -> Drive:
         """Raises :class:`DeclarationError` where there is not one drive that turns, or where columns depend on time itself."""
         joint = the_drive(graph)
         t, d, rate, acceleration, z, parameters = graph.instant.sx_in()
@@ -234,7 +234,7 @@ class Drive:
         return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
 
 
-def the_drive(graph: SceneGraph) -> str:
+def the_drive(graph: Program) -> str:
     """The one driven joint of a scene. Raises :class:`DeclarationError` where there is not one, or where it slides."""
     if len(graph.driven) != 1:
         named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
@@ -245,7 +245,7 @@ def the_drive(graph: SceneGraph) -> str:
     return joint
 
 
-def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
+def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     """The cycle of a scene for parameters ``p`` and motions up to a rate and an acceleration.
 
     Raises :class:`DeclarationError`, with the reason, where there is none.
@@ -304,7 +304,7 @@ def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tupl
         )
 
 
-def _sizes(graph: SceneGraph, p: Array, peaks: Array) -> Array:
+def _sizes(graph: Program, p: Array, peaks: Array) -> Array:
     """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square and the acceleration have one."""
     kinds = [_kind(graph, column) for column in graph.columns]
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
@@ -331,7 +331,7 @@ def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> 
         largest[FORCE], largest[MOMENT] = np.maximum(forces, moments / extent), np.maximum(moments, forces * extent)
 
 
-def _kind(graph: SceneGraph, column: Column) -> str | Column:
+def _kind(graph: Program, column: Column) -> str | Column:
     """What columns are compared by: their unit, or, where that says nothing, themselves; directions with each other."""
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column

@@ -17,13 +17,13 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..codegen.emit import OK
 from ..equations.checks import Check, Column
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from .backends import run
 from .rules import rules
 from .rung import Rung
 
 
-def undetermined(graph: SceneGraph, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
+def undetermined(graph: Program, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
     """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
     if not graph.doubtful:
         return ()
@@ -32,7 +32,7 @@ def undetermined(graph: SceneGraph, out: Array, p: Array, rung: Rung) -> tuple[O
     return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > limits[k]))
 
 
-def determinate(graph: SceneGraph, t: Array, p: Array, *, telling: bool = False) -> tuple[SceneGraph, tuple[Output, ...]]:
+def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) -> tuple[Program, tuple[Output, ...]]:
     """The graph without the outputs that are open at some of the instants, for parameters ``p``; and these outputs.
 
     With ``telling`` it goes on to tell, for other parameters and instants, where others are open.
@@ -46,7 +46,7 @@ def determinate(graph: SceneGraph, t: Array, p: Array, *, telling: bool = False)
 
 
 @functools.lru_cache(maxsize=32)
-def _without(graph: SceneGraph, columns: tuple[Column, ...]) -> SceneGraph:
+def _without(graph: Program, columns: tuple[Column, ...]) -> Program:
     kept = [k for k, column in enumerate(graph.columns) if column not in columns]
     inputs = graph.instant.sx_in()
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]

@@ -15,7 +15,7 @@ from ..base.room import cores
 from ..base.symbolic import symbolic
 from ..codegen.emit import NOT_FINITE, OK
 from ..equations.checks import Check
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
@@ -28,7 +28,7 @@ _MARGIN = 1.01
 
 
 def columns(
-    graph: SceneGraph, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Evaluated | None = None
+    graph: Program, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Evaluated | None = None
 ) -> tuple[Evaluated, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a table, as the rung says.
 
@@ -65,21 +65,21 @@ def columns(
     return found, replace(provenance, rung=rung.options)
 
 
-def table_of(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> CycleTable:
+def table_of(graph: Program, t: Array, p: Array, rung: Rung) -> CycleTable:
     """The table that :func:`columns` reads. Raises :class:`DeclarationError` where the scene cannot be tabulated."""
     the_drive(graph)
     _, rate, acceleration, *_ = run(drive_of(graph), t, p, Rung("vm"))[0].out
     return _serving(graph, p, rung, rate, acceleration)
 
 
-def _serving(graph: SceneGraph, p: Array, rung: Rung, rate: Array, acceleration: Array) -> CycleTable:
+def _serving(graph: Program, p: Array, rung: Rung, rate: Array, acceleration: Array) -> CycleTable:
     assert rung.table is not None
     cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
     return _single(cycle) if rung.precision == "single" else cycle
 
 
 @functools.lru_cache(maxsize=32)
-def cycle_table(graph: SceneGraph, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
+def cycle_table(graph: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
     """The table of a scene for parameters ``p``, kept while the process lasts; see :func:`.tabulate`."""
     return tabulate(graph, np.array(p), table, rates)
 
@@ -89,7 +89,7 @@ _single = functools.lru_cache(maxsize=32)(CycleTable.single)
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def drive_of(graph: SceneGraph) -> SceneGraph:
+def drive_of(graph: Program) -> Program:
     """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
     t, d, rate, acceleration, _, p = graph.instant.sx_in()
     within = [d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau)))) for turns in range(1, TURNS + 1)]

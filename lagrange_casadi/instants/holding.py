@@ -28,9 +28,9 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.scene import Scene
 from ..equations.checks import Check
-from ..equations.derive import as_derived, assembled, derive
+from ..equations.derive import as_derived, assembled, compile_scene
 from ..equations.held_efforts import HeldEfforts, held_efforts
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import check_kind
 from .backends import run
 from .held import Holding
@@ -59,7 +59,7 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
         return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
     values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
     scene = assembled(scene, values, ["effort"])
-    graph, held = derive(scene, ["effort"]), held_efforts(as_derived(scene, ["effort"]))
+    graph, held = compile_scene(scene, ["effort"]), held_efforts(as_derived(scene, ["effort"]))
     tried, why = _tried(held, _inputs(graph, solution.t, np.array([*values.values()]), at))
     ranges = {}
     for name, effort in efforts.items():
@@ -83,7 +83,7 @@ _Reasons = list[tuple[Any, str]]
 """At which instants (t,) a range is not told, and why."""
 
 
-def _inputs(graph: SceneGraph, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
+def _inputs(graph: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
     """What the columns of a scene are functions of, some of the instants ``t`` beside each other."""
     z = np.zeros((0, at.size)) if graph.newton is None else run(graph, t, p, Rung("vm"))[0].iterated[:, at]
     moved = graph.motion(ca.DM(t[at]).T, ca.DM(p))

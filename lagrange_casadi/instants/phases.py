@@ -14,12 +14,12 @@ import numpy as np
 from ..arithmetic.interpret import followable, interpret, numpy_arithmetic
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 
 _TURN = np.longdouble("6.283185307179586476925286766559005768")
 
 
-def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Array]:
+def phases(graph: Program, out: Array, t: Array, p: Array) -> dict[Output, Array]:
     """The angles of drives from their laws of motion, and of loops from the columns ``out`` (columns, t)."""
     laws, coordinates = graph.laws, graph.data.kinds.coordinates
     rows = {angle: out[graph.outputs[angle]] for angle in graph.loop_angles}

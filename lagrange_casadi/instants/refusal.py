@@ -20,7 +20,7 @@ from ..declare.ends import share_beyond
 from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
 from .backends import Evaluated, run
@@ -99,14 +99,14 @@ class Refusal:
     message: str
 
 
-def refuse(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> None:
+def refuse(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> None:
     """Raise :class:`AssemblyError` for the first instant that has no result."""
     found = refusal(graph, evaluated, t, p, rung)
     if found is not None:
         raise AssemblyError(found.message)
 
 
-def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
+def refusal(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
     held, extent = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p)
     bad = unfinished(graph, evaluated)
@@ -132,7 +132,7 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
-def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
+def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
     """At which instants of the columns ``out`` (columns, t) a joint that rubs is at rest: what depends on its friction is open."""
     found = np.zeros(out.shape[-1], dtype=bool)
     for row in graph.checks("rest").values():
@@ -140,7 +140,7 @@ def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
     return found
 
 
-def unfinished(graph: SceneGraph, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
+def unfinished(graph: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
     """At which instants (t,) there is no result; at rest there is one, beside what friction reaches."""
     return np.asarray((evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out)))
 
@@ -166,7 +166,7 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
     return np.zeros(column.shape, dtype=bool)
 
 
-def _dead_between(graph: SceneGraph, rule: Rule, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
+def _dead_between(graph: Program, rule: Rule, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
     """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
@@ -179,7 +179,7 @@ def _dead_between(graph: SceneGraph, rule: Rule, start: Array, stop: Array, p: A
     return ~(lowest > rule.limit)
 
 
-def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
+def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | None:
     """What to say where a link's length cannot be squared in a precision."""
     numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
@@ -191,7 +191,7 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     return None
 
 
-def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
+def _left_open(graph: Program, start: Array, t: float, p: Array) -> str:
     """What closes the loops that iteration leaves open at an instant: those with the widest gaps, or all where these do not tell.
 
     What it was begun from says nothing of that: it goes on from there, each coordinate by steps of its own, so that loops that can
@@ -214,7 +214,7 @@ def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
 class _Bad:
     """The instant ``i`` that has no result; ``at`` says in words when it is, ``passed`` are the loops' rules broken after it."""
 
-    graph: SceneGraph
+    graph: Program
     evaluated: Evaluated
     held: Sequence[Rule]
     i: int

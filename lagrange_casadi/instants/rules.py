@@ -19,7 +19,7 @@ from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
 from ..equations.checks import Check
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..equations.turns import REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
@@ -61,7 +61,7 @@ class Rule:
 
 
 @functools.lru_cache(maxsize=32)
-def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
+def rules(graph: Program, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
     """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
     found: list[Rule] = []
     open_ = max(open_limit(precision, newton), graph.data.rounding)
@@ -95,7 +95,7 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
     return tuple(found)
 
 
-def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
+def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
     square = _DEAD * ROUNDING[precision]
     return math.sqrt(square) if graph.iterates(closure) else square

@@ -10,7 +10,7 @@ from ..base.vocabulary import BACKENDS, PRECISIONS, Backend, Precision
 from ..errors import DeclarationError, UnknownNameError, check_kind
 
 if TYPE_CHECKING:
-    from ..equations.scene_graph import SceneGraph
+    from ..equations.program import Program
 
 
 FEWEST_NODES = 8
@@ -74,7 +74,7 @@ class Rung:
         if self.backend == "vm" and words:
             raise DeclarationError(f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c")
 
-    def check(self, graph: SceneGraph) -> None:
+    def check(self, graph: Program) -> None:
         """Raise :class:`DeclarationError` where a graph has nothing that the rung chooses."""
         if self.newton is not None and graph.newton is None:
             raise DeclarationError(

@@ -18,7 +18,7 @@ from ..codegen.search import Search
 from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..summits.between import Flags
 from ..summits.panels import Curves, Peaks, Samples
 from ..summits.search import peaks
@@ -78,7 +78,7 @@ class Signals:
     tell its turns.
     """
 
-    graph: SceneGraph
+    graph: Program
     stages: Stages
     sharpness: Sharpness
     quantities: Sequence[Quantity]

@@ -14,7 +14,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import LARGEST as LARGEST_ALONG
 from ..equations.checks import FRACTIONS, Check, column_of
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import DeclarationError
 from .cycle import Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
@@ -29,7 +29,7 @@ _EPSILON = 2.0**-52
 _HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
 
 
-def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float, float]) -> CycleTable:
+def tabulate(graph: Program, p: Array, table: int | float, rates: tuple[float, float]) -> CycleTable:
     """The table of a scene's cycle for parameters ``p`` (in the mechanism's order), which serves any motion of its one drive.
 
     Parameters
@@ -81,7 +81,7 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
 
 
 @functools.lru_cache(maxsize=32)
-def still(graph: SceneGraph, p: tuple[float, ...]) -> dict[Output, float]:
+def still(graph: Program, p: tuple[float, ...]) -> dict[Output, float]:
     """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them to either side of a section.
 
     And where loads along links begin and end.

@@ -18,7 +18,7 @@ from ..arithmetic.compensated import DTYPES, ROUNDING
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..equations.checks import Kind
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
 from ..instants.refusal import resting
@@ -38,7 +38,7 @@ ALONG = np.linspace(0.0, 1.0, 5)
 """Ratios xi/l at which errors of section forces are looked at."""
 
 
-def estimate(graph: SceneGraph, evaluated: Evaluated, solution: Solution, p: Array) -> dict[Output, float]:
+def estimate(graph: Program, evaluated: Evaluated, solution: Solution, p: Array) -> dict[Output, float]:
     """How far each quantity of a solution may be off, in its unit: the largest error over the instants.
 
     ``evaluated`` has the columns that the solution was made of. Section forces are looked at from base to tip, either side of a
@@ -58,7 +58,7 @@ def estimate(graph: SceneGraph, evaluated: Evaluated, solution: Solution, p: Arr
     return {output: max(least, error or once * abs(solution.peak(output).value)) for output, error in worst.items()}
 
 
-def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array) -> dict[Output, float]:
+def _worst(graph: Program, solution: Solution, changes: Array, columns: Array) -> dict[Output, float]:
     """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of a solution.
 
     A trial that came to nothing, as a root of less than zero does, says nothing.
@@ -92,7 +92,7 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
     return dict(errors) | {output: max(errors[output], worst * abs(solution.peak(output).value)) for output in forces}
 
 
-def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[Output, float]:
+def _of_cycle(graph: Program, cycle: CycleTable, solution: Solution) -> dict[Output, float]:
     """What the splines of a table were found to miss, and the rounding of their sums; of a section force, all parts' together."""
     # A table of singles was itself looked at for what it rounds, over its period; angles go on counting.
     rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
@@ -111,7 +111,7 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     return errors
 
 
-def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
+def _chosen(graph: Program, evaluated: Evaluated) -> Array:
     """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
     n = evaluated.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)

@@ -16,7 +16,7 @@ import casadi as ca
 
 from ..arithmetic.interpret import Arithmetic, interpret
 from ..base.arrays import Array
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import AssemblyError, LagrangeCasadiError
 
 DIGITS = 50
@@ -24,7 +24,7 @@ _STEPS = 30
 
 
 def reference(
-    graph: SceneGraph,
+    graph: Program,
     t: Sequence[Any],
     p: Sequence[Any],
     *,
@@ -110,11 +110,11 @@ def _mpmath() -> Any:
     return mp
 
 
-def _driven(graph: SceneGraph, time: Any, values: list[Any]) -> list[list[Any]]:
+def _driven(graph: Program, time: Any, values: list[Any]) -> list[list[Any]]:
     return interpret(graph.laws.motion, [[time], values], arithmetic())
 
 
-def _closed(graph: SceneGraph, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any) -> list[Any]:
+def _closed(graph: Program, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any) -> list[Any]:
     """The iterated coordinates, closed from a guess."""
     if graph.newton is None:
         return []

@@ -14,7 +14,7 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, table_of
 from ..base.vocabulary import Precision
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.solution import Solution
 from .naming import constants, members, prefix
 
@@ -138,7 +138,7 @@ def _short(source: str, kind: str = "") -> str:
 
 
 def contract(
-    graph: SceneGraph, name: str, precision: Precision, solution: Solution, left_open: tuple[Output, ...], *, fixed: bool
+    graph: Program, name: str, precision: Precision, solution: Solution, left_open: tuple[Output, ...], *, fixed: bool
 ) -> Contract:
     """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
     values = solution.description["parameters"]
@@ -171,7 +171,7 @@ def contract(
 
 
 @symbolic
-def _timed(graph: SceneGraph) -> bool:
+def _timed(graph: Program) -> bool:
     """Whether anything but the motion depends on the time."""
     functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]
     called = ((function.sx_in(), function, place) for function, place in functions)
@@ -202,7 +202,7 @@ def _bracket(value: float, closed: str, opened: str) -> str:
     return closed if math.isfinite(value) else opened
 
 
-def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, Member]:
+def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Member]:
     rests = precision == "single"
     found: dict[str, Member] = {}
 
@@ -224,14 +224,14 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
     return found
 
 
-def _sign(graph: SceneGraph, output: Output) -> str:
+def _sign(graph: Program, output: Output) -> str:
     table = table_of(graph.data.space)
     if output == Output("motion", output.part) and table is PLANE:
         return "counter-clockwise" if graph.data.kinds.coordinates[output.part] == "angle" else "along the axis"
     return output.meant(table).sign
 
 
-def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
+def _output(graph: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
     unit, wrapped = output.unit(graph.data.kinds), output in graph.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"

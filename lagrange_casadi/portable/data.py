@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.vocabulary import Precision
 from ..codegen.printer import Format, literal
 from ..errors import SizeError
-from .program import Program
+from .program import ExportedProgram
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
@@ -21,7 +21,7 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 _LINE = 6
 
 
-def table_bytes(program: Program) -> dict[str, int]:
+def table_bytes(program: ExportedProgram) -> dict[str, int]:
     """The size of each table of numbers, by what it is."""
     size = 4 if program.precision == "single" else 8
     found = {}
@@ -33,7 +33,7 @@ def table_bytes(program: Program) -> dict[str, int]:
     return found
 
 
-def check_size(program: Program, limit: int) -> None:
+def check_size(program: ExportedProgram, limit: int) -> None:
     """Raise :class:`SizeError` where a table is larger than ``limit`` bytes."""
     for what, size in table_bytes(program).items():
         if size > limit:
@@ -42,7 +42,7 @@ def check_size(program: Program, limit: int) -> None:
             )
 
 
-def table_text(program: Program) -> str:
+def table_text(program: ExportedProgram) -> str:
     """A table of the cycle, and what reads it."""
     cycle = program.cycle
     if cycle is None:
@@ -66,7 +66,7 @@ def table_text(program: Program) -> str:
     return "\n" + text
 
 
-def table_call(program: Program) -> Iterable[str]:
+def table_call(program: ExportedProgram) -> Iterable[str]:
     """Statements that read the columns ``y`` from the table, for what the drive's own graph gave."""
     cycle = program.cycle
     assert cycle is not None

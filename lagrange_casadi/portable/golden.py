@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.vocabulary import Precision
 from ..codegen.stages import compensated
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.backends import run
 from ..instants.rung import Rung
 from ..instants.solution import Solution
@@ -49,7 +49,7 @@ class Golden:
     worst: tuple[float, str]
 
 
-def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
+def golden(graph: Program, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
     """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing of the graph.
 
     ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
@@ -81,7 +81,7 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Sol
     return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
 
 
-def _errors(graph: SceneGraph, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
+def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
     """How far outputs and section forces may be off in a precision, by their names: as much further as its roundings are larger.
 
     What is a product of roundings grows with their square; so the graph is followed in that precision too.
@@ -109,7 +109,7 @@ def _saved(member: Member, solution: Solution, exact: Solution) -> float:
     return float(np.abs(gaps).max())
 
 
-def _input(graph: SceneGraph, source: str, t: Array, p: Array, precision: Precision) -> Array:
+def _input(graph: Program, source: str, t: Array, p: Array, precision: Precision) -> Array:
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
     name = source.removeprefix(REST)
     if name == "time":

@@ -17,14 +17,14 @@ from ..codegen.printer import print_functions
 from ..codegen.stages import controlled
 from ..declare.limits import END
 from ..equations.checks import Check, Column
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..equations.section_function import SectionInputs, section
 from ..instants.cycle_table import CycleTable
 from ..instants.tabulate import still
 
 
 @dataclass(frozen=True, eq=False)
-class Program:
+class ExportedProgram:
     """What is emitted.
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``cycle`` is a table to be
@@ -32,7 +32,7 @@ class Program:
     link that has them, the name of the function that gives its section forces, and what that takes.
     """
 
-    graph: SceneGraph
+    graph: Program
     precision: Precision
     functions: Mapping[str, ca.Function]
     columns: tuple[Column, ...]
@@ -55,8 +55,8 @@ class Program:
 
 @symbolic
 def program(
-    graph: SceneGraph, precision: Precision, newton: int | None, p: Array, read: tuple[SceneGraph, CycleTable] | None
-) -> Program:
+    graph: Program, precision: Precision, newton: int | None, p: Array, read: tuple[Program, CycleTable] | None
+) -> ExportedProgram:
     """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``."""
     evaluated = graph if read is None else read[0]
     fixed = read is not None
@@ -103,7 +103,7 @@ def program(
     functions |= of_sections
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
-    return Program(graph, precision, filled, columns, sizes, newton, cycle, places, sections)
+    return ExportedProgram(graph, precision, filled, columns, sizes, newton, cycle, places, sections)
 
 
 def _fixed(function: Any, p: Array) -> Any:
@@ -112,7 +112,7 @@ def _fixed(function: Any, p: Array) -> Any:
     return ca.Function(function.name(), [*inputs[:-1], ca.SX(0, 1)], function.call([*inputs[:-1], ca.DM(p)]), {"cse": True})
 
 
-def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
+def _matter(graph: Program, symbols: Any, *, extent_first: bool) -> Any:
     """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio.
 
     With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
@@ -124,7 +124,7 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 
-def _sections(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
+def _sections(graph: Program, symbols: Any, precision: Precision) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
     """The functions that give section forces, by name; and of each link which of them does, and what that takes."""
     named: dict[Any, str] = {}
     functions: dict[str, Any] = {}
@@ -140,7 +140,7 @@ def _sections(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[di
     return functions, found
 
 
-def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, int]:
+def _sound(graph: Program, symbols: Any, precision: Precision) -> tuple[Any, int]:
     """``sound(p)``: what parameters change and must not be negative for the parts to be possible; and how many must be positive.
 
     Those come first.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..base.quantities import Output
 from ..base.tables import ON_INBOARD, PLANE, Table
 from .contract import Contract
-from .program import Program
+from .program import ExportedProgram
 from .text import template
 
 LAW = """ Those of a section law are for _section, which is all you need.
@@ -35,7 +35,7 @@ def law_in_words(c: Contract) -> str:
     return law + (LOADED if _acts(c, c.table.spread) else "") + (THICK if _acts(c, c.table.couples) else "")
 
 
-def functions(c: Contract, program: Program) -> str:
+def functions(c: Contract, program: ExportedProgram) -> str:
     """The C functions that give the forces inside links."""
     names = {Output.of(m.source): m.name for m in c.outputs}
     links: list[str] = []

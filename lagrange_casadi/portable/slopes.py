@@ -12,7 +12,7 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Output, quotient
 from ..declare.wanted_slopes import SENSITIVITY
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..errors import DeclarationError
 from ..instants.rung import Rung
 from ..sensitivity.series import at_instants
@@ -42,7 +42,7 @@ class ExportedSlopes:
     off: Array
 
 
-def exported_slopes(graph: SceneGraph, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array) -> ExportedSlopes:
+def exported_slopes(graph: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array) -> ExportedSlopes:
     """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among those of the cycle ``t``."""
     rows = [Output.of(member.source) for member in contract.outputs]
     numbers = [list(graph.data.parameters).index(name) for name in by]

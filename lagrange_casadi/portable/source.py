@@ -18,7 +18,7 @@ from ..version import __version__
 from .contract import REST, Contract
 from .data import table_call, table_text
 from .golden import Golden
-from .program import Program
+from .program import ExportedProgram
 from .sections import functions
 from .slopes import ExportedSlopes
 from .slopes import code as sensitivity
@@ -36,7 +36,7 @@ class Source:
     """
 
     contract: Contract
-    program: Program
+    program: ExportedProgram
     scene: str
     guess: Sequence[float]
     rung: str

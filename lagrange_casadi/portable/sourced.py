@@ -13,7 +13,7 @@ import numpy as np
 from ..declare.scene import Scene, Wanted, without_fitted, without_life
 from ..declare.times import instants_of
 from ..declare.wanted_slopes import by_parameters, others
-from ..equations.derive import as_derived, assembled, derive
+from ..equations.derive import as_derived, assembled, compile_scene
 from ..equations.fingerprint import declaration
 from ..errors import CertificateError, DeclarationError
 from ..instants.determinacy import determinate
@@ -50,7 +50,7 @@ def sourced(
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
     scene = assembled(scene, values, wanted)
-    graph = derive(scene, wanted)
+    graph = compile_scene(scene, wanted)
     declared = declaration(as_derived(scene, scene.wanted if wanted is None else wanted), graph.wanted) or graph.dumps()
     rung.check(graph)
     if not graph.driven:

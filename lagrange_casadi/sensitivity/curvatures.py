@@ -18,7 +18,7 @@ import numpy as np
 from .. import codegen
 from ..base.arrays import Array
 from ..base.symbolic import symbolic
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.backends import compiled
 from ..instants.rung import Rung
 from .batches import at_points
@@ -76,7 +76,7 @@ class Curvatures:
 
 
 @symbolic
-def second_function(graph: SceneGraph, points: PointFunction) -> Any:
+def second_function(graph: Program, points: PointFunction) -> Any:
     """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
     and all parameters, and how it changes along a ``way`` of these."""
     inner, laws = points.at_drives, graph.laws

@@ -6,11 +6,11 @@ import numpy as np
 
 from .. import codegen
 from ..base.arrays import Array
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.backends import begun, follow
 
 
-def iterated(graph: SceneGraph, following: codegen.Library | None, t: Array, p: Array, places: Array) -> Array:
+def iterated(graph: Program, following: codegen.Library | None, t: Array, p: Array, places: Array) -> Array:
     """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed; by compiled code, if any."""
     if graph.newton is None:
         return np.zeros((places.size, 0))

@@ -23,8 +23,8 @@ from ..base.tables import table_of
 from ..declare.limits import END
 from ..equations.checks import Column
 from ..equations.model_data import ModelData
+from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.scene_graph import SceneGraph
 from ..equations.section_function import Place, Section
 from ..summits.sharpness import Kind, Sharpness, Watch
 
@@ -53,7 +53,7 @@ class PointFunction(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness | None = None) -> PointFunction:
+    def of(cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None) -> PointFunction:
         """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps.
 
         Without a ``sharpness`` there is nothing of the latter.
@@ -71,7 +71,7 @@ class PointFunction(Graphs):
         return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, inner)
 
 
-def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
+def _at_drives(graph: Program, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
     """The same function where the drives' coordinates, rates, accelerations and their rates are given."""
     instant = differentiable(graph.instant)
     t, d, rate, acceleration, z, p = inputs = instant.sx_in()

@@ -14,8 +14,8 @@ from ..base.quantities import Output
 from ..base.room import require
 from ..base.symbolic import symbolic
 from ..codegen.stages import plain
+from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.laws import made_of
 from ..instants.rung import Rung
@@ -29,7 +29,7 @@ _BLOCK = 1 << 20
 """Numbers of one argument that are made ready at once."""
 
 
-def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung) -> dict[str, dict[Output, Array]]:
+def series_slopes(graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung) -> dict[str, dict[Output, Array]]:
     """The derivatives by each of some parameters of all that equilibrium determines of a solution of a graph, by output.
 
     Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made in doubles, by the compiler of a
@@ -51,7 +51,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
 
 
 @symbolic
-def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
+def at_instants(graph: Program, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
     inner = total(graph, [graph.outputs[output] for output in rows], by)
     time, *driven, z, values = inner.sx_in()
@@ -73,7 +73,7 @@ def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, b
 
 
 def _along(
-    graph: SceneGraph, solution: Solution, link: str, found: Mapping[Output, Array], p: Array, by: Sequence[int], rung: Rung
+    graph: Program, solution: Solution, link: str, found: Mapping[Output, Array], p: Array, by: Sequence[int], rung: Rung
 ) -> Iterator[tuple[Output, Array]]:
     """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open

@@ -15,7 +15,7 @@ from .. import codegen
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..codegen.stages import plain
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 from ..instants.backends import compiled
 from ..instants.rung import Rung
 from ..summits.sharpness import Sharpness
@@ -37,13 +37,13 @@ class AtPoints(NamedTuple):
 class Slopes:
     """Quantities of a scene and their derivatives by all parameters, at points: by ``library``, or by the virtual machine."""
 
-    graph: SceneGraph
+    graph: Program
     points: PointFunction
     library: codegen.PointsLibrary | None
     following: codegen.Library | None
 
     @classmethod
-    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness, rung: Rung) -> Slopes:
+    def of(cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness, rung: Rung) -> Slopes:
         """Derive and compile those of some quantities, by the compiler of a rung; always in doubles."""
         points, extra = PointFunction.of(graph, quantities, sharpness), tuple(shlex.split(rung.flags))
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import casadi as ca
 
+from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.scene_graph import SceneGraph
 
 
-def total(graph: SceneGraph, rows: Sequence[int], by: Sequence[int]) -> Any:
+def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
     """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some parameters, by their numbers.
 
     ``slopes`` is (parameters, rows), dense. It is made forward, a sweep a parameter, unless there are fewer rows: then backwards, a
@@ -43,6 +43,6 @@ def _seeds(count: int, by: Sequence[int]) -> Any:
     return seeds
 
 
-def _driven(graph: SceneGraph, t: Any, p: Any, by: Sequence[int]) -> list[Any]:
+def _driven(graph: Program, t: Any, p: Any, by: Sequence[int]) -> list[Any]:
     """How the drives' coordinates, rates and accelerations change with some parameters."""
     return [ca.jtimes(part, p, _seeds(p.numel(), by)) for part in graph.laws.motion(t, p)]

@@ -24,9 +24,9 @@ from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, span_of
-from ..equations.derive import assembled, derive
+from ..equations.derive import assembled, compile_scene
+from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..instants.backends import follow, searching
 from ..instants.section_law import SectionLaw, Side
@@ -144,7 +144,7 @@ def forces(solution: Solution) -> list[str]:
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def rates(graph: SceneGraph) -> ca.Function:
+def rates(graph: Program) -> ca.Function:
     """The columns of a graph and, where loops are closed, their time derivatives along the motion.
 
     ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
@@ -174,7 +174,7 @@ class ContinuousSolution:
     ``again`` makes that of the same parameters at other instants, for outputs that are wanted.
     """
 
-    graph: SceneGraph
+    graph: Program
     stages: Stages
     solution: Solution
     p: Array
@@ -191,7 +191,7 @@ class ContinuousSolution:
         """
         told = scene.mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-        graph = derive(assembled(scene, told, wanted), wanted)
+        graph = compile_scene(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)

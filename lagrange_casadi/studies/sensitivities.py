@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
-from ..equations.derive import assembled, derive
+from ..equations.derive import assembled, compile_scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.rung import Rung
 from ..instants.solution import Solution
@@ -210,7 +210,7 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
     wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
     values = mechanism.values(told)
-    graph = derive(assembled(scene, values, wanted), wanted)
+    graph = compile_scene(assembled(scene, values, wanted), wanted)
     quantities = [o for o in solution.quantities() if solution.determined(o)]
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}

@@ -24,8 +24,8 @@ from ..declare.wanted_slopes import by_parameters
 from ..elastic.completing import told_errors, wanted_alone
 from ..elastic.least_energy import Completed, complete
 from ..equations.checks import Check
-from ..equations.derive import assembled, derive
-from ..equations.scene_graph import SceneGraph
+from ..equations.derive import assembled, compile_scene
+from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
 from ..instants.cost import seconds
@@ -78,7 +78,7 @@ def solve(
     names = scene.wanted if wanted is None else wanted
     asked = [*names, *felt(scene.mechanism)] if gives else wanted
     scene = assembled(scene, values, asked, elastic=bool(gives))
-    graph = derive(scene, asked, elastic=bool(gives))
+    graph = compile_scene(scene, asked, elastic=bool(gives))
     rung.check(graph)
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
@@ -107,7 +107,7 @@ def solve(
     if by and done is None:
         slopes = series_slopes(graph, solution, p, by, rung)
     elif by:
-        slopes = _completed_slopes(derive(scene, asked), solution, p, by, rung)
+        slopes = _completed_slopes(compile_scene(scene, asked), solution, p, by, rung)
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=Derivatives(slopes))
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
@@ -122,7 +122,7 @@ def solve(
 
 
 def _certified(
-    graph: SceneGraph,
+    graph: Program,
     found: Evaluated,
     solution: Solution,
     out: Array,
@@ -142,7 +142,7 @@ def _certified(
 
 
 def _completed_slopes(
-    graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung
+    graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung
 ) -> dict[str, dict[Output, Array]]:
     """Differentiate by parameters a solution that elasticity completed, by a graph that has what it tells."""
     _, left_open = determinate(graph, solution.t, p)
@@ -156,7 +156,7 @@ def _giving(scene: Scene, elastic: Elastic) -> Scene:
     return replace(scene, elastic=elastic)
 
 
-def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
+def _announce(graph: Program, count: int, rung: Rung, threads: int) -> None:
     """Warn of what takes long."""
     if rung.table is not None:
         return
@@ -200,7 +200,7 @@ def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) 
         )
 
 
-def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:
+def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
     """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they would jump by a turn.
 
     They are those columns, not copies: in ``out`` too angles go on after this.
@@ -217,7 +217,7 @@ def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:
     return found
 
 
-def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, within: Mapping[Output, Array]) -> dict[str, Array]:
+def residuals_of(solution: Solution, graph: Program, out: Array, p: Array, within: Mapping[Output, Array]) -> dict[str, Array]:
     """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t) of a graph, for parameters ``p``.
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
@@ -225,20 +225,20 @@ def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, wi
     return certify(solution, graph.data.declared(p), _hidden(graph, out, solution.left_open), within)
 
 
-def _hidden(graph: SceneGraph, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
+def _hidden(graph: Program, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
     """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
     unwanted = {Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()}
     return unwanted | {output: out[graph.outputs[output]] for output in left_open if output in graph.outputs}
 
 
-def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
+def _closed(graph: Program, out: Array, p: Array) -> dict[str, Array]:
     """What is left of the loops' equations, over the mechanism's extent."""
     gaps = [np.abs(out[k]) / graph.extent(p) for k in graph.checks("gap").values()]
     gaps += [np.abs(out[k]) for k in graph.checks("misfit").values()]
     return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
-def _condition(graph: SceneGraph, found: Evaluated) -> dict[str, Array]:
+def _condition(graph: Program, found: Evaluated) -> dict[str, Array]:
     """How much an error in a loop's lengths or drives grows in its solution: the worst 1/sin(transmission angle) of all loops.
 
     For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.

@@ -21,8 +21,8 @@ from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, instants_of
-from ..equations.derive import assembled, derive
-from ..equations.scene_graph import SceneGraph
+from ..equations.derive import assembled, compile_scene
+from ..equations.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Evaluated, run
 from ..instants.from_table import columns
@@ -140,7 +140,7 @@ def trade(
     values = np.array(list(told.values()))
     times = instants_of(scene.prescribed, scene.timing(t, over), told).t
     scene = assembled(scene, told, wanted)
-    graph = derive(scene, wanted)
+    graph = compile_scene(scene, wanted)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(graph, times, compared, values)
     refused: dict[str, str] = {}
@@ -174,7 +174,7 @@ def trade(
 class _Truth:
     """The reference at some instants, and how far an evaluation is from it."""
 
-    def __init__(self, graph: SceneGraph, t: Array, compared: Array, p: Array) -> None:
+    def __init__(self, graph: Program, t: Array, compared: Array, p: Array) -> None:
         evaluated, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
         moves = ~resting(graph, evaluated.out)  # at rest there is nothing to compare
         compared = compared[moves[compared]] if moves[compared].any() else compared
@@ -192,7 +192,7 @@ class _Truth:
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
 
-    def errors(self, graph: SceneGraph, evaluated: Evaluated) -> tuple[float, float, str]:
+    def errors(self, graph: Program, evaluated: Evaluated) -> tuple[float, float, str]:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
         for name, k in graph.outputs.items():
@@ -205,7 +205,7 @@ class _Truth:
         return worst[name], float(np.median(list(worst.values()))), str(name)
 
 
-def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
+def _motions(graph: Program, t: Array, p: Array) -> dict[str, float]:
     """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
     extent, (_, rates, _) = graph.extent(p), (np.atleast_2d(part.full()) for part in graph.motion(t[None], p))
     kinds = [graph.data.kinds.coordinates[name] for name in graph.driven]
@@ -217,7 +217,7 @@ def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
     }
 
 
-def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
+def _work(graph: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
     """What is timed, made ready, and its instants."""
     count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)

@@ -23,7 +23,7 @@ from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
 from ..equations.checks import Check
-from ..equations.scene_graph import SceneGraph
+from ..equations.program import Program
 
 
 class Kind(enum.IntEnum):
@@ -71,7 +71,7 @@ class Sharpness:
 
     @classmethod
     @symbolic
-    def of(cls, graph: SceneGraph, columns: Sequence[int]) -> Sharpness:
+    def of(cls, graph: Program, columns: Sequence[int]) -> Sharpness:
         """Of what some columns of a scene's graph are made of.
 
         What is largest along a link is compared with much, and not looked into: it is as sharp as the link's law, and no sharper.
@@ -94,7 +94,7 @@ class Sharpness:
 
 
 @symbolic
-def with_watched(graph: SceneGraph, sharpness: Sharpness) -> SceneGraph:
+def with_watched(graph: Program, sharpness: Sharpness) -> Program:
     """The graph with what is watched as further columns, the last ones."""
     inputs = graph.instant.sx_in()
     names = [graph.instant.name_in(i) for i in range(len(inputs))]
@@ -105,7 +105,7 @@ def with_watched(graph: SceneGraph, sharpness: Sharpness) -> SceneGraph:
     )
 
 
-def bent(graph: SceneGraph, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
+def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
     """Between which of the instants ``t`` a motion by samples bends more than the instants show, (t - 1,)."""
     found = np.zeros(max(t.size - 1, 0), bool)
     knots = np.array([knot for knot in sharpness.knots if t[0] < knot < t[-1]])

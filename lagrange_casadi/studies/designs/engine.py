@@ -23,8 +23,8 @@ from ...base.room import cores, require
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
-from ...equations.derive import derive
-from ...equations.scene_graph import SceneGraph
+from ...equations.derive import compile_scene
+from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.cost import seconds
@@ -83,7 +83,7 @@ class DesignEngine:
     rung: Rung
     times: DesignTimes
     kept: KeptOutputs
-    graph: SceneGraph
+    graph: Program
     stages: Stages
     library: codegen.DesignsLibrary | None
     provenance: Provenance
@@ -102,13 +102,13 @@ class DesignEngine:
         rung = rung or Rung()
         if rung.table is not None:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
-        graph = derive(scene, wanted)
+        graph = compile_scene(scene, wanted)
         rung.check(graph)
         scene.checked(scene.mechanism.values())
         return cls.compiled(graph, timing or scene.timing(t), rung)
 
     @classmethod
-    def compiled(cls, graph: SceneGraph, timing: Timing, rung: Rung) -> DesignEngine:
+    def compiled(cls, graph: Program, timing: Timing, rung: Rung) -> DesignEngine:
         """Compile a graph for designs at instants that are asked for."""
         data = graph.data
         times, p = DesignTimes(data.laws, data.values(data.defaults), timing), data.defaults
@@ -365,7 +365,7 @@ class DesignEngine:
             slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
         return slopes
 
-    def failures(self, p: Array, whole: SceneGraph) -> dict[str, float]:
+    def failures(self, p: Array, whole: Program) -> dict[str, float]:
         """What fails of one design that has a result, (parameters,), by a graph of all outputs: see :mod:`.witness`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None

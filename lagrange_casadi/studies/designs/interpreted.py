@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.determinacy import undetermined
 from ...instants.refusal import Status, refusal
@@ -28,7 +28,7 @@ class DesignResult:
     columns: Array
 
 
-def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
+def columns_of(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
     """The columns of a design at instants, or why it has no result; no number where friction at rest reaches."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
@@ -46,7 +46,7 @@ def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton:
     return Status.OK, evaluated
 
 
-def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
+def outcome(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
     """What is kept of a design, or why it has no result."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
     if evaluated is None:
@@ -76,7 +76,7 @@ def _means(t: Array, values: Array) -> tuple[Any, Any]:
 
 
 def _signals(
-    graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, evaluated: Evaluated, some: Sequence[int]
+    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None, evaluated: Evaluated, some: Sequence[int]
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     description, reduction = graph.data.at(p), kept.reduction

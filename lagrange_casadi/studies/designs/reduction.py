@@ -18,7 +18,7 @@ from ...codegen.stages import Stages, compensated, plain, turns_many
 from ...equations.dead_centres import NEAR
 from ...equations.mobility import stations_of
 from ...equations.model_data import ModelData
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
@@ -29,7 +29,7 @@ from ...summits.sharpness import Sharpness
 
 
 @symbolic
-def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
+def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
     """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them.
 
     ``alike`` tells that all designs have the instants ``t``.
@@ -64,7 +64,7 @@ class KeptOutputs:
     sharpness: Sharpness
 
     @classmethod
-    def of(cls, graph: SceneGraph, rung: Rung) -> KeptOutputs:
+    def of(cls, graph: Program, rung: Rung) -> KeptOutputs:
         """What is kept of a scene's designs on a rung."""
         data, at = graph.data, graph.outputs
         table = table_of(data.space)
@@ -137,14 +137,14 @@ def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> A
     )
 
 
-def _made_of(graph: SceneGraph, quantity: Output, table: Table) -> list[Output]:
+def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
     """The outputs that a quantity is made of."""
     if quantity.group == "section":
         return made_of(graph.outputs, quantity.part, quantity.member, table)
     return list(quantity.components(table))
 
 
-def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
+def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
     """The rules of a graph as the emitted C takes them: a row is followed by the column that is the size of its terms."""
     found: list[tuple[int, str, float]] = []
     for rule in rules(graph, rung.precision, rung.newton):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 from ...declare.corners import Corners
 from ...declare.ends import BEYOND
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...instants.refusal import Status
 
 _OK = int(Status.OK)
@@ -22,7 +22,7 @@ _OK = int(Status.OK)
 class Watch:
     """What motions and constraints of a graph must hold to for the values that parameters have in each design."""
 
-    graph: SceneGraph
+    graph: Program
 
     @property
     def _ends(self) -> Any | None:

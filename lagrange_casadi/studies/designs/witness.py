@@ -15,7 +15,7 @@ import numpy as np
 from ...arithmetic.compensated import ROUNDING
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...instants.backends import run
 from ...instants.phases import phases
 from ...instants.rung import Rung
@@ -39,7 +39,7 @@ def wanted_whole(names: Iterable[str]) -> list[str]:
     return ["all", *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED)]
 
 
-def failures(graph: SceneGraph, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
+def failures(graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
     """What fails of a design, and by how much: residuals of its certificate, and under ``agreement`` how far ``out`` is off.
 
     ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph`` has all outputs.

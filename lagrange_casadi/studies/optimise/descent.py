@@ -14,7 +14,7 @@ from .judge import Judge
 from .judged import Judged
 from .look import Point
 from .problem import Box, Problem
-from .program import Found, Held, Program
+from .program import Found, Held, NonlinearProgram
 from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
 
 _ROUNDS, _HALVINGS = 40, 12
@@ -62,7 +62,7 @@ class Descent:
     """A way from a start. Nothing of it depends on other ways, so that it is the same wherever it is gone."""
 
     judge: Judge
-    program: Program
+    program: NonlinearProgram
     box: Box
     problem: Problem
     scales: tuple[float, ...]

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...base.quantities import Output
 from ...beams.material import Material
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.statistics import counted
 from ...strength.fatigue import loaded, strengths, swing_squares, used
@@ -33,7 +33,7 @@ _FEW = 8
 class Tired:
     """A link whose utilisation against fatigue is a term. Raises :class:`.DeclarationError` where its material lacks a number."""
 
-    graph: SceneGraph
+    graph: Program
     link: str
 
     def __post_init__(self) -> None:

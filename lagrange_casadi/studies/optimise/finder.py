@@ -12,7 +12,7 @@ from ..designs.engine import DesignEngine
 from .descent import Descent, Told
 from .judge import Judge
 from .problem import Problem, Question
-from .program import Program
+from .program import NonlinearProgram
 from .trail import Trail
 from .values import PointValues
 
@@ -33,7 +33,7 @@ class Finder:
     question: Question
     engine: DesignEngine
     judge: Judge
-    programs: dict[Any, Program] = field(default_factory=dict)
+    programs: dict[Any, NonlinearProgram] = field(default_factory=dict)
 
     @classmethod
     def of(cls, question: Question, engine: DesignEngine) -> Finder:
@@ -57,12 +57,12 @@ class Finder:
                 return True
         return False
 
-    def program(self, problem: Problem) -> Program:
+    def program(self, problem: Problem) -> NonlinearProgram:
         """That of a problem, whatever its limits are."""
         known = (problem.objective, *((c.term, c.least) for c in problem.constraints))
         if known not in self.programs:
             judge, box, count = self.judge, self.question.box, self.engine.count
-            self.programs[known] = Program(judge.values, box, problem, count, judge.least_closure)
+            self.programs[known] = NonlinearProgram(judge.values, box, problem, count, judge.least_closure)
         return self.programs[known]
 
     def descend(self, errand: Errand, told: Told) -> Trail:

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import table_of
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.rung import Rung
 from ...instants.signals import section_forces
@@ -49,13 +49,13 @@ class Point:
 class Look:
     """A design over instants: ``t`` (t,), the graph's columns (columns, t) and iterated coordinates (z, t) there."""
 
-    graph: SceneGraph
+    graph: Program
     t: Array
     p: Array
     found: Evaluated
 
     @classmethod
-    def at(cls, graph: SceneGraph, t: Array, p: Array, rung: Rung) -> Look:
+    def at(cls, graph: Program, t: Array, p: Array, rung: Rung) -> Look:
         """A design looked at; what has no result is NaN there."""
         found, _ = run(graph, t, p, rung)
         return cls(graph, t, p, found)

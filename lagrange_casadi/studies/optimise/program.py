@@ -84,7 +84,7 @@ class _Built:
     rows: list[slice]
 
 
-class Program:
+class NonlinearProgram:
     """The program of a problem, whose limits are numbers that it is given; it is built once for each size."""
 
     @symbolic

@@ -19,8 +19,8 @@ from ...base.symbolic import symbolic
 from ...base.tables import table_of
 from ...declare.limits import END
 from ...equations.checks import Column
+from ...equations.program import Program
 from ...equations.reciprocals import differentiable
-from ...equations.scene_graph import SceneGraph
 from ...equations.section_function import Place
 from ...errors import DeclarationError
 from ...sensitivity.points import resultant
@@ -76,7 +76,7 @@ class Followed:
 class PointValues:
     """The functions of a graph's quantities at points."""
 
-    graph: SceneGraph
+    graph: Program
     times: DesignTimes
     known: dict[Output, Followed] = field(default_factory=dict)
     links: dict[str, Tired] = field(default_factory=dict)

@@ -19,7 +19,7 @@ from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
 from ...declare.wanted_slopes import SENSITIVITY
 from ...equations.model_data import ModelData
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
 from ...instants.refusal import Status
 from ...instants.statistics import of_counted
@@ -63,7 +63,7 @@ class Harvest:
 
     engine: Engine
     data: ModelData
-    whole: SceneGraph
+    whole: Program
     keep: Keep
     axis: InstantAxis
     xi: Array

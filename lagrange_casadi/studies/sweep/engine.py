@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from ...base.arrays import Array
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...instants.solution import Provenance
 from ..designs.engine import Outcome
 
@@ -51,5 +51,5 @@ class Engine(Protocol):
     def mean_slopes_at(self, p: Array, outcome: Outcome) -> Array:
         """Those of means over time, and of roots of mean squares, (designs, 2, efforts, parameters)."""
 
-    def failures(self, p: Array, whole: SceneGraph) -> Mapping[str, float]:
+    def failures(self, p: Array, whole: Program) -> Mapping[str, float]:
         """What fails of one design that has a result, (parameters,), by a graph of all outputs; nothing where all is well."""

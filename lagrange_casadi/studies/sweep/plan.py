@@ -21,9 +21,9 @@ from ...declare.even_points import EvenPoints, points
 from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
 from ...declare.times import Over, Times, Timing
 from ...declare.wanted_slopes import SENSITIVITY, by_parameters
-from ...equations.derive import derive
+from ...equations.derive import compile_scene
 from ...equations.fingerprint import sources
-from ...equations.scene_graph import SceneGraph
+from ...equations.program import Program
 from ...errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ...instants.rung import Rung
 from ...instants.solution import Provenance
@@ -92,7 +92,7 @@ class Task:
     life: tuple[str, ...] = ()
     by: tuple[str, ...] = ()
 
-    def harvest(self, graph: SceneGraph, whole: SceneGraph | None = None) -> Harvest:
+    def harvest(self, graph: Program, whole: Program | None = None) -> Harvest:
         """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all outputs."""
         xi = np.zeros(0) if self.xi is None else points(self.xi)
         engine, data = compiled(graph, self.timing, self.rung), graph.data
@@ -100,7 +100,7 @@ class Task:
         return Harvest(engine, data, whole or graph, self.keep, axis, xi, self.safety, self.life, self.by)
 
 
-def compiled(graph: SceneGraph, timing: Timing, rung: Rung) -> Engine:
+def compiled(graph: Program, timing: Timing, rung: Rung) -> Engine:
     """The engine of a graph."""
     return DesignEngine.compiled(graph, timing, rung)
 
@@ -112,7 +112,7 @@ class Plan:
     ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these values.
     """
 
-    graph: SceneGraph
+    graph: Program
     description: Description
     designs: Designs
     values: Mapping[str, float]
@@ -151,10 +151,10 @@ class Plan:
         safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
         task = Task(scene.timing(t, over), ratios, keep, rung, safety, life, tuple(by_parameters(scene.mechanism, names)))
         scene = _assembled(scene, designs, values, names)
-        graph = derive(scene, names)
+        graph = compile_scene(scene, names)
         rung.check(graph)
         scene.checked(scene.mechanism.values())
-        whole = derive(scene, wanted_whole(map(str, graph.outputs)))
+        whole = compile_scene(scene, wanted_whole(map(str, graph.outputs)))
         harvest = task.harvest(graph, whole)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
@@ -243,16 +243,16 @@ class Plan:
 def _assembled(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> Scene:
     """Return a scene; where its own parameters cannot be assembled, with those of the first of some designs that can be.
 
-    Raises what :func:`.derive` does for the scene's own where there is none.
+    Raises what :func:`.compile_scene` does for the scene's own where there is none.
     """
     try:
-        derive(scene, wanted)
+        compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
         for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
             row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
             try:
                 tried = dataclasses.replace(scene, assembly={**values, **row})
-                derive(tried, wanted)
+                compile_scene(tried, wanted)
             except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tried
@@ -274,7 +274,7 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 
-def signature(graph: SceneGraph, task: Task, provenance: Provenance) -> dict[str, Any]:
+def signature(graph: Program, task: Task, provenance: Provenance) -> dict[str, Any]:
     """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},

@@ -25,7 +25,7 @@ from .open_forces import OpenForces
 
 
 @dataclass(frozen=True, eq=False)
-class SceneGraph(Graphs):
+class Program(Graphs):
     """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be sent, and kept as text.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
@@ -144,7 +144,7 @@ class SceneGraph(Graphs):
 
     @classmethod
     @symbolic
-    def loads(cls, text: str) -> SceneGraph:
+    def loads(cls, text: str) -> Program:
         """Read the text that :meth:`dumps` wrote."""
         kept = json.loads(text)
         instant = ca.Function.deserialize(kept["instant"])
@@ -168,4 +168,4 @@ class SceneGraph(Graphs):
                 f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives in this process alone; "
                 "expected expressions of CasADi's own functions"
             )
-        return SceneGraph.loads, (self.dumps(),)
+        return Program.loads, (self.dumps(),)
