@@ -14,6 +14,7 @@ import pytest
 from conftest import CASES, PLANAR
 from estimates import COUNT, FACTOR, RUNGS, assert_near, exactly, ratios, rungs
 from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
+from outside import doubled
 from stepped import iterated, pinned
 from truth import true_errors, truth
 
@@ -238,7 +239,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "derive", lambda *arguments, **keywords: wrong)
+    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "compile_scene", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4
@@ -277,9 +278,7 @@ def arm(load):
 
 
 def test_graphs_that_call_functions_have_no_estimates():
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
-    assert evaluate(arm(called), backend="vm").errors == {}
+    assert evaluate(arm(doubled), backend="vm").errors == {}
     assert set(evaluate(arm(ca.sin), backend="vm").errors) >= {"effort:J", "load:t:mz"}
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from compiled import SCENES
 from mechanisms import four_bar, slider_crank
+from outside import doubled
 
 import lagrange_casadi
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, derive, evaluate
@@ -150,26 +151,8 @@ def test_a_damaged_graph_is_derived_again_and_said(fresh_cache):
     assert np.array_equal(again.effort("pin"), first.effort("pin"))
 
 
-class Doubled(ca.Callback):
-    """A function whose content CasADi does not write down."""
-
-    def __init__(self):
-        ca.Callback.__init__(self)
-        self.construct("doubled", {"enable_fd": True})
-
-    def get_n_in(self):
-        return 1
-
-    def get_n_out(self):
-        return 1
-
-    def eval(self, arguments):
-        return [2 * arguments[0]]
-
-
 def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
-    callback = Doubled()
-    scene = pendulum(law=Motion(callback))
+    scene = pendulum(law=Motion(doubled))
     assert name_of(scene) is None
     for _ in range(2):
         assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0

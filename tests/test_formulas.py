@@ -7,12 +7,12 @@ left in its graphs are taken for what they mean.
 import sys
 from dataclasses import replace
 
-import casadi as ca
 import mpmath
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
 from mechanisms import truss_platform
+from outside import doubled
 from parametric import declared, meant
 from precise import precise
 from truth import matter_of, section
@@ -116,11 +116,9 @@ def test_what_a_reference_refuses(monkeypatch):
     monkeypatch.setattr("lagrange_casadi.judge.reference._STEPS", 3)
     with pytest.raises(AssemblyError, match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s"):
         reference(graph, [0.5], [0.05], z=far)
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
     m = Mechanism("arm")
     arm = m.link("arm", length=1, mass=1)
-    m.torque("t", arm, called(m.coordinate(m.revolute("J", m.ground, arm))))
+    m.torque("t", arm, doubled(m.coordinate(m.revolute("J", m.ground, arm))))
     with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
         reference(derive(Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 1, 2))), [0.5], [])
     monkeypatch.setitem(sys.modules, "mpmath", None)

@@ -11,6 +11,7 @@ import pytest
 from compiled import cc
 from hypothesis import given
 from hypothesis import strategies as st
+from outside import doubled
 
 from lagrange_casadi import codegen
 from lagrange_casadi.arithmetic.interpret import written_out
@@ -124,27 +125,13 @@ def test_numbers_too_large_for_singles_are_refused():
 
 @pytest.mark.parametrize(
     ("make", "says"),
-    [(ca.erfinv, "it takes OP_ERFINV"), (lambda x: outside(x), "it calls another one")],
+    [(ca.erfinv, "it takes OP_ERFINV"), (lambda x: doubled(x), "it calls another one")],
     ids=["unknown", "foreign"],
 )
 def test_what_has_no_c_is_named(make, says):
     x = ca.SX.sym("x")
     with pytest.raises(DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"):
         print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
-
-
-class Outside(ca.Callback):
-    """A function that has no expression."""
-
-    def __init__(self):
-        ca.Callback.__init__(self)
-        self.construct("outside", {"enable_fd": True})
-
-    def eval(self, arguments):
-        return [2 * arguments[0]]
-
-
-outside = Outside()
 
 
 def test_functions_that_are_called_are_written_out():
@@ -155,7 +142,7 @@ def test_functions_that_are_called_are_written_out():
     a = ca.SX.sym("a")
     for expression, left in (
         (outer(a) + inner(ca.vertcat(a, 1), 3.0)[0], 0),
-        (outer(outside(a)), 1),
+        (outer(doubled(a)), 1),
         (outer(entries((1.0, 2.0, 4.0), cell((0.0, 1.0, 2.0, 3.0), a, ends=True))), 2),
     ):
         written = written_out(expression)

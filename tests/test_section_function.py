@@ -8,11 +8,11 @@ import alive
 import numpy as np
 import pytest
 from compiled import PEDANTIC, cc
-from lagrange_casadi.codegen.plain import plain
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.base.tables import PLANE, SPACE
+from lagrange_casadi.codegen.printer import print_functions
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.declare.limits import END
 from lagrange_casadi.equations.section_function import SIDES, SectionInputs, section
@@ -153,7 +153,8 @@ def by_c(links, folder):
     }}
   }}
 """
-    text = f"#include <math.h>\n#include <stdio.h>\n#define casadi_real double\n{plain(functions, 'double')}"
+    printed = print_functions(functions, "double", prefix="table")
+    text = f"#include <math.h>\n#include <stdio.h>\n#define casadi_real double\n{printed}"
     (folder / "forms.c").write_text(f"{text}int main(void) {{\n{body}  return 0;\n}}\n")
     result = cc(["cc", *PEDANTIC], folder, "forms.c")
     assert result.returncode == 0, result.stderr

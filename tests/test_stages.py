@@ -12,6 +12,7 @@ from balance import instant_at, settle
 from conftest import CASES, NAMES
 from estimates import kind as kind_of
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
+from outside import doubled
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
@@ -374,9 +375,7 @@ def test_fixed_parameters_keep_the_phase_of_a_motion():
 
 
 def test_what_cannot_be_followed_is_not_in_single():
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
-    scene = counting(RAMP, lambda m, angle: called(angle))
+    scene = counting(RAMP, lambda m, angle: doubled(angle))
     graph = derive(scene, ["load:load"])
     assert not turns_many(graph, np.array([1e6]), values(graph))
     with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):

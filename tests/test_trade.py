@@ -5,9 +5,9 @@ import importlib
 import json
 from pathlib import Path
 
-import casadi as ca
 import numpy as np
 import pytest
+from outside import doubled
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
@@ -105,12 +105,10 @@ def test_what_exported_c_can_be_is_recommended_apart():
 
 
 def test_graphs_that_call_functions_have_no_reference():
-    x = ca.SX.sym("x")
-    called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})
     m = Mechanism("arm")
     arm = m.link("arm", length=1, mass=1)
     joint = m.revolute("J", m.ground, arm)
-    m.torque("t", arm, called(m.coordinate(joint)))
+    m.torque("t", arm, doubled(m.coordinate(joint)))
     with pytest.raises(DeclarationError, match="cannot be followed: it calls another one"):
         trade(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), rungs=(Rung("c"),))
 
