@@ -239,7 +239,8 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "compile_scene", lambda *arguments, **keywords: wrong)
+    solving = importlib.import_module("lagrange_casadi.studies.solving")
+    monkeypatch.setattr(solving, "compile_scene", lambda *arguments, **keywords: wrong)
     with pytest.warns(CertificateWarning, match="balance"):
         after = evaluate(scene)
     assert np.max(after.certificate["balance"]) > 1e-4

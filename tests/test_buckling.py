@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.held import effective_lengths
-from lagrange_casadi.equations.buckling import Column, critical_stress
+from lagrange_casadi.equations.buckling import Column, critical_stress, used
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.strength.member import Member
@@ -27,7 +27,7 @@ def column(member, effective):
 
 def load_factor(compression, moments, of):
     with np.errstate(divide="ignore", invalid="ignore"):
-        return 1.0 / of.used(compression, moments)
+        return 1.0 / used(of, compression, moments)
 
 
 def test_eulers_curve_and_johnsons_parabola_touch_at_half_the_strength():

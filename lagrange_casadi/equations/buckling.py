@@ -62,27 +62,28 @@ class Column:
 
         return cls(*zip(column(0), column(1), strict=True))
 
-    def used(self, compression: Any, moments: Sequence[Any]) -> Any:
-        """How far a column is used by compression and moments, about z and in space about y: one over the factor of safety.
 
-        That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) = 1. Compression of less than
-        1e-6 of the critical load counts as none.
-        """
-        compressed = larger(compression, 0.0)
-        share = compressed / smaller(*self.critical)
-        shares = [compressed / euler for euler in self.euler]
-        bent = [moment / limit for moment, limit in zip(moments, self.yielding, strict=False)]
-        found = larger(*shares)
-        for euler, moment in zip(shares, bent, strict=False):
-            found = larger(found, _alone(share, euler, moment))
-        if len(bent) > 1:
-            # From the left, where it is convex and falls, Newton's method rises to the solution.
-            for _ in range(_ROUNDS):
-                gaps = [larger(found - euler, _TINY * found) for euler in shares]
-                over = share / found + sum(b / gap for b, gap in zip(bent, gaps, strict=True)) - 1.0
-                slope = share / found**2 + sum(b / gap**2 for b, gap in zip(bent, gaps, strict=True))
-                found = found + larger(over / slope, 0.0)
-        return chosen(share, SLIGHT, found, 0.0)
+def used(column: Column, compression: Any, moments: Sequence[Any]) -> Any:
+    """How far a column is used by compression and moments, about z and in space about y: one over the factor of safety.
+
+    That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) = 1. Compression of less than
+    1e-6 of the critical load counts as none.
+    """
+    compressed = larger(compression, 0.0)
+    share = compressed / smaller(*column.critical)
+    shares = [compressed / euler for euler in column.euler]
+    bent = [moment / limit for moment, limit in zip(moments, column.yielding, strict=False)]
+    found = larger(*shares)
+    for euler, moment in zip(shares, bent, strict=False):
+        found = larger(found, _alone(share, euler, moment))
+    if len(bent) > 1:
+        # From the left, where it is convex and falls, Newton's method rises to the solution.
+        for _ in range(_ROUNDS):
+            gaps = [larger(found - euler, _TINY * found) for euler in shares]
+            over = share / found + sum(b / gap for b, gap in zip(bent, gaps, strict=True)) - 1.0
+            slope = share / found**2 + sum(b / gap**2 for b, gap in zip(bent, gaps, strict=True))
+            found = found + larger(over / slope, 0.0)
+    return chosen(share, SLIGHT, found, 0.0)
 
 
 def _critical(euler: Any, crushing: Any) -> Any:

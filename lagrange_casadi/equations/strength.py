@@ -149,7 +149,7 @@ def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
     compression = _largest(link, lambda part, x: -part.force("axial", x))
     names = ("bending_z", "bending_y") if link.space else ("bending",)
     moments = [ca.sqrt(_largest(link, partial(_squared, name))) for name in names]
-    return buckling.Column.of(link.cross, link.link.length, effective).used(compression, moments)
+    return buckling.used(buckling.Column.of(link.cross, link.link.length, effective), compression, moments)
 
 
 def _squared(name: str, part: Part, x: Any) -> Any:

@@ -70,7 +70,7 @@ def certify(
         block = reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
         for name, parts in _residuals(declared, block, digits).items():
             for part, (gaps, scale) in enumerate(parts):
-                found.setdefault((name, part), []).append(gaps)
+                found.setdefault((name, part), []).append(np.broadcast_to(gaps, block.t.shape))
                 scales[name, part] = max(scales.get((name, part), 0.0), scale)
     residuals: dict[str, Array] = {}
     for (name, part), blocks in found.items():

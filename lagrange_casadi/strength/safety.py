@@ -11,6 +11,7 @@ from ..arguments import public
 from ..beams.material import Material
 from ..declare.description import Description
 from ..declare.held import effective_lengths
+from ..equations import buckling as columns
 from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
@@ -150,7 +151,7 @@ def buckling(member: Member, of: Column) -> Verdict:
     names = ("bending_z", "bending_y") if member.space else ("bending",)
     moments = [np.abs(law.extreme(name)[1]) for name in names]
     with np.errstate(divide="ignore", invalid="ignore"):
-        used = of.used(compression, moments)
+        used = columns.used(of, compression, moments)
     k = int(np.argmax(used))
     if not used[k]:
         return Verdict("buckling", math.inf, "nothing is compressed")
