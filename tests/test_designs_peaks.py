@@ -196,21 +196,6 @@ def lift(law, count):
     return Scene(m, {"mast": way}, t=(0.0, 0.6, count), wanted=["effort"])
 
 
-@pytest.mark.parametrize("backend", ["lanes", "vm"])
-@pytest.mark.parametrize("law", ["trapezoid", "cycloidal"])
-@pytest.mark.parametrize("count", [3, 4, 7, 8])
-def test_steps_that_begin_or_end_at_rest_are_searched(law, count, backend):
-    """The effort is m (g + a) and what rubs, from the moment when the cage moves: largest right then, or between two instants."""
-    times = np.linspace(0.1, 0.4, 3001)[1:-1]
-    way = derive(lift(law, 61)).motion
-    largest = max(abs(5.0 * (9.81 + float(way(t, [])[2])) + 0.2 * 30.0) for t in times)
-    designs = DesignEngine.of(lift(law, count), rung=Rung(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:mast"]
-    assert value == pytest.approx(largest, rel=1e-5)
-    assert value >= largest * (1 - 1e-9)
-    assert 0.1 < t < 0.4 or t == pytest.approx(0.1, abs=1e-12)
-
-
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", ["trapezoid", "cycloidal"])
 def test_refined_peaks_are_those_of_the_reference(law):

@@ -24,6 +24,9 @@ HEAD = """#include <math.h>
 #define DESIGNS_FABS fabs
 #define DESIGNS_ROOT sqrt
 #define DESIGNS_CLOSE 1e-15
+#define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
+#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
+#define lanes_where_less(x, y) ((x) < (y))
 #define DESIGNS_END 1e-12
 """
 LINKS = 15

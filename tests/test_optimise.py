@@ -195,7 +195,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),
         ({"starts": 2.0}, DeclarationError, "starts: expected a whole number from 1 to 16777216"),
         ({"screen": 0}, DeclarationError, "screen: expected a whole number from 1"),
-        ({"points": 1}, DeclarationError, "points: expected a whole number of at least 2"),
+        ({"points": 1}, DeclarationError, "points: expected a whole number from 2 to 16777216"),
         ({"minimise": []}, DeclarationError, "minimise: expected a text"),
         ({"minimise": "peak:torque"}, UnknownNameError, "unknown output 'torque'"),
         ({"minimise": ["r", "r"]}, DeclarationError, "a term is there twice: r, r"),

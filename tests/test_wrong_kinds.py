@@ -67,7 +67,7 @@ WRONG = {
         lambda s: optimise(s, minimise="l", over=ONE, screen=10**40),
         "expected a whole number from 1 to 16777216, got 1",
     ),
-    "derive": (lambda s: derive("swing"), "derive: scene: expected a Scene, got 'swing'"),
+    "derive": (lambda s: derive("swing"), "compile_scene: scene: expected a Scene, got 'swing'"),
     "refine": (lambda s: refine(s, None), "refine: solution: expected a Solution, got None"),
     "tool_deflection": (lambda s: tool_deflection(None, "arm"), "tool_deflection: scene: expected a Scene, got None"),
     "shaking": (lambda s: shaking("m"), "shaking: expected a Mechanism, got 'm'"),

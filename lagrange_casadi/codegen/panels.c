@@ -26,8 +26,8 @@ typedef struct {
 
 enum { SEARCH_HIDES = 1, SEARCH_DONE = 2 };
 
-/* A search. left are panels that it may still take, hidden steps in which something may hide. sought, unless it is NULL, tells which
-   curves are sought; none which are no number at any instant. inner are rows of panels within each other, columns what such panels
+/* A search. left are panels that it may still take, hidden steps in which something may hide; none tells which
+   curves are no number at any instant. inner are rows of panels within each other, columns what such panels
    have at their ends, found what was evaluated last. */
 typedef struct {
   const lagrange_casadi_search_call* call;
@@ -39,8 +39,7 @@ typedef struct {
   search_panel all;
   search_peak* peaks;
   search_real *scale, *inner, *columns, *found;
-  signed char *zigzags, *none, *resting;
-  const signed char* sought;
+  signed char *zigzags, *none;
   int stopped;
 } search_now;
 
@@ -104,11 +103,10 @@ static int search_rests(const search_now* now, int curve, long long i) {
   return search_nothing(row[0]) || search_nothing(row[1]);
 }
 
-/* Whether a curve is not sought at a time: in steps beside rest those that are open there are sought by themselves. */
+/* Whether a curve is not sought at a time: in steps beside rest those that are open there are left out. */
 static int search_lacks(const search_now* now, int curve, double t) {
   const double x = (t - now->t[0])/(2*now->half);
   long long i = x > 0 ? (long long) x : 0;
-  if (now->sought) return !now->sought[curve];
   if (!now->call->rests || now->n < 2) return 0;
   return search_rests(now, curve, i < now->n - 2 ? i : now->n - 2);
 }

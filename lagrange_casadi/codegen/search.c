@@ -339,7 +339,6 @@ static long long search_lay(search_now* now, const lagrange_casadi_search_call* 
   now->found = (search_real*) search_take(&room, call->together*rows, sizeof *now->found);
   now->zigzags = (signed char*) search_take(&room, curves->curves, 1);
   now->none = (signed char*) search_take(&room, curves->curves, 1);
-  now->resting = (signed char*) search_take(&room, 2*curves->curves, 1);
   return room - call->room;
 }
 
@@ -370,7 +369,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.half = call->n > 1 ? (call->t[call->n - 1] - call->t[0])/(double) (2*(call->n - 1)) : 1;
   now.left = SEARCH_PANELS + 4*call->n;
   now.hidden = now.stopped = 0;
-  now.sought = 0;
   now.all.n = call->n;
   now.all.stride = call->stride;
   now.all.t = call->t;
@@ -380,7 +378,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.all.kinks = call->hiding + call->stride;
   search_largest(&now);
   if (call->n > 1) search_panel_of(&now, &now.all, 0);
-  if (call->n > 1 && call->rests) search_beside_rest(&now);
   for (q = 0; q < curves->quantities; ++q) {
     peak = now.peaks + q;
     call->told[q] = 1;

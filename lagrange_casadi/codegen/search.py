@@ -105,7 +105,7 @@ _SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
 
 _STRETCH: dict[Precision, float] = {"double": reference.STRETCH, "single": 1e-2}
 _LAST: dict[Precision, float] = {"double": reference.LAST, "single": 1e-5}
-_FILES = ("panels.c", "between.c", "fits.c", "looks.c", "within.c", "rests.c", "search.c")
+_FILES = ("panels.c", "between.c", "fits.c", "looks.c", "within.c", "search.c")
 _LINE = 16
 """Values of a cache line of either precision."""
 

@@ -34,7 +34,7 @@ static void search_part(search_now* now, double start, double stop, const search
   search_panel within;
   search_real *row, best;
   int i, j, k, many, beyond;
-  for (k = 0; now->call->rests && !now->sought && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
+  for (k = 0; now->call->rests && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
     if (search_lacks(now, k, (start + stop)/2)) return;
   }
   within.n = SEARCH_WITHIN;
@@ -69,7 +69,7 @@ static void search_part(search_now* now, double start, double stop, const search
     row[0] = first[k];
     row[SEARCH_WITHIN - 1] = last[k];
   }
-  for (k = 0; (now->sought || now->call->rests) && k < curves; ++k) {
+  for (k = 0; now->call->rests && k < curves; ++k) {
     if (!search_lacks(now, k, (start + stop)/2)) continue;
     for (j = 0; j < SEARCH_WITHIN; ++j) search_row(&within, k)[j] = 0;
   }

@@ -24,7 +24,6 @@ from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
 from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Panel, Peaks, Samples, Summit, joined, sides
-from .rests import pieces
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -85,7 +84,6 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
     search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
-        search.beside_rest(t, given)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
@@ -97,7 +95,6 @@ class _Search:
 
     def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags) -> None:
         self.lacking, self.begin = lacking, float(t[0])
-        self.sought: Flags | None = None
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -139,9 +136,7 @@ class _Search:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
 
     def lacks(self, t: float) -> Flags:
-        """Which curves are not sought at a time: in steps beside rest those that are open there are sought by themselves."""
-        if self.sought is not None:
-            return ~self.sought
+        """Which curves are not sought at a time: in steps beside rest those that are open there are left out."""
         return np.asarray(self.lacking[:, int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))])
 
     def found(self, t: Array, samples: Samples) -> Peaks:
@@ -209,7 +204,7 @@ class _Search:
     def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
         """Search what is between two times as a panel; beside rest, where what switches is no number, only so deep."""
         lacks = self.lacks((a + b) / 2)
-        if self.sought is None and depth >= BESIDE_REST and lacks.any():
+        if depth >= BESIDE_REST and lacks.any():
             return
         t = np.append(a + np.arange(INNER + 1) * ((b - a) / (INNER + 1)), b)
         samples = self.source.at(t[1:-1])
@@ -222,20 +217,6 @@ class _Search:
             for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
-
-    def beside_rest(self, t: Array, samples: Samples) -> None:
-        """Search what there is of the steps that begin or end at rest, for the curves that are open there."""
-        for piece in pieces(self.source, t, samples, SIDE * self.step):
-            self.sought = piece.curves
-            for time, column in ((piece.start, piece.first), (piece.stop, piece.last)):
-                for curve in np.flatnonzero(piece.curves).tolist():
-                    self.note(curve, column.values[curve, 0], time, column.places[curve, 0])
-            if self.left <= 0:
-                self.told[self.quantity[piece.curves]] = False
-            elif piece.stop - piece.start > 2 * piece.beside:
-                self.left -= 1
-                self.part(piece.start, piece.stop, piece.first, piece.last, 0)
-        self.sought = None
 
     def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
         """What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end."""
