@@ -335,7 +335,7 @@ static long long search_lay(search_now* now, const lagrange_casadi_search_call* 
   now->peaks = (search_peak*) search_take(&room, curves->quantities, sizeof *now->peaks);
   now->scale = (search_real*) search_take(&room, curves->units, sizeof *now->scale);
   now->inner = (search_real*) search_take(&room, SEARCH_DEEPEST*rows*SEARCH_STRIDE, sizeof *now->inner);
-  now->columns = (search_real*) search_take(&room, (5*SEARCH_DEEPEST + SEARCH_AROUND + 2 + SEARCH_INNER)*rows, sizeof *now->columns);
+  now->columns = (search_real*) search_take(&room, 5*SEARCH_DEEPEST*rows, sizeof *now->columns);
   now->found = (search_real*) search_take(&room, call->together*rows, sizeof *now->found);
   now->zigzags = (signed char*) search_take(&room, curves->curves, 1);
   now->none = (signed char*) search_take(&room, curves->curves, 1);
