@@ -30,7 +30,7 @@ from .parts import Expression, Friction
 from .possible import Demands, demands
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
-from .times import TURNS, Over, Times, Timing, span_of
+from .times import TURNS, Over, Times, Timing, prescribed, prescribed_span
 from .wanted_slopes import SENSITIVITY, others, sensitivities
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
@@ -300,10 +300,10 @@ class Scene(Graphs):
         """The laws of motion by joint, those of the guides of points and poses too (:mod:`.guiding`)."""
         return MappingProxyType(laws_of(self.mechanism, self.motion))
 
-    @cached_property
+    @property
     def prescribed(self) -> Laws:
         """These laws as functions of time and the parameters."""
-        return Laws.of(self.laws, self.mechanism.symbols)
+        return prescribed(self)
 
     @cached_property
     def guided(self) -> Mechanism:
@@ -357,10 +357,10 @@ class Scene(Graphs):
             raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
         return Timing.of(self.guided, self.laws, self.t if t is None else t, self.over if t is None and over is None else over)
 
-    @cached_property
+    @property
     def span(self) -> tuple[float, float]:
         """Its own first and last instant [s], with the parameters with which it is assembled."""
-        return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
+        return prescribed_span(self)
 
     def demands(self, precision: Precision = "double") -> Demands:
         """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""
