@@ -109,7 +109,7 @@ def test_graphs_that_call_functions_have_no_reference():
     arm = m.link("arm", length=1, mass=1)
     joint = m.revolute("J", m.ground, arm)
     m.torque("t", arm, doubled(m.coordinate(joint)))
-    with pytest.raises(DeclarationError, match="cannot be followed: it calls another one"):
+    with pytest.raises(DeclarationError, match="has no C: it calls another one"):
         trade(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), rungs=(Rung("c"),))
 
 
