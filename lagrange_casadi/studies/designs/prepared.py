@@ -13,11 +13,11 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
+from ...base.status import Status
 from ...base.vocabulary import Backend, Precision
 from ...declare.scene import Scene, without_fitted, without_life
 from ...declare.times import Over, Times
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate

@@ -7,13 +7,13 @@ from contextlib import suppress
 
 import numpy as np
 
+from ...base.status import Status
 from ...declare.notes import rest_note
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...equations.meshes import transmissions_of
 from ...equations.pressing import frictions_of
 from ...errors import LagrangeCasadiError
-from ...instants.refusal import Status
 from ..evaluate import evaluate
 from .reading import Sweep
 
