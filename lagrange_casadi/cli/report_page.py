@@ -60,13 +60,15 @@ def report(
             write_report(solution, out)
     else:
         loaded = load_case(target)
+        scene = loaded.scene
         out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        wanted = with_motion(want or loaded.scene.wanted)
-        engine = Live(loaded.scene, loaded.scene.timing(t, over), wanted, _command(loaded.name)) if live else None
+        wanted = with_motion(want or scene.wanted)
+        given, timing = parameters(settings), scene.timing(t, over)
+        engine = Live.of(scene, timing, wanted, _command(loaded.name), given) if live else None
         # What a page computes anew is what equilibrium tells.
         told = False if live else None
-        solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted, elastic=told)
+        solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted, elastic=told)
         write_report(solution, out, engine)
     _tell(solution, out)
 
@@ -83,15 +85,16 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     try:
         found = load_case(case or Path(sweep.case))
         check_zig("the mechanism of a design in motion")
-        if case is None and not is_of(sweep, found.scene):
+        scene = found.scene
+        if case is None and not is_of(sweep, scene):
             raise DeclarationError(f"the case '{sweep.case}' is not as it was swept")
     except LagrangeCasadiError as error:
         if case is not None:
             raise
         echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
-        found = None
+        found = scene = None
     with told_as(_UNSHOWN, target):
-        write_sweep_report(sweep, out, None if found is None else found.scene, _command(found.name if found else sweep.case))
+        write_sweep_report(sweep, out, scene, _command(found.name if found else sweep.case))
     echo(f"wrote {out}: open it in a browser")
 
 

@@ -56,7 +56,8 @@ def sweep(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
-    swept = read_designs(designs, loaded.scene.mechanism.parameters) if designs else dict(axes)
+    scene = loaded.scene
+    swept = read_designs(designs, scene.parameters) if designs else dict(axes)
     with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
@@ -80,8 +81,8 @@ def sweep(
             progress=progress,
         )
     _report(found)
-    turns = turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings))
-    rests = resting_note(loaded.scene, found, parameters(settings), t=t, over=over, wanted=want or None)
+    turns = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
+    rests = resting_note(scene, found, parameters(settings), t=t, over=over, wanted=want or None)
     for note in filter(None, (*drawing_notes(found.description), rests, turns)):
         echo(f"note: {note}")
     echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")

@@ -152,6 +152,16 @@ def drives_of(description: Description) -> list[str]:
     return [name for name in drives if name in known]
 
 
+def beams_of(description: Description) -> list[str]:
+    """Return the links that have sections and a beam."""
+    return [name for name, body in description["bodies"].items() if "beam" in body]
+
+
+def fitted_of(description: Description) -> list[str]:
+    """Return the joints that have a pin or a bearing."""
+    return [name for name, joint in description["joints"].items() if "fitted" in joint]
+
+
 def parts_of(description: Description) -> list[str]:
     """The names of all parts that outputs are of."""
     tables = ("bodies", "joints", "constraints", "rows", "loads")

@@ -16,7 +16,6 @@ from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
 from ..beams.material import Material
-from ..beams.told import beam_of
 from ..declare.corners import Corners
 from ..declare.declared import Declared, EquationGraph, equations_of
 from ..declare.density import Density
@@ -31,7 +30,7 @@ from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import UnknownNameError
 from .checks import Column
-from .described import template
+from .described import beam_at, materials_of, template
 from .gaps import extent
 from .section_function import Section
 
@@ -132,8 +131,7 @@ class ModelData(Graphs):
     @cached_property
     def materials(self) -> dict[str, Material]:
         """What links with a beam are made of."""
-        bodies = self.template.content["bodies"].items()
-        return {name: Material(**body["beam"]["material"]) for name, body in bodies if "beam" in body}
+        return materials_of(self.template.content)
 
     @symbolic
     def matter(self, link: str, p: Any) -> tuple[Any, Density]:
@@ -145,8 +143,7 @@ class ModelData(Graphs):
     @symbolic
     def link(self, name: str, p: Any) -> Link:
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
-        body = self.template.placed(self.template.content["bodies"][name], p)
-        return Link(name, *self.matter(name, p), beam_of(body["beam"]))
+        return Link(name, *self.matter(name, p), beam_at(self.template, name, p))
 
     def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
         """The section forces of a link, of columns and parameters ``p`` that are expressions."""

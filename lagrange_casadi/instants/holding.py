@@ -28,7 +28,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.scene import Scene
 from ..equations.checks import Check
-from ..equations.derive import as_derived, assembled, compile_scene
+from ..equations.derive import as_derived, compile_scene
 from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.program import Program
 from ..errors import check_kind
@@ -58,8 +58,8 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     if not at.size:
         return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
     values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    scene = assembled(scene, values, ["effort"])
-    graph, held = compile_scene(scene, ["effort"]), held_efforts(as_derived(scene, ["effort"]))
+    graph = compile_scene(scene, ["effort"], parameters=values)
+    held = held_efforts(as_derived(scene, ["effort"], values))
     tried, why = _tried(held, _inputs(graph, solution.t, np.array([*values.values()]), at))
     ranges = {}
     for name, effort in efforts.items():

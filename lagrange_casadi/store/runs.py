@@ -29,7 +29,7 @@ from ..base.tables import SPACE
 from ..declare.description import check_places, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
 from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs

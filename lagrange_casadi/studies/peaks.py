@@ -24,7 +24,7 @@ from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, span_of
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..errors import DeclarationError
@@ -103,7 +103,7 @@ def shortfall(
     and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
-    start, stop = span_of(scene.prescribed, timing, scene.mechanism.values(parameters))
+    start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
     if not counts:
         raise DeclarationError("shortfall: expected at least one number of instants")
     solutions = [
@@ -189,9 +189,9 @@ class ContinuousSolution:
 
         Raises :class:`.DeclarationError` where it is not one of this scene.
         """
-        told = scene.mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
+        told = scene.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-        graph = compile_scene(assembled(scene, told, wanted), wanted)
+        graph = compile_scene(scene, wanted, parameters=told)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)

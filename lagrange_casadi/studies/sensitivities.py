@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -13,10 +13,10 @@ from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.rung import Rung
-from ..instants.solution import Solution
+from ..instants.solution import Peak, Solution
 from ..instants.statistics import shares
 from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakKind, peak_slopes
@@ -49,18 +49,18 @@ class Changes:
 @public
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """The derivatives of a ``solution`` by the parameters of its ``scene``, each made when it is asked for.
+    """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked for.
 
     They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
     :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
     equilibrium leaves open.
     """
 
-    scene: Scene
     solution: Solution
     slopes: Slopes
     p: Array
     rung: Rung
+    refined: Callable[[Sequence[str]], list[Peak]]
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -113,7 +113,7 @@ class Sensitivities:
     def peaks(self, names: Sequence[str]) -> list[Changes]:
         """How the peaks of several quantities change."""
         outputs = [self._known(name) for name in names]
-        found = refine(self.scene, self.solution, names)
+        found = self.refined(names)
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
@@ -204,21 +204,21 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     """
     if not isinstance(scene, Scene) or not isinstance(solution, Solution):
         raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
-    mechanism, solution = scene.mechanism, solution.by_equilibrium
-    if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
-        raise _other(mechanism.name, solution)
+    solution = solution.by_equilibrium
+    if scene.name != solution.case or scene.parameters.keys() != solution.description["parameters"].keys():
+        raise _other(scene.name, solution)
     told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
     wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-    values = mechanism.values(told)
-    graph = compile_scene(assembled(scene, values, wanted), wanted)
+    values = scene.values(told)
+    graph = compile_scene(scene, wanted, parameters=values)
     quantities = [o for o in solution.quantities() if solution.determined(o)]
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
     if not made <= graph.outputs.keys():
-        raise _other(mechanism.name, solution)
+        raise _other(scene.name, solution)
     columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
     slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), rung := Rung(backend))
-    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())), rung)
+    found = Sensitivities(solution, slopes, np.array(list(values.values())), rung, partial(refine, scene, solution))
     _refuse_other(found, quantities)
     return found
 

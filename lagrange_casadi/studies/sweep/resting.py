@@ -10,8 +10,6 @@ import numpy as np
 from ...declare.notes import rest_note
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
-from ...equations.meshes import transmissions_of
-from ...equations.pressing import frictions_of
 from ...errors import LagrangeCasadiError
 from ...instants.refusal import Status
 from ..evaluate import evaluate
@@ -31,8 +29,8 @@ def resting_note(
     wanted: Sequence[str] | None = None,
 ) -> str:
     """A line where a joint that rubs rests in some design that is looked at, of all those with a result; empty where none does."""
-    rub = transmissions_of(scene.mechanism).values()
-    if not frictions_of(scene.mechanism) and all(transmission.loss is None for transmission in rub):
+    told = found.description
+    if "losses" not in told and not any("friction" in load for load in told["loads"].values()):
         return ""
     right = np.concatenate([numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])])
     some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _LOOKED_AT)).astype(int))]

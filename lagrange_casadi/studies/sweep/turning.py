@@ -19,7 +19,7 @@ _LOOKED_AT = 1024
 
 def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, float]) -> str:
     """A line where the drive turns, and makes less than a turn, or not the same in every design of a ``grid``."""
-    designs, values = designs_of(grid), scene.mechanism.values(fixed)
+    designs, values = designs_of(grid), scene.values(fixed)
     numbers = np.unique(np.linspace(0, designs.size - 1, min(designs.size, _LOOKED_AT)).astype(np.int64))
     p = np.tile(np.array(list(values.values())), (numbers.size, 1))
     columns = [list(values).index(name) for name in designs.names]
