@@ -20,7 +20,7 @@ from . import case_modules
 from .arguments import public
 from .declare.expressions import told
 from .declare.scene import Scene
-from .errors import CaseError, DeclarationError, LagrangeCasadiError, shown
+from .errors import CaseError, LagrangeCasadiError, shown
 from .shapes.kept import dump_specs
 from .shapes.specs import Spec
 from .shipped_cases import shipped_cases
@@ -73,12 +73,9 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     return Case(file, scene, tuple(figures))
 
 
-def scene_of(scene: Scene | Case, what: str) -> Scene:
-    """Return the scene that a user hands over, or that of a case. Raises :class:`.DeclarationError` for anything else."""
-    own = scene.scene if isinstance(scene, Case) else scene
-    if not isinstance(own, Scene):
-        raise DeclarationError(f"{what}: expected a Scene or a Case, got {own!r}")
-    return own
+def scene_of(given: Scene | Case) -> Scene:
+    """Return the scene that a user hands over, or that of a case."""
+    return given.scene if isinstance(given, Case) else given
 
 
 def _file(given: Path) -> Path:

@@ -13,7 +13,7 @@ from ..case import load_case
 from ..declare.description import Description, coordinates_of
 from ..declare.scene import Scene, kinds
 from ..equations.derive import compile_scene
-from ..equations.described import described
+from ..equations.described import template
 from ..equations.scene_lines import scene_lines
 from ..instants.solution import Solution
 from ..store import runs as store
@@ -45,7 +45,7 @@ def info(target: Path, want: tuple[str, ...]) -> None:
 
 def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     program = compile_scene(scene, want or None)
-    _describe_mechanism(described(scene, scene.values()))
+    _describe_mechanism(template(scene).filled(scene.values()))
     for line in scene_lines(scene):
         echo(line)
     timing = scene.timing()

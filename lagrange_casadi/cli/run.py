@@ -16,9 +16,8 @@ from ..base.streams import is_standard_output
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import turned
-from ..declare.description import beams_of, fitted_of
+from ..declare.description import beams_of, fitted_of, kinds_of_described, values_of
 from ..declare.even_points import EvenPoints
-from ..declare.kinds import kinds_of
 from ..declare.scene import Scene
 from ..declare.times import Over, Timing
 from ..declare.wanted_names import among
@@ -142,7 +141,6 @@ def _report(
     yield from slope_lines(solution, scene, backend)
     yield from strength_lines(solution, want, scene if refined else None)
     yield from elastic_lines(solution, want)
-    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
-    yield from (
-        f"note: {note}" for note in (*solution.notes, turned.note(scene.prescribed, kinds_of(scene.guided), timing, told)) if note
-    )
+    told = np.array([list(values_of(solution.description).values())])
+    turns = turned.note(scene.prescribed, kinds_of_described(solution.description), timing, told)
+    yield from (f"note: {note}" for note in (*solution.notes, turns) if note)

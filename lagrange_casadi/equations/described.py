@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -25,12 +24,6 @@ def materials_of(description: Description) -> dict[str, Material]:
 def beam_at(described: Template, link: str, p: Any) -> Beam:
     """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers where these are numbers."""
     return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
-
-
-@symbolic
-def described(scene: Scene, values: Mapping[str, float]) -> Description:
-    """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
-    return template(scene).filled(values)
 
 
 @symbolic

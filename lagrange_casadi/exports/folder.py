@@ -15,7 +15,7 @@ from ..base.manifest import Manifest
 from ..base.publish import check_writable
 from ..base.vocabulary import Precision
 from ..declare.scene import Scene
-from ..errors import DeclarationError, PathError
+from ..errors import PathError
 from ..instants.rung import Rung
 from ..portable.contract import Contract
 from ..portable.data import LARGEST
@@ -82,8 +82,6 @@ def export(
     folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
     what :func:`.evaluate` raises.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)

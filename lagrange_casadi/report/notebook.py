@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from ..declare.scene import Scene
-from ..equations.described import described
+from ..equations.described import template
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.solution import Solution
 from ..instants.told import told
@@ -52,7 +52,7 @@ def scene_summary(scene: Scene) -> str:
         start, _ = scene.span
         first = evaluate(scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False)
         drawing = still(first)
-    asked, content = scene.timing(), described(scene, scene.values())
+    asked, content = scene.timing(), template(scene).filled(scene.values())
     over = f"over {escape(asked.joint)}" if asked.joint else "over time"
     lines = [f"<b>{escape(content['name'])}</b>: {asked.count} instants {over}"]
     parts = {

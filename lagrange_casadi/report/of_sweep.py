@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..declare.description import values_of
 from ..declare.scene import Scene, Wanted
 from ..declare.wanted_names import SENSITIVITY
 from ..equations.derive import compile_scene
-from ..equations.described import described
+from ..equations.described import template
 from ..equations.fingerprint import fingerprint, sources
 from ..errors import DeclarationError, shown
 from ..studies.evaluate import evaluate
@@ -55,8 +56,8 @@ def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene 
 def is_of(sweep: Sweep, scene: Scene) -> bool:
     """Whether a sweep is of a scene: its parts are those that were swept, and where the same code says so its expressions too."""
     swept = sweep.identity["mechanism"]
-    values = {name: parameter["value"] for name, parameter in swept["parameters"].items()}
-    if values.keys() != scene.parameters.keys() or json.loads(json.dumps(described(scene, values))) != swept:
+    values = values_of(swept)
+    if values.keys() != scene.parameters.keys() or json.loads(json.dumps(template(scene).filled(values))) != swept:
         return False
     told: dict[str, Any] = {}
     for name, value in sweep.identity["wanted"].items():

@@ -13,7 +13,7 @@ import casadi as ca
 from ..arguments import Positive, public
 from ..beams.beam import Beam
 from ..beams.profiles import Profile
-from ..declare.description import Template, beams_of
+from ..declare.description import Template, beams_of, values_of
 from ..declare.held import ends_of
 from ..declare.parts import Parameter
 from ..declare.scene import Scene
@@ -206,7 +206,7 @@ class _Search:
     def judge(self, solution: Solution, name: str, k: int, *, whole: bool = False) -> Safety:
         """How safe a link is with a profile, under the loads of a solution; ``whole`` against all, else until it is not safe."""
         member = Member.of(solution, name)
-        slot, values = self.slots[name], {n: p["value"] for n, p in solution.description["parameters"].items()}
+        slot, values = self.slots[name], values_of(solution.description)
         values |= slot.values(slot.profiles[k])
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
         enough = 0.0 if whole else self.wanted

@@ -13,7 +13,6 @@ from ..arguments import Outputs, ThreadCount
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import cores, in_words, require
-from ..declare.corners import Corners
 from ..declare.ends import BEYOND
 from ..declare.even_points import EvenPoints, checked_ratios, points
 from ..declare.giving import Elastic
@@ -25,6 +24,7 @@ from ..elastic.completing import told_errors, wanted_alone
 from ..elastic.least_energy import Completed, complete
 from ..equations.checks import Check
 from ..equations.derive import compile_scene
+from ..equations.model_data import ModelData
 from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
@@ -68,8 +68,6 @@ def solve(
     values = scene.values(parameters)
     timing = scene.timing(t, over)
     scene.checked(values)
-    span = checked_span(scene.prescribed, timing, values)
-    checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     scene = scene.giving(elastic)
     gives = scene.elastic
@@ -80,6 +78,7 @@ def solve(
     asked = [*names, *felt]
     graph = compile_scene(scene, asked, parameters=values, elastic=bool(gives))
     rung.check(graph)
+    checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
     instants, places = instants_of(graph.laws, timing, values), points(ratios)
@@ -176,13 +175,13 @@ def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tup
 
 
 @functools.lru_cache(maxsize=64)
-def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
+def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...]) -> None:
     """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters.
 
     Also where it puts into a curve what is beyond the curve's ends.
     """
-    Corners.of(scene).refuse_laws(span, p)
-    laws = scene.prescribed
+    data.corners.refuse_laws(span, p)
+    laws = data.laws
     if laws.beyond is None:
         return
     t = np.linspace(*span, _LOOKED_AT)

@@ -120,8 +120,6 @@ def tolerances(
     ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises what that does, and
     :class:`DeclarationError` for what is no tolerance.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"tolerances: expected a Scene, got {scene!r}")
     if not isinstance(within, Mapping) or not within:
         raise DeclarationError(f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}")
     values = scene.values(parameters)

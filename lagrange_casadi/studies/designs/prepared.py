@@ -323,8 +323,6 @@ def prepare(
 
     Raises what :func:`.evaluate` does for mistakes in the arguments, and :class:`CompilerError`.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")
     without_fitted(fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes")

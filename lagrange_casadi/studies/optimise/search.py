@@ -138,7 +138,7 @@ def optimise(
     :class:`NoDesignError` where no design has a result, :class:`PathError`, :class:`StoreError` or :class:`BusyError` where the
     file or its journal is another search's or cannot be written, :class:`ClusterError` where a cluster cannot serve.
     """
-    own = scene_of(scene, "optimise")
+    own = scene_of(scene)
     question = Question.of(own, minimise, over, subject_to, transmission=transmission, t=t, parameters=parameters, backend=backend)
     if resume and force:
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")

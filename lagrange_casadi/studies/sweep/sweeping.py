@@ -90,7 +90,7 @@ def sweep(
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
     plan = Plan.of(
-        scene_of(scene, "sweep"),
+        scene_of(scene),
         designs_of(grid),
         fixed=parameters,
         t=t,

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ...declare.kinds import kinds_of
+from ...declare.description import kinds_of_described
 from ...declare.scene import Scene
 from ...declare.times import Timing
 from ...declare.turned import note
+from ...equations.described import template
 from .axes import designs_of
 
 _LOOKED_AT = 1024
@@ -25,4 +26,4 @@ def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, fl
     columns = [list(values).index(name) for name in designs.names]
     for row, number in zip(p, numbers.tolist(), strict=True):
         row[columns] = designs.block(number, number + 1)[0]
-    return note(scene.prescribed, kinds_of(scene.guided), timing, p)
+    return note(scene.prescribed, kinds_of_described(template(scene).content), timing, p)
