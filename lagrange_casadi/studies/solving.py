@@ -74,8 +74,7 @@ def solve(
     if gives and rung.table is not None:
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
-    felt = [name for name in scene.outputs if name.startswith(("reaction:", "section:"))] if gives else []
-    asked = [*names, *felt]
+    asked = [*names, *(name for name in scene.outputs if name.startswith(("reaction:", "section:")))] if gives else names
     graph = compile_scene(scene, asked, parameters=values, elastic=bool(gives))
     rung.check(graph)
     checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
