@@ -11,7 +11,7 @@ from lagrange_casadi import Mechanism, Scene, motion
 from lagrange_casadi.declare.description import kinds_of_described
 from lagrange_casadi.declare.turned import note
 from lagrange_casadi.equations.described import template
-from lagrange_casadi.studies.sweep.turning import turning_note
+from lagrange_casadi.studies.sweep.notes import turning_note
 
 pytestmark = pytest.mark.quick
 

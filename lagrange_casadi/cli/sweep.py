@@ -18,8 +18,7 @@ from ..instants.refusal import Status
 from ..studies.sweep import Axis, Keep, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
-from ..studies.sweep.resting import resting_note
-from ..studies.sweep.turning import turning_note
+from ..studies.sweep.notes import resting_note, turning_note
 from .echo import echo
 from .options import parameters
 from .progress import shown

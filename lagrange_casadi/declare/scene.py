@@ -30,7 +30,7 @@ from .posture import rough_posture
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Over, Times, Timing, span_of
-from .wanted_names import SENSITIVITY, among, others, sensitivities
+from .wanted_names import SENSITIVITY, among, others
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
@@ -113,7 +113,8 @@ def outputs(mechanism: Mechanism) -> list[str]:
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *sensitivities(mechanism)]
+    slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
+    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *slopes]
     return ["all", "effort", "motion", *named]
 
 

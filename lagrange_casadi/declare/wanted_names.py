@@ -6,15 +6,9 @@ from collections.abc import Iterable, Sequence
 
 from ..arguments import texts
 from ..errors import DeclarationError
-from .mechanism import Mechanism
 
 SENSITIVITY = "sensitivity"
 """The kind: alone it is by all parameters, as ``sensitivity:l`` by one. ``all`` is without it."""
-
-
-def sensitivities(mechanism: Mechanism) -> list[str]:
-    """What can be wanted of it by parameter."""
-    return [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
 
 
 def by_parameters(parameters: Iterable[str], names: Iterable[str]) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ and are evaluated in the module too.
 from __future__ import annotations
 
 import base64
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -46,6 +47,11 @@ void live_numbers(const double* p, double* numbers) {{
   numbers_of(arg, res);
 }}
 """
+
+
+def run_of(case: str) -> str:
+    """Begin the command line that evaluates a case."""
+    return f"lagrange-casadi run {shlex.quote(case)}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Mapping, Sequence
 
 from ..declare.scene import Scene
 from ..studies.evaluate import evaluate
-from .live import Live
+from .live import Live, run_of
 from .page import write_report
 
 
@@ -18,8 +17,7 @@ def scene_report(
     """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
     scene.wants(wanted)
     asked = with_motion(scene.wanted if wanted is None else wanted)
-    command = f"lagrange-casadi run {shlex.quote(scene.name)}"
-    engine = Live.of(scene, scene.timing(), asked, command, parameters) if live else None
+    engine = Live.of(scene, scene.timing(), asked, run_of(scene.name), parameters) if live else None
     write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None), path, engine)
 
 

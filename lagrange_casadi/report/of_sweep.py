@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import shlex
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,7 @@ from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
 from . import Live, assembled, live_digest, page, with_motion, write_page
 from .arrays import Arrays
+from .live import run_of
 from .page import SWEEP_SCRIPTS, script
 
 MOST = 300_000
@@ -88,7 +88,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
             if count
         ],
         "statuses": {str(number): words for number, (_, words) in sweep.statuses.items()},
-        "command": command or f"lagrange-casadi run {shlex.quote(sweep.case)}",
+        "command": command or run_of(sweep.case),
         "note": _NO_SCENE,
         "frame": None if scene is None else _frame(sweep, scene, front, command),
     }

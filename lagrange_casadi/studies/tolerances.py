@@ -11,7 +11,7 @@ import numpy as np
 from ..arguments import Outputs, public
 from ..base.arrays import Array
 from ..base.numerals import real
-from ..base.units import Within
+from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Backend
 from ..declare.parts import Parameter
 from ..declare.scene import Scene
@@ -21,9 +21,6 @@ from ..instants.refusal import Status
 from .designs.prepared import prepare
 
 _LARGEST = 1_000_000
-_UNITS = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "m": ("m", 1.0), "deg": ("rad", np.pi / 180.0), "rad": ("rad", 1.0)}
-_UNITS |= {"g": ("kg", 1e-3), "kg": ("kg", 1.0)}
-"""Units that a tolerance may be told in: of which unit they are, and how much of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,20 +78,12 @@ def read_tolerance(parameters: Mapping[str, Parameter], name: str, value: float 
 
 
 def _number(value: float | str, unit: str, nominal: float) -> float:
-    if isinstance(value, str):
-        text = value.strip()
-        if text.endswith("%"):
-            found = real(text[:-1]) / 100.0 * abs(nominal)
-        else:
-            digits = text.rstrip("adegmkru")
-            of, scale = _UNITS.get(text[len(digits) :].strip(), (unit, 1.0))
-            if of != unit or (text[len(digits) :] and text[len(digits) :] not in _UNITS):
-                raise ValueError
-            found = real(digits) * scale
-    elif isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError
+    if isinstance(value, str) and value.strip().endswith("%"):
+        found = real(value.strip()[:-1]) / 100.0 * abs(nominal)
+    elif isinstance(value, str) and not typed(value)[1]:
+        found = real(value)
     else:
-        found = float(value)
+        found = number(value, unit)
     if not 0.0 < found < np.inf:
         raise ValueError
     return found
