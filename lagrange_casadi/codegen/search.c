@@ -347,26 +347,37 @@ static void search_sampled(search_now* now, int q) {
   peak->sign = search_row(all, curve)[first] < 0 ? -1 : 1;
 }
 
-/* List the local peaks at instants too, and leave of all what is a step's largest and far from larger ones. */
+/* Whether an instant is one that a curve has a local peak at: SEARCH_FLAT where it is level on both sides but for rounding. */
+enum { SEARCH_NO_TOP, SEARCH_FLAT, SEARCH_TOP };
+static int search_top_at(const search_now* now, int curve, long long i) {
+  const search_peak* peak = now->peaks + now->quantity[curve];
+  const search_real* row = search_row(&now->all, curve) + i;
+  const search_real size = search_magnitude(row[0]), rounding = peak->rounding;
+  const search_real before = i > 0 ? search_magnitude(row[-1]) : -1, after = i + 1 < now->n ? search_magnitude(row[1]) : -1;
+  if (!(size >= peak->least && size >= before - rounding && size >= after - rounding)) return SEARCH_NO_TOP;
+  if (now->call->rests && search_nothing(row[0])) return SEARCH_NO_TOP;
+  return size - before > rounding || size - after > rounding ? SEARCH_TOP : SEARCH_FLAT;
+}
+
+/* List the local peaks at instants too, of what is level some, and leave of all what is a step's largest and far from larger ones. */
 static void search_tops(search_now* now) {
   const search_panel* all = &now->all;
   const double way = now->call->way, step = 2*now->half;
   const search_peak* peak;
   const search_real* row;
-  search_real size, before, after, rounding;
+  search_real size;
   double *rows, *one, *other;
-  long long i;
-  int j, k, q;
+  long long i, flat, every;
+  int j, k, q, top;
   for (k = 0; k < now->curves->curves; ++k) {
-    if (now->peaks[now->quantity[k]].open) continue;
-    rounding = now->peaks[now->quantity[k]].rounding;
-    for (row = search_row(all, k), i = 0; i < now->n; ++i) {
-      size = search_magnitude(row[i]);
-      before = i > 0 ? search_magnitude(row[i - 1]) : -1;
-      after = i + 1 < now->n ? search_magnitude(row[i + 1]) : -1;
-      if (!(size >= before - rounding && size >= after - rounding && (size - before > rounding || size - after > rounding))) continue;
-      if (now->call->rests && search_nothing(row[i])) continue;
-      search_list_top(now, k, row[i], all->t[i], search_ratio_in(now, all, k, i));
+    peak = now->peaks + now->quantity[k];
+    if (peak->open) continue;
+    for (flat = i = 0; i < now->n; ++i) flat += search_top_at(now, k, i) == SEARCH_FLAT;
+    every = peak->limit <= SEARCH_LARGEST ? 1 + 2*flat/SEARCH_TOPS : now->n;
+    for (flat = i = 0; i < now->n; ++i) {
+      top = search_top_at(now, k, i);
+      if (top == SEARCH_NO_TOP || (top == SEARCH_FLAT && flat++ % every)) continue;
+      search_list_top(now, k, search_row(all, k)[i], all->t[i], search_ratio_in(now, all, k, i));
     }
   }
   for (q = 0; q < now->curves->quantities; ++q) {

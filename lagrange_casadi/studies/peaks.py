@@ -33,7 +33,7 @@ from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..summits.panels import Peaks
+from ..summits.panels import TOPS, Listed, Peaks
 from ..summits.sharpness import Sharpness
 from .evaluate import evaluate
 
@@ -64,10 +64,17 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     Raises :class:`DeclarationError` where the solution is not of this scene, or a motion or constraint is other at a place between
     instants than on both sides of it; :class:`UnknownNameError` for a name that is none.
     """
-    sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
+    return refined(scene, solution, solution.names() if names is None else names)[0]
+
+
+def refined(scene: Scene, solution: Solution, names: Iterable[str], listed: Listed | None = None) -> tuple[list[Peak], Array]:
+    """The same, and of each quantity the local peaks that are ``listed``, (q, :data:`.TOPS`, 4): see :class:`.Peaks`."""
+    sampled = [solution.peak(name) for name in names]
     found = ContinuousSolution.of(scene, solution.by_equilibrium)
-    peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
-    return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
+    peaks, tops = (found if are_even(solution.t) else found.in_equal_steps()).searched(sampled, listed)
+    if solution.over is not None:
+        peaks = [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
+    return peaks, tops
 
 
 @dataclass(frozen=True)
@@ -238,16 +245,24 @@ class ContinuousSolution:
 
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
-        solution = self.solution
+        return self.searched(sampled)[0]
+
+    def searched(self, sampled: Sequence[Peak], listed: Listed | None = None) -> tuple[list[Peak], Array]:
+        """The same, and local peaks of each: see :func:`refined`."""
+        solution, nothing = self.solution, np.full((TOPS, 4), np.nan)
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
-        if not sought or solution.t.size == 1:
-            return list(sampled)
+        if not sought or (solution.t.size == 1 and listed is None):
+            return list(sampled), np.array([nothing for _ in sampled])
         self._refuse_isolated()
         turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
-        searched = signals.peaks(units, scales, searching(self.backend))
+        searched = signals.peaks(units, scales, searching(self.backend), listed)
+        there = {} if searched.tops is None else dict(zip(sought, searched.tops, strict=True))
+        tops = np.array([there.get(Output.of(peak.name), nothing) for peak in sampled])
+        if solution.t.size == 1:
+            return list(sampled), tops
         value, t, xi = self.timed(signals, sought, searched)
         for k, output in enumerate(sought):
             peak = found[output]
@@ -257,7 +272,7 @@ class ContinuousSolution:
                 found[output] = Peak(peak.name, math.nan, peak.unit, float(t[k]), along, least)
             elif abs(value[k]) > abs(peak.value):
                 found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
-        return [found[Output.of(peak.name)] for peak in sampled]
+        return [found[Output.of(peak.name)] for peak in sampled], tops
 
     def _refuse_isolated(self) -> None:
         """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between instants than on both sides."""

@@ -196,15 +196,20 @@ class _Search:
         self.tops[q] = [row for row in rows if row not in out] + [(curve, t, xi, value)]
 
     def listing(self, t: Array, given: Samples) -> Array:
-        """The local peaks that were found, and those at instants: what is a step's largest and far from larger ones."""
+        """The local peaks that were found, and those at instants, of what is level some.
+
+        What is not a step's largest is left out, and what is near a larger one.
+        """
         sizes = np.abs(given.values)
         around = np.pad(np.nan_to_num(sizes, nan=0.0), ((0, 0), (1, 1)), constant_values=-1.0)
-        before, after = around[:, :-2], around[:, 2:]
-        rounding = self.rounding[self.quantity, None]
-        rises = np.maximum(sizes - before, sizes - after) > rounding
-        top = rises & (sizes >= before - rounding) & (sizes >= after - rounding)
-        for curve, i in np.argwhere(top & np.isfinite(sizes)).tolist():
-            self.list_top(curve, given.values[curve, i], float(t[i]), given.places[curve, i])
+        before, after, rounding = around[:, :-2], around[:, 2:], self.rounding[self.quantity, None]
+        tops = (sizes >= before - rounding) & (sizes >= after - rounding) & (sizes >= self.least[self.quantity, None])
+        level = np.maximum(sizes - before, sizes - after) <= rounding
+        for curve, limit in enumerate(self.limit):
+            flat = np.flatnonzero(tops[curve] & level[curve])
+            every = 1 + 2 * flat.size // TOPS if math.isfinite(limit) else t.size
+            for i in (*np.flatnonzero(tops[curve] & ~level[curve]), *flat[::every]):
+                self.list_top(curve, given.values[curve, i], float(t[i]), given.places[curve, i])
         found = np.full((len(self.tops), TOPS, 4), np.nan)
         for q, rows in enumerate(self.tops):
             kept: list[tuple[int, float, float, float]] = []

@@ -35,6 +35,7 @@ from ...instants.solution import Provenance
 from ...sensitivity.curvatures import Curvatures
 from ...sensitivity.peaks import PeakSlopes
 from ...sensitivity.slopes import Slopes
+from ...sensitivity.ties import AS_LARGE
 from ...summits.panels import TOPS, Listed
 from ...summits.sharpness import bent, with_watched
 from ..solving import checked_span, outputs_of
@@ -379,9 +380,8 @@ class DesignEngine:
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
-        series = self.evaluate(p[None], threads=1, histories=True).series
-        assert series is not None
-        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+        others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
+        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, others)
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
         """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""

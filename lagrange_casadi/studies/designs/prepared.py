@@ -68,7 +68,7 @@ class Gradient:
     def tied(self) -> npt.NDArray[np.bool_]:
         """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
 
-        It is looked for when it is first asked for, which takes longer than the gradient; not at kinks between instants.
+        It is looked for when it is first asked for, which takes longer than the gradient.
         """
         return self.look()
 
