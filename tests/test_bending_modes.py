@@ -83,6 +83,10 @@ def test_a_mass_on_a_beam_without_any_is_that_of_a_spring():
     width = 1e-3
     edges = (0.0, 0.5 - width / 2, 0.5 + width / 2, 1.0)
     mode = first_mode(
-        lambda u: 100.0 + 0 * u, lambda u: np.where(np.abs(u - 0.5) < width / 2, 3.0 / (1.7 * width), 0.0), 1.7, edges, ("pinned", "pinned")
+        lambda u: 100.0 + 0 * u,
+        lambda u: np.where(np.abs(u - 0.5) < width / 2, 3.0 / (1.7 * width), 0.0),
+        1.7,
+        edges,
+        ("pinned", "pinned"),
     )
     assert mode.upper == pytest.approx(math.sqrt(48 * 100.0 / (3.0 * 1.7**3)), rel=1e-5)

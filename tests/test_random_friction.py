@@ -146,7 +146,9 @@ def keeps_peaks(made, monkeypatch):
     names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
     peaks = refine(scene, solution, names)
     assert len(panels) < search.PANELS / 8
-    largest = {unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit) for unit in map(dense.unit, names)}
+    largest = {
+        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit) for unit in map(dense.unit, names)
+    }
     for peak in peaks:
         size, many = largest[peak.unit], abs(dense.peak(peak.name).value)
         assert many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size, f"{peak}, {many}\n{made.source}"
