@@ -290,7 +290,8 @@ class ContinuousSolution:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+        signals = Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+        return replace(signals, rounding=sharpness.rounding(*signals.inputs(signals.t, signals.z)))
 
     def quantity(self, output: Output) -> Quantity:
         """Where a quantity is among the columns."""

@@ -26,12 +26,6 @@ from ..summits.panels import Listed
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
 from .peaks import ContinuousSolution, resultants
-=======
-from .peaks import refined, resultants, wanted_for
-
-_SAME = 1e-6
-"""How closely a graph must give what a solution has, over the largest value of the same unit."""
->>>>>>> search
 
 _BLOCK = 1 << 16
 
@@ -119,93 +113,6 @@ class Sensitivities:
         outputs = [self._known(name) for name in names]
         sampled = [self.solution.peak(name) for name in names]
         found, others = self.continuous.refined(sampled, Listed(1.0 - AS_LARGE["double"]))
-
-_BLOCK = 1 << 16
-
-
-@dataclass(frozen=True, eq=False)
-class Changes:
-    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
-
-    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the quantity is as large and changes
-    otherwise: the largest of both has no derivative.
-    """
-
-    value: float
-    slopes: dict[str, float]
-    kind: PeakKind | None = None
-    tied: bool = False
-
-
-@public
-@dataclass(frozen=True, eq=False)
-class Sensitivities:
-    """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked for.
-
-    They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
-    :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
-    equilibrium leaves open.
-    """
-
-    solution: Solution
-    slopes: Slopes
-    p: Array
-    rung: Rung
-    continuous: ContinuousSolution
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """The names of the parameters."""
-        return tuple(self.slopes.graph.data.parameters)
-
-    def array(self, name: str, parameter: str) -> Array:
-        """The derivative of a quantity by a parameter over the instants, (t,), of a section force (t, xi).
-
-        Its unit is the quantity's over the parameter's. At a station, a section force is that on its tip's side.
-        """
-        return self._all(name)[1][..., self._number(parameter)]
-
-    def curvature(self, name: str, parameter: str, other: str) -> Array:
-        """The second derivative of a quantity by two parameters over the instants, (t,), of a section force (t, xi).
-
-        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for a motion by samples that does
-        not tell its knots.
-        """
-        row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
-        way[0, 2 + self._number(other)] = 1.0
-        nowhere = np.full(_BLOCK, np.nan)
-
-        def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
-            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[:, 0, 2 + row]
-
-        return self._made(name, second, ())
-
-    def mean(self, name: str) -> Changes:
-        """How the mean of a quantity over the instants changes; it is no section force."""
-        values, slopes = self._over_time(name)
-        weights = shares(self.solution.t)
-        return Changes(float(values @ weights), self._named(weights @ slopes))
-
-    def rms(self, name: str) -> Changes:
-        """How the root of its mean square changes; NaN where that is zero."""
-        values, slopes = self._over_time(name)
-        weights = shares(self.solution.t)
-        rms = float(np.sqrt(values**2 @ weights))
-        with np.errstate(all="ignore"):
-            return Changes(rms, self._named((weights * values) @ slopes / rms))
-
-    def peak(self, name: str) -> Changes:
-        """How the peak of a quantity over all times of the solution's span changes, between the instants too: see :func:`.refine`.
-
-        Its slopes are NaN where it has no derivative.
-        """
-        return self.peaks([name])[0]
-
-    def peaks(self, names: Sequence[str]) -> list[Changes]:
-        """How the peaks of several quantities change."""
-        outputs = [self._known(name) for name in names]
-<<<<<<< HEAD
-        found = self.continuous.refined([self.solution.peak(name) for name in names])
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
