@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import casadi as ca
 import pytest
-from test_certificate_mutations import every_joint_and_load
+from every_load import every_joint_and_load
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.base import cache
