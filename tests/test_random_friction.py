@@ -139,7 +139,8 @@ def keeps_peaks(made, monkeypatch):
             evaluate(scene, parameters=parameters, t=(start, stop, n), certificate=False) for n in (made.drawn.grid[2], DENSE)
         )
     except AssemblyError as error:
-        assert "jams" in str(error)
+        if "jams" not in str(error):
+            raise
         return
     one = search._Search.panel
     monkeypatch.setattr(search._Search, "panel", lambda *given: panels.append(1) or one(*given))

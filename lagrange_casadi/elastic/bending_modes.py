@@ -42,8 +42,8 @@ _PARTS, _POINTS = 32, 5
 @dataclass(frozen=True, eq=False)
 class Mode:
     """The first bending mode of a beam: bounds of its angular frequency, ``upper`` and ``lower`` [rad/s], the latter None where the
-    beam can move as a whole; infinite without mass. At ratios ``u`` with ``weights`` [m], which sum polynomials, ``curvature`` is that of the mode of unit
-    modal mass.
+    beam can move as a whole; infinite without mass. At ratios ``u`` with ``weights`` [m], which sum polynomials, ``curvature`` is
+    that of the mode of unit modal mass.
     """
 
     upper: float

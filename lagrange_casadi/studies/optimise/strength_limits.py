@@ -9,7 +9,7 @@ from ...base.numerals import real
 from ...declare.mechanism import Mechanism
 from ...declare.scene import Wanted
 from ...errors import DeclarationError
-from ...strength.fatigue import strengths, tires
+from ...strength.fatigue import lacking, strengths
 from ..sweep.meanings import WAYS
 from .terms import Constraint
 
@@ -36,5 +36,5 @@ def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
     assert beam is not None
     if way == "fatigue":
         strengths(beam.material, "goodman")
-    ways = tuple(w for w in WAYS if w != "fatigue" or tires(beam.material)) if way == "safety" else (way,)
+    ways = tuple(w for w in WAYS if w != "fatigue" or not lacking(beam.material)) if way == "safety" else (way,)
     return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", mechanism.parameters) for each in ways]
