@@ -252,7 +252,7 @@ def test_fatigue_is_open_alike_in_solutions_and_sweeps(names, tmp_path, capsys, 
     if names:
         with pytest.raises(DeclarationError, match=re.escape(why)):
             optimise(without(*names), minimise="r", over={"r": (0.05, 0.1)}, subject_to=["least:fatigue:rod >= 2"])
-        with pytest.raises(DeclarationError, match="'C45.QT' has no .*, which output 'life:rod' needs"):
+        with pytest.raises(DeclarationError, match=r"'C45.QT' has no .*, which output 'life:rod' needs"):
             sweep(without(*names), {"r": [0.1]}, wanted=["life:rod"], backend="vm")
     monkeypatch.chdir(tmp_path)
     Path("case.py").write_text(
