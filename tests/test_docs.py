@@ -164,3 +164,17 @@ def test_the_glossary_is_in_order_and_found():
     assert len({anchor(word) for word in words}) == len(words) > 50
     for page in ("README.md", "docs/architecture.md", "CONTRIBUTING.md"):
         assert "glossary.md)" in (ROOT / page).read_text()
+
+
+TRUSTED = {
+    "What runs code": ["loading it runs it", "Dask scheduler as pickles", "`--flags` (`flags=`) go to it", "The cache folder"],
+    "The seal": ["tells damage", "no signature"],
+    "Files of unknown origin": ["`--time-limit`", "What it does not promise"],
+}
+
+
+@pytest.mark.parametrize("heading", TRUSTED)
+def test_what_is_trusted_is_said_on_one_page(heading):
+    page = " ".join((ROOT / "docs/trust.md").read_text().split())
+    part = re.split(rf"#+ {heading} ", page)[1].split(" ## ")[0]
+    assert [words for words in TRUSTED[heading] if words not in part] == []
