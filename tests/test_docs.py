@@ -39,8 +39,9 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks
+    names = {}
     for block in blocks:
-        exec(compile(block, page, "exec"), {})
+        exec(compile(block, page, "exec"), names if "tutorials" in page else {})  # a tutorial goes on where it was
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
