@@ -5,6 +5,7 @@ import builtins
 import inspect
 import re
 import typing
+from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
@@ -68,6 +69,10 @@ intersphinx_mapping = {
 
 # The reference is made from docstrings, and the gallery from the cases.
 autosummary_generate = True
+doors = [lagrange_casadi, *(thing for name in lagrange_casadi.__all__ if inspect.ismodule(thing := getattr(lagrange_casadi, name)))]
+names = [f"{door.__name__}.{name}" for door in doors for name in dir(door)]
+twins = Counter(map(str.lower, names))
+autosummary_filename_map = {name: f"{name}_class" for name in names if not name.islower() and twins[name.lower()] > 1}
 autodoc_default_options = {"members": True, "inherited-members": True, "show-inheritance": False}
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
