@@ -51,7 +51,7 @@ def refused(number, action):
     return False
 
 
-@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 20))])
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 20))])
 @pytest.mark.parametrize("manifest", [FIGURES, EXPORT], ids=["figures", "export"])
 @pytest.mark.parametrize("ends", ["kill", "full disk"])
 def test_a_folder_that_is_half_filled_is_filled_by_the_next(tmp_path, manifest, ends, seed):
