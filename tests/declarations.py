@@ -1,7 +1,7 @@
 """What certificates read of a scene, without anything that is derived."""
 
 from lagrange_casadi.declare.declared import Declared, equations_of
-from lagrange_casadi.equations.described import template
+from lagrange_casadi.equations.model_data import template
 
 
 def declaration(scene, values):
