@@ -13,7 +13,7 @@ from ...declare.notes import rest_note
 from ...declare.scene import Scene
 from ...declare.times import Over, Times, Timing
 from ...declare.turned import note
-from ...equations.described import template
+from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
 from ...instants.refusal import Status
 from ..evaluate import evaluate
