@@ -21,8 +21,9 @@ from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate
-from .engine import KEPT, DesignEngine, Outcome
+from .engine import DesignEngine
 from .gradients import MeanSlopes
+from .outcome import KEPT, Outcome
 
 _Values: TypeAlias = Mapping[str, Any] | None
 
