@@ -25,8 +25,9 @@ from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate
-from .engine import KEPT, DesignEngine, Outcome
+from .engine import DesignEngine
 from .gradients import MeanSlopes
+from .outcome import KEPT, Outcome
 
 _Values: TypeAlias = Mapping[str, Any] | None
 

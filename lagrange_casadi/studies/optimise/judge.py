@@ -10,7 +10,8 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.status import Status
-from ..designs.engine import DesignEngine, Outcome
+from ..designs.engine import DesignEngine
+from ..designs.outcome import Outcome
 from .fatigue import tired_link
 from .judged import Judged, Signed
 from .look import Look, Point

@@ -23,7 +23,7 @@ from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
 from ...instants.statistics import of_counted
-from ..designs.engine import Outcome
+from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
 from .engine import Engine
