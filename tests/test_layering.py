@@ -281,4 +281,4 @@ def test_tests_take_nothing_from_other_tests():
 @pytest.mark.quick
 def test_no_file_is_two_things():
     for path in (*modules().values(), *PACKAGE.rglob("*.js"), *Path(__file__).parent.glob("*.py")):
-        assert len(path.read_text().splitlines()) <= 400, path
+        assert len(path.read_text().splitlines()) <= 600, path

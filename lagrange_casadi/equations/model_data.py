@@ -20,7 +20,7 @@ from ..beams.beam import Beam
 from ..beams.material import Material
 from ..beams.told import beam_of
 from ..declare.corners import Corners
-from ..declare.declared import Declared, EquationGraph, equations_of
+from ..declare.declared import Declared
 from ..declare.density import Density
 from ..declare.description import Description, Template, beams_of, in_space, kinds_of_described, template_of
 from ..declare.laws import Laws
@@ -28,6 +28,7 @@ from ..declare.masses import ALL, masses_of
 from ..declare.parts import LineLoad, Link, Parameter
 from ..declare.possible import Margins
 from ..declare.scene import Scene
+from ..declare.stated import Stated
 from ..declare.times import Timing
 from ..errors import UnknownNameError
 from .checks import Column
@@ -74,8 +75,8 @@ class ModelData(Graphs):
 
     ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all together [kg]. ``margins`` are what a
     precision demands of the parameters; motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a
-    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``equations`` are the constraints and rows as
-    they were declared, for certificates, and ``template`` is the description but for the numbers.
+    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints, rows, motions
+    and laws of loads as they were declared, for certificates, and ``template`` is the description but for the numbers.
     """
 
     rounding: float
@@ -89,7 +90,7 @@ class ModelData(Graphs):
     masses: Any
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
-    equations: tuple[EquationGraph, ...]
+    stated: Stated
     template: Template
 
     @classmethod
@@ -108,7 +109,7 @@ class ModelData(Graphs):
             masses=ca.Function("masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}),
             partial=tuple(name for name, load in mechanism.loads.items() if isinstance(load, LineLoad) and not load.whole),
             jumps={name: _jumps(link.mass) for name, link in mechanism.links.items() if isinstance(link.mass, Density)},
-            equations=equations_of(mechanism),
+            stated=Stated.of(mechanism, scene.laws),
             template=template(scene),
         )
 
@@ -146,8 +147,7 @@ class ModelData(Graphs):
 
     def declared(self, p: Sequence[float] | Array) -> Declared:
         """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is derived."""
-        known = tuple(map(float, p))
-        return Declared.of(self.at(known), tuple(equation.at(known) for equation in self.equations))
+        return Declared.of(self.at(p), self.stated, p)
 
     @property
     @symbolic
@@ -223,10 +223,7 @@ _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     ),
     "corners": (Corners.words, Corners.loads),
     "jumps": (_as_it_is, lambda words: {name: tuple(jumps) for name, jumps in words.items()}),
-    "equations": (
-        lambda own: [equation.words() for equation in own],
-        lambda words: tuple(EquationGraph.loads(equation) for equation in words),
-    ),
+    "stated": (Stated.words, Stated.loads),
     "template": (Template.dumps, Template.loads),
 }
 """How each field is written for JSON, and read."""

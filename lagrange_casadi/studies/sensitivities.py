@@ -21,7 +21,8 @@ from ..instants.statistics import shares
 from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakKind, peak_slopes
 from ..sensitivity.slopes import Numbers, Slopes
-from ..sensitivity.ties import Curve, ties
+from ..sensitivity.ties import AS_LARGE, ties
+from ..summits.panels import Listed
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
 from .peaks import ContinuousSolution, resultants
@@ -110,25 +111,17 @@ class Sensitivities:
     def peaks(self, names: Sequence[str]) -> list[Changes]:
         """How the peaks of several quantities change."""
         outputs = [self._known(name) for name in names]
-        found = self.continuous.refined([self.solution.peak(name) for name in names])
+        sampled = [self.solution.peak(name) for name in names]
+        found, others = self.continuous.refined(sampled, Listed(1.0 - AS_LARGE["double"]))
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
         nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
         ends = np.zeros((2, self.p.size))
         changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
-        tied = ties(
-            self.slopes, self.solution.t, self.p, chosen, values, changes, ends, nothing, lambda k: self._curves(outputs[k])
-        )
+        tied = ties(self.slopes, self.solution.t, self.p, chosen, values, changes, ends, others) & ~nothing
         every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
         return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
-
-    def _curves(self, output: Output) -> Sequence[Curve]:
-        """A quantity over the instants; a section force where it may be largest along the link."""
-        if output.group != "section":
-            return [(np.full(self.solution.t.size, np.nan), self.solution.array(output))]
-        places, values = self.solution.section(output.part).law.curves(output.member)
-        return list(zip(places.T, values.T, strict=True))
 
     def _largest(self, unit: str) -> float:
         """The largest size over the instants among the series of a unit."""

@@ -130,7 +130,7 @@ class _Searched:
         It jumps where compression begins: the graph knows when that is.
         """
         used = self.over_time.in_equal_steps(f"safety:{self.member.link}")
-        (peak,) = used.refined([used.solution.peak(f"utilisation:{self.member.link}:buckling")])
+        ((peak,), _) = used.refined([used.solution.peak(f"utilisation:{self.member.link}:buckling")])
         if math.isnan(peak.value):
             return None
         factor = 1.0 / peak.value if peak.value else math.inf
