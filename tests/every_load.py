@@ -1,6 +1,7 @@
-"""A mechanism of the plane that has whatever holds, loads, couples or rubs."""
+"""A planar mechanism with every kind of joint, of load and of friction."""
 
-from lagrange_casadi import Mechanism, Scene, motion
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.motion import harmonic, polynomial
 
 
 def every_joint_and_load():
@@ -26,5 +27,5 @@ def every_joint_and_load():
     m.friction("oil", o, viscous=0.05)
     m.friction("shoe", guide, mu=0.1, length=0.1)
     m.friction("grease", rail, viscous=1.5)
-    laws = {"O": motion.polynomial(0.3, 7.0), "R": motion.harmonic(0.2, 0.05, 5.0)}
+    laws = {"O": polynomial(0.3, 7.0), "R": harmonic(0.2, 0.05, 5.0)}
     return Scene(m, laws, t=(0.0, 0.9, 13), posture={"rod": 0.0, "arm": 1.3})

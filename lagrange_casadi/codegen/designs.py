@@ -16,9 +16,10 @@ from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
 from ..equations.turns import LEAP
+from ..summits.panels import TOPS
 from ..summits.sharpness import Watch
 from .calls import Call
-from .emit import FOLLOW, Parts, emit, following
+from .emit import FOLLOW, Parts, emit_scene, following
 from .link_curves import Along, along, turning
 from .printer import function_name, print_functions
 from .search import BASE, OFF, TIP, Tables, interface
@@ -42,6 +43,8 @@ CALL = Call(
         "hiding": "signed char*",
         "search": "const lagrange_casadi_search_call*",
         "find": "lagrange_casadi_find*",
+        "way": "int",
+        "share": "double",
         "status": "signed char*",
         "value": "double*",
         "peak_t": "double*",
@@ -49,6 +52,8 @@ CALL = Call(
         "mean": "double*",
         "rms": "double*",
         "history": "double*",
+        "iterated": "double*",
+        "tops": "double*",
     },
 )
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
@@ -117,9 +122,9 @@ class Reduction:
 
 
 def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
-    """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
+    """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates instants alone."""
     parts = Parts.of(graph, stages)
-    text = emit(graph, stages, newton, parts)
+    text = emit_scene(graph, stages, newton, parts)
     text += print_functions(
         {"matter_of": reduction.matter, "status_of": graph.status}, stages.precision, prefix="matter", packs=True
     )
@@ -129,7 +134,6 @@ def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: 
         interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
     )
     text += _tables(graph, reduction) + _source("sections.c") + turning(reduction.links)
-    text += _WORK.format(**parts.sizes, drive=parts.drive)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
@@ -149,9 +153,7 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "LEAP": _real(LEAP),
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
-        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
-        "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
-        "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
+        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")},
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
         "POSITIVE": reduction.positive,
@@ -168,6 +170,7 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "NEAR": _real(reduction.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
+        "TOPS": TOPS,
         "END": _real(END[precision]),
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
         "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
@@ -236,34 +239,3 @@ static void designs_curves(const casadi_real* y, const casadi_real* matter, unsi
 
 def _source(name: str) -> str:
     return "\n" + resources.files(__package__).joinpath(name).read_text()
-
-
-_WORK = """
-/* The columns y of a pack of instants: of its times, at the start of at, and of its iterated coordinates, at DESIGNS_PLACE. */
-static void designs_columns(const casadi_real* parameters, const casadi_real* constants, const DESIGNS_REAL* p, casadi_real* at,
-                            casadi_real* y) {{
-  casadi_int j = 0, k = 0;
-  casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
-  const casadi_real* arg[5];
-  casadi_real* res[3];
-  (void) j; (void) k; (void) p; (void) parameters; (void) time;
-{drive}    arg[0] = counted;
-  arg[1] = rates;
-  arg[2] = rates + {nd};
-  arg[3] = place;
-  arg[4] = constants;
-  res[0] = y;
-  instant(arg, res);
-}}
-
-/* What parameters alone decide. */
-static void designs_fixed(const casadi_real* parameters, casadi_real* constants, casadi_real* matter) {{
-  const casadi_real* arg[1];
-  casadi_real* res[1];
-  arg[0] = parameters;
-  res[0] = constants;
-  constants_of(arg, res);
-  res[0] = matter;
-  matter_of(arg, res);
-}}
-"""

@@ -1,7 +1,7 @@
 /* One design over all instants: its rows, whether it has a result, and means.
 
    Instants are evaluated in packs. Nothing here depends on another design. What the scene is made of stands before this text:
-   designs_columns, designs_quantities, tables, and sizes as macros. */
+   scene_columns, designs_curves, tables, and sizes as macros. */
 typedef DESIGNS_REAL designs_real;
 
 typedef struct {
@@ -13,6 +13,7 @@ typedef struct {
   double half;
   int *status, rests;
   const signed char* bent;
+  double* tops;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
   casadi_real limits[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)];
 } designs_now;
@@ -52,7 +53,7 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  designs_columns(now->parameters, now->constants, now->p, at, y);
+  scene_columns(now->parameters, now->constants, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -84,7 +85,7 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
 /* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
    watched. */
 static void designs_sample(designs_now* now, double* history) {
-  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum;
   casadi_real most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   designs_real* row;
@@ -94,7 +95,7 @@ static void designs_sample(designs_now* now, double* history) {
   for (i = 0; i < now->n; i += LANES) {
     for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
-    designs_columns(now->parameters, now->constants, now->p, at, y);
+    scene_columns(now->parameters, now->constants, at, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
@@ -103,13 +104,8 @@ static void designs_sample(designs_now* now, double* history) {
     }
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
-    for (k = 0; k < 4; ++k) sum[k] = 0;
-    for (k = 0; k + 4 <= DESIGNS_OUTPUTS; k += 4) {
-      for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
-    }
-    for (; k < DESIGNS_OUTPUTS; ++k) sum[0] = sum[0] + y[k];
-    sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    memcpy(row, sum, sizeof *sum);
+    sum = scene_sum(y, DESIGNS_OUTPUTS);
+    memcpy(row, &sum, sizeof sum);
     for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(row += stride, y + DESIGNS_OUTPUTS + k, sizeof *y);
     if (history) {
       for (k = 0; k < DESIGNS_OUTPUTS; ++k) {

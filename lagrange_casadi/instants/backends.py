@@ -21,7 +21,7 @@ from ..base.room import cores
 from ..base.status import Status
 from ..base.vocabulary import Backend
 from ..codegen.emit import NEWTON_STEPS, newton_rule
-from ..codegen.stages import Stages, compensated, plain, turns_many
+from ..codegen.stages import Stages, plain, stages_for
 from ..equations.program import Program
 from ..errors import CompilerError, warn
 from ..version import __version__
@@ -73,8 +73,7 @@ def run(
     where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
-    many = rung.precision == "single" or turns_many(graph, t, p)
-    stages = compensated(graph, rung.precision) if many else plain(graph)
+    stages = stages_for(graph, rung.precision, t, p)
     found = _compiled(graph, stages, rung)
     evaluated = into or unevaluated(graph, stages, t.size)
     begin = _begin(graph, rung.newton is not None, t[0], tuple(p))

@@ -15,7 +15,7 @@ from ...base.tables import Table, table_of
 from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
-from ...codegen.stages import Stages, compensated, plain, turns_many
+from ...codegen.stages import Stages, compensated, plain, stages_for
 from ...equations.dead_centres import NEAR
 from ...equations.mobility import stations_of
 from ...equations.model_data import ModelData
@@ -34,16 +34,13 @@ def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> St
 
     ``alike`` tells that all designs have the instants ``t``.
     """
-    if rung.precision == "single":
-        return compensated(graph, "single")
     time, p = graph.laws.motion.sx_in()
-    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
-        try:
-            return compensated(graph, "double")
-        except DeclarationError:
-            return plain(graph)
-    many = turns_many(graph, t, graph.data.defaults)
-    return compensated(graph, "double") if many else plain(graph)
+    if rung.precision == "single" or (alike and not ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
+        return stages_for(graph, rung.precision, t, graph.data.defaults)
+    try:
+        return compensated(graph, "double")
+    except DeclarationError:
+        return plain(graph)
 
 
 @dataclass(frozen=True, eq=False)

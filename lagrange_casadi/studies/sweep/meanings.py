@@ -11,7 +11,7 @@ from ...base.status import Status
 from ...base.tables import ANGLE, LENGTH, Table
 from ...declare.description import Description, kinds_of_described, motions_of
 from ...declare.masses import ALL
-from ...declare.wanted_slopes import SENSITIVITY
+from ...declare.wanted_names import SENSITIVITY
 from ...instants.ordering import table_of_described
 from .axes import DESIGN
 
