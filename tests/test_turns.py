@@ -174,9 +174,10 @@ def test_sweeps_count_the_same_and_refuse_by_name(backend):
     scene = sprung("C", **DRAG_LINK, parametric=True, count=65)
     wanted = ["effort", "load:coil_C"]
     engine = DesignEngine.of(scene, wanted, None, Rung(backend))
-    designs = np.array([[0.3, 0.35, 0.32], [0.32, 0.36, 0.3], [0.05, 0.35, 0.32], [1.0, 0.1, 0.1]])
+    # The first crank-rocker comes near a dead centre, and the last one does not.
+    designs = np.array([[0.3, 0.35, 0.32], [0.32, 0.36, 0.3], [0.05, 0.35, 0.32], [1.0, 0.1, 0.1], [0.02, 0.1, 0.1]])
     outcome = engine.evaluate(designs, histories=True)
-    assert outcome.status.tolist() == [Status.OK, Status.OK, Status.TURNED, Status.OUT_OF_REACH]
+    assert outcome.status.tolist() == [Status.OK, Status.OK, Status.TURNED, Status.OUT_OF_REACH, Status.TURNED]
     for design, series in zip(designs[:2], outcome.series[:2], strict=True):
         solution = evaluate(scene, parameters=dict(zip("pqr", design, strict=True)), wanted=wanted, backend="vm")
         for name, values in zip(engine.columns, series, strict=True):

@@ -42,8 +42,8 @@ class Digits:
 
     @property
     def doubted(self) -> float:
-        """What a residual may be without a closer look."""
-        return self.tolerance / 10.0
+        """What a residual may be by the roundings of a law alone; what is more asks for a closer look."""
+        return 256.0 * self.rounding
 
     @property
     def coarseness(self) -> float:

@@ -43,7 +43,8 @@ def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
             continue
         blur = digits.coarseness * np.max(turned if turns else fastest)
         scale = _largest(value) * (_largest(rate) + float(blur))
-        yield np.abs(lost + value * rate) / (scale or 1.0)
+        gap = np.abs(lost + value * rate) / (scale or 1.0)
+        yield np.where(np.isnan(gap), 0.0, gap)
 
 
 def _rubbing(placed: Placed) -> Iterator[tuple[str, Array, bool]]:
