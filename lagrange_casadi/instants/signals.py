@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -75,7 +75,7 @@ class Signals:
     """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with iterated coordinates ``z`` there.
 
     ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set, its values at the instants, which
-    tell its turns.
+    tell its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
     """
 
     graph: Program
@@ -87,6 +87,7 @@ class Signals:
     z: Array
     newton: int | None = None
     turned: Mapping[int, Array] = field(default_factory=dict)
+    rounding: Array | float = 0.0
 
     def peaks(
         self,
@@ -139,10 +140,15 @@ class Signals:
 
     def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         columns = self.columns(t, z)
-        watched = self.sharpness.watched(t[None], *self.graph.motion(t[None], self.p), z, self.p).full()
+        watched = self.sharpness.watched(*self.inputs(t, z)).full()
+        watched[np.abs(watched) <= self.rounding] = 0.0
         with np.errstate(all="ignore"):
             places, values = (np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True))
         return Samples(values, places, watched)
+
+    def inputs(self, t: Array, z: Array) -> tuple[Any, ...]:
+        """What the graph's columns are made of at times."""
+        return t[None], *self.graph.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), where the iterated coordinates are told."""

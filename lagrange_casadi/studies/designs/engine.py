@@ -87,7 +87,7 @@ class DesignEngine:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = compile_scene(scene, wanted)
         rung.check(graph)
-        scene.checked(scene.mechanism.values())
+        scene.checked(scene.values())
         return cls.compiled(graph, timing or scene.timing(t), rung)
 
     @classmethod

@@ -15,8 +15,11 @@ from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
 from ...base.symbolic import symbolic_property
 from ...base.vocabulary import Backend, Precision
-from ...declare.scene import Scene, without_fitted, without_life
+from ...declare.description import fitted_of
+from ...declare.scene import Scene
 from ...declare.times import Over, Times
+from ...declare.wanted_names import without_fitted, without_life
+from ...equations.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.refusal import Status
 from ...instants.rung import Rung
@@ -320,10 +323,9 @@ def prepare(
 
     Raises what :func:`.evaluate` does for mistakes in the arguments, and :class:`CompilerError`.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
-    without_life(() if wanted is None else wanted, "prepared scenes")
-    without_fitted(scene.mechanism, () if wanted is None else wanted, "prepared scenes")
+    named = () if wanted is None else wanted
+    without_life(named, "prepared scenes")
+    without_fitted(fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes")
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
     return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))
