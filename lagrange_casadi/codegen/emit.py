@@ -61,6 +61,7 @@ START = f"""\
 #define LAGRANGE_CASADI_C extern "C"
 #else
 #define LANES 1
+#define LANES_INLINE static inline
 #define LAGRANGE_CASADI_C
 #ifdef LANES_SINGLE
 #define lanes_real float
@@ -96,7 +97,7 @@ WIDE = """
 
 _PACK = """
 /* The columns y of a pack of instants: at begins with its times; its iterated coordinates come after what the drive gives. */
-static void scene_columns(const casadi_real* parameters, const casadi_real* constants, casadi_real* at, casadi_real* y) {{
+LANES_INLINE void scene_columns(const casadi_real* parameters, const casadi_real* constants, casadi_real* at, casadi_real* y) {{
   casadi_real *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
   const casadi_real* arg[5];
   casadi_real* res[3];
@@ -122,7 +123,7 @@ static void scene_constants(const {real}* p, casadi_real* parameters, casadi_rea
 }}
 
 /* A sum that is finite if all so many columns are; four sums, for each addition waits for the one before. */
-static casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
+LANES_INLINE casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
   casadi_real sum[4];
   casadi_int j, k;
   for (j = 0; j < 4; ++j) sum[j] = 0;

@@ -31,6 +31,11 @@ static void designs_split(double t, designs_real* moment) {
   if (DESIGNS_NT > 1) moment[DESIGNS_NT - 1] = (designs_real) (t - moment[0]);
 }
 
+/* The columns of a pack: one function, so that a scene's instant is compiled into it once. */
+static void designs_columns(const designs_now* now, casadi_real* at, casadi_real* y) {
+  scene_columns(now->parameters, now->constants, at, y);
+}
+
 /* The columns at LANES times, each near an instant. */
 static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
   designs_real lane[DESIGNS_NT][LANES], moment[DESIGNS_NT], place[DESIGNS_SOME(DESIGNS_NZ)][LANES], z[DESIGNS_SOME(DESIGNS_NZ)];
@@ -53,7 +58,7 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  scene_columns(now->parameters, now->constants, at, y);
+  designs_columns(now, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -95,7 +100,7 @@ static void designs_sample(designs_now* now, double* history) {
   for (i = 0; i < now->n; i += LANES) {
     for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
-    scene_columns(now->parameters, now->constants, at, y);
+    designs_columns(now, at, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
