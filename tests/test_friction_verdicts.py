@@ -9,8 +9,8 @@ from compiled import told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine, sweep
 from lagrange_casadi.animation import Film, write_animation
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save

@@ -7,9 +7,9 @@ import pytest
 from mechanisms import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sweep, tolerances
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, MobilityError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.sweep.checking import check_sweep
