@@ -13,8 +13,13 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-import sweeps
 from hypothesis import settings
+
+# The processes of the tests have the cores already: threads of NumPy's linear algebra beside them would mostly wait for each other.
+# NumPy reads it when it is imported, so this comes before.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import sweeps
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.codegen import compiler
@@ -38,10 +43,6 @@ SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.jso
 
 # Expressions are many small objects that live long: to look for circles among them often takes a twentieth of the time.
 gc.set_threshold(20_000, 50, 100)
-
-# The processes of the tests have the cores already: threads of NumPy's linear algebra beside them would mostly wait for each other.
-# NumPy reads it when it is imported, so this is for the processes that are started from here.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # For the benchmarks, which are not installed; last, so that the package is the installed one.
 sys.path.append(str(ROOT))
