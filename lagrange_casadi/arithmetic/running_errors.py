@@ -30,7 +30,8 @@ def running_errors(function: Any, *columns: npt.NDArray[np.float64]) -> npt.NDAr
     given = [[(row, np.spacing(np.abs(row)) / 2) for row in column] for column in columns]
     with np.errstate(all="ignore"):
         found = interpret(function, given, Arithmetic(_constant, {code: _rule(code) for code in _KNOWN}))[0]
-        return np.array([np.broadcast_to(np.where(np.isnan(error), np.inf, error), count) for _, error in found])
+        errors = [np.broadcast_to(np.where(np.isnan(error), np.inf, error), count) for _, error in found]
+    return np.array(errors).reshape(rows, count)
 
 
 def _constant(value: float) -> _Pair:
