@@ -11,7 +11,7 @@ from lagrange_casadi.cli import program
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import check, load
 from lagrange_casadi.studies.sweep.checking import check_sweep
-from lagrange_casadi.studies.sweep.resting import resting_note
+from lagrange_casadi.studies.sweep.notes import resting_note
 from lagrange_casadi.studies.trade import trade
 
 pytestmark = pytest.mark.usefixtures("interpreted")

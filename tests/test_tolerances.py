@@ -79,7 +79,7 @@ def test_designs_without_a_result_are_counted():
 )
 def test_tolerances_are_read_with_their_units(name, value, found):
     mechanism = rotor().mechanism
-    assert read_tolerance(mechanism, name, value, mechanism.values()[name]) == pytest.approx(found, rel=1e-14)
+    assert read_tolerance(mechanism.parameters, name, value, mechanism.values()[name]) == pytest.approx(found, rel=1e-14)
 
 
 @pytest.mark.parametrize("value", ["0.1deg", "x", "", "-1mm", 0.0, math.nan, math.inf, True, None, "1 furlong", "mm", "%"])

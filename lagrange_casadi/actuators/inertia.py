@@ -10,7 +10,6 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, instants_of
-from ..equations.derive import assembled
 from ..equations.seen_inertia import SeenInertia, seen_inertia
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.backends import run
@@ -38,17 +37,18 @@ def inertia_at(
     Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives and motions are not as many, and
     as :func:`.evaluate` does.
     """
-    values = scene.mechanism.values(parameters)
-    seen = seen_inertia(assembled(scene, values, ["motion"]))
+    values = scene.values(parameters)
+    seen = seen_inertia(scene, values)
     if joint not in seen.drives:
         raise UnknownNameError("drive", joint, seen.drives)
     several = len(seen.motions) > 1
-    if scene.mechanism.rows or (several and len(seen.drives) != len(seen.motions)):
-        why = "non-holonomic constraints" if scene.mechanism.rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
+    rows = seen.program.data.template.content["rows"]
+    if rows or (several and len(seen.drives) != len(seen.motions)):
+        why = "non-holonomic constraints" if rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
         raise DeclarationError(f"inertia at '{joint}': with {why} no drive moves alone, the others at rest")
     times, p = instants_of(scene.prescribed, scene.timing(t, over), values).t, np.array(list(values.values()))
-    found, _ = run(seen.graph, times, p, _VM)
-    refuse(seen.graph, found, times, p, _VM)
+    found, _ = run(seen.program, times, p, _VM)
+    refuse(seen.program, found, times, p, _VM)
     return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
 
 

@@ -14,6 +14,7 @@ from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
 from ..equations.turns import LEAP
+from ..summits.panels import TOPS
 from ..summits.sharpness import Watch
 from .calls import Call
 from .emit import FOLLOW, Parts, emit, following
@@ -40,6 +41,8 @@ CALL = Call(
         "hiding": "signed char*",
         "search": "const lagrange_casadi_search_call*",
         "find": "lagrange_casadi_find*",
+        "way": "int",
+        "share": "double",
         "status": "signed char*",
         "value": "double*",
         "peak_t": "double*",
@@ -47,6 +50,8 @@ CALL = Call(
         "mean": "double*",
         "rms": "double*",
         "history": "double*",
+        "iterated": "double*",
+        "tops": "double*",
     },
 )
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
@@ -166,6 +171,7 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "NEAR": _real(reduction.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
+        "TOPS": TOPS,
         "END": _real(END[precision]),
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
         "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",

@@ -13,6 +13,7 @@ typedef struct {
   double half;
   int *status, rests;
   const signed char* bent;
+  double* tops;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
 } designs_now;
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
+from ..summits.panels import Listed
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed, statements
 from .designs import CALL, DESIGNS, Reduction
@@ -128,6 +129,7 @@ class DesignsLibrary:
         p: npt.NDArray[np.float64],
         results: Mapping[str, npt.NDArray[Any] | None],
         threads: int = 1,
+        listed: Listed | None = None,
     ) -> None:
         """Fill ``results`` for designs ``p``, as :meth:`bound` does. The bytes of a row do not depend on ``threads``."""
         n = p.shape[0]
@@ -137,7 +139,7 @@ class DesignsLibrary:
         def run(start: int) -> None:
             cut = slice(start, start + size)
             rows = {name: None if array is None else array[cut] for name, array in results.items()}
-            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows)()
+            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows, listed)()
 
         starts = range(0, n, size)
         if shares == 1:
@@ -156,13 +158,14 @@ class DesignsLibrary:
         bent: npt.NDArray[np.bool_],
         p: npt.NDArray[np.float64],
         results: Mapping[str, npt.NDArray[Any] | None],
+        listed: Listed | None = None,
     ) -> Callable[[], None]:
         """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps
         between them the motion bends more than they show; one row of either serves all designs. ``history`` may be None; or all
-        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. The bytes of a row
-        do not depend on other rows.
+        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
+        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on other rows.
         """
         stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
         hidden = np.zeros((len(bent), stride), np.int8)
@@ -170,8 +173,8 @@ class DesignsLibrary:
         room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, DTYPES[self.search.precision])
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room, **results}
-        arrays |= {"statuses": status, "hiding": hiding}
+        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room}
+        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
         search, within = self.search.call(self.tables, _CUT)
         call = CALL.made(
             search=ctypes.addressof(search),
@@ -181,6 +184,8 @@ class DesignsLibrary:
             stride=stride,
             t_apart=self.count if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
+            way=listed.way if listed else 0,
+            share=listed.share if listed else 0.0,
             **{name: None if array is None else array.ctypes.data for name, array in arrays.items()},
         )
         # The arrays live as long as what reads and writes them.

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from ..base.symbolic import symbolic
-from ..declare.description import Description, Template, template_of
+from ..beams.beam import Beam
+from ..beams.material import Material
+from ..beams.told import beam_of
+from ..declare.description import Description, Template, beams_of, template_of
 from ..declare.scene import Scene
 from .tree import span
 
 
+def materials_of(description: Description) -> dict[str, Material]:
+    """Return what links with a beam are made of."""
+    return {name: Material(**description["bodies"][name]["beam"]["material"]) for name in beams_of(description)}
+
+
 @symbolic
-def described(scene: Scene, values: Mapping[str, float]) -> Description:
-    """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
-    return template(scene).filled(values)
+def beam_at(described: Template, link: str, p: Any) -> Beam:
+    """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers where these are numbers."""
+    return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
 
 
 @symbolic

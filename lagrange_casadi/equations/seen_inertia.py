@@ -6,6 +6,7 @@ e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how fast the mec
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -16,6 +17,7 @@ from ..declare.spatial import reference_posture
 from . import kinematics
 from .assembly import assemble
 from .checks import Column
+from .derive import assembled
 from .kinematics import Start
 from .model_data import ModelData
 from .multibody import column
@@ -25,15 +27,16 @@ from .tree import span
 
 @dataclass(frozen=True, eq=False)
 class SeenInertia:
-    """A graph whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
+    """A program whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
 
-    graph: Program
+    program: Program
     motions: tuple[str, ...]
     drives: tuple[str, ...]
 
 
-def seen_inertia(scene: Scene) -> SeenInertia:
-    """The graph of a scene. Raises as :func:`.compile_scene` does."""
+def seen_inertia(scene: Scene, parameters: Mapping[str, float]) -> SeenInertia:
+    """Compile what drives of a scene see, assembled as :func:`.compile_scene` does it. Raises as that does."""
+    scene = assembled(scene, parameters, ["motion"])
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
@@ -56,5 +59,4 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
     columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
     data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
-    graph = Program(data, want, instant, solved.newton, tuple(columns), {})
-    return SeenInertia(graph, driven, drives)
+    return SeenInertia(Program(data, want, instant, solved.newton, tuple(columns), {}), driven, drives)

@@ -20,7 +20,7 @@ from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
 from ..equations.program import Program
 from ..summits.between import Flags
-from ..summits.panels import Curves, Peaks, Samples
+from ..summits.panels import Curves, Listed, Peaks, Samples
 from ..summits.search import peaks
 from ..summits.sharpness import Sharpness, bent
 from .backends import follow
@@ -89,11 +89,17 @@ class Signals:
     turned: Mapping[int, Array] = field(default_factory=dict)
     rounding: Array | float = 0.0
 
-    def peaks(self, units: Sequence[int], scales: Sequence[float] = (), search: Search | None = None) -> Peaks:
+    def peaks(
+        self,
+        units: Sequence[int],
+        scales: Sequence[float] = (),
+        search: Search | None = None,
+        listed: Listed | None = None,
+    ) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it. ``search`` is the
-        compiled search; without it the reference serves.
+        compiled search; without it the reference serves. ``listed`` says which local peaks are told too.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
@@ -103,7 +109,7 @@ class Signals:
         curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
         with np.errstate(all="ignore"):
             find = peaks if search is None else search.peaks
-            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p))
+            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p), listed)
 
     def at(self, t: Array) -> Samples:
         """All curves at times; NaN where iterated loops do not close."""

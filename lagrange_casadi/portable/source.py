@@ -30,14 +30,14 @@ from .text import comment, indented, printed, template
 class Source:
     """What header and source are written from.
 
-    ``scene`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
+    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
     ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute, ``slopes``
     the derivatives of its outputs, where they are wanted.
     """
 
     contract: Contract
     program: ExportedProgram
-    scene: str
+    identity: str
     guess: Sequence[float]
     rung: str
     values: Mapping[str, float]
@@ -56,7 +56,7 @@ class Source:
             **self.words,
             includes="\n#include <string.h>" if self.program.cycle is not None else "",
             graph=self.program.text,
-            seal=f"0x{self.scene[:8]}u",
+            seal=f"0x{self.identity[:8]}u",
             helpers=self._helpers(),
             put="\n".join(f"  outputs->{m.name} = {self._value(m.source)};" for m in self.contract.outputs),
             defaults=self._defaults(),
@@ -84,7 +84,7 @@ class Source:
             "P": self._upper,
             "version": __version__,
             "casadi": ca.CasadiMeta.version(),
-            "scene": self.scene,
+            "scene": self.identity,
         }
 
     @property

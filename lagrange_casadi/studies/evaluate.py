@@ -11,7 +11,6 @@ from ..declare.even_points import EvenPoints
 from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
-from ..errors import DeclarationError
 from ..instants.rung import Rung
 
 if TYPE_CHECKING:
@@ -69,8 +68,6 @@ def evaluate(
     fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
     :class:`DeclarationError`.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
     rung = Rung(backend, precision, newton, table, flags)
     from .solving import solve
 

@@ -21,7 +21,7 @@ from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, instants_of
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Evaluated, run
@@ -136,11 +136,10 @@ def trade(
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
     their own, and what :func:`.evaluate` raises where the scene has no result.
     """
-    told = scene.mechanism.values(parameters)
+    told = scene.values(parameters)
     values = np.array(list(told.values()))
     times = instants_of(scene.prescribed, scene.timing(t, over), told).t
-    scene = assembled(scene, told, wanted)
-    graph = compile_scene(scene, wanted)
+    graph = compile_scene(scene, wanted, parameters=told)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(graph, times, compared, values)
     refused: dict[str, str] = {}
@@ -168,7 +167,7 @@ def trade(
         peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
     except (AssemblyError, DeclarationError):
         peaks = ()
-    return Trade(scene.mechanism.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
+    return Trade(graph.data.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
 
 
 class _Truth:

@@ -22,8 +22,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import Flags, highest, unresolved
-from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Panel, Peaks, Samples, Summit, joined, sides
+from .between import Flags, Numbers, highest, unresolved
+from .panels import INNER, SIDE, SPACING, TOPS, Curves, CurveSource, Listed, Panel, Peaks, Samples, Summit, joined, sides
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -72,29 +72,67 @@ ROUGH = 0.1
 """Of its curve: how large the sixth difference of a polynomial may be that is believed."""
 
 
-def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
+def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags, listed: Listed | None = None) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
 
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
     that are as large but for rounding the first is told, for else rounding would choose their sign. A quantity that is no number at
-    any instant, as friction at rest leaves it, has no peak.
+    any instant, as friction at rest leaves it, has no peak. ``listed`` says which local peaks are told too.
     """
+    base, way = np.zeros(len(curves.units)), listed.way if listed else 0
+    if way:
+        base = _base(np.array(curves.quantities), way * samples.values, base.size)
+        source = _Counted(source, way, base[list(curves.quantities), None])
+        samples = source.counted(samples)
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
-    search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
+    search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:], listed)
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
-    return Peaks(found.value + none, found.t + none, found.xi + none, found.told)
+    value, tops = found.value + none, search.listing(t, given) if listed else None
+    if way:
+        value = way * (value + base)
+    if way and tops is not None:
+        tops[tops[..., 3] < 0.0] = np.nan
+        tops[..., 3] = way * (tops[..., 3] + base[:, None])
+    return Peaks(value, found.t + none, found.xi + none, found.told, tops)
+
+
+def _base(quantity: Numbers, values: Array, count: int) -> Array:
+    """Of each quantity what its values are counted from: as far below the least as the largest is above it."""
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.fmin.at(low, quantity, np.fmin.reduce(values, axis=1))
+    np.fmax.at(high, quantity, np.fmax.reduce(values, axis=1))
+    return np.where(low <= high, 2 * low - high, 0.0)
+
+
+class _Counted:
+    """Curves times a ``way``, counted from a ``base``."""
+
+    def __init__(self, source: CurveSource, way: int, base: Array) -> None:
+        self.source, self.way, self.base = source, way, base
+
+    def at(self, t: Array) -> Samples:
+        """At times of the span."""
+        return self.counted(self.source.at(t))
+
+    def counted(self, samples: Samples) -> Samples:
+        """The same samples, counted so."""
+        return samples._replace(values=self.way * samples.values - self.base)
 
 
 class _Search:
     """What is known so far of each quantity: its largest size, and where one as large was found first."""
 
-    def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags) -> None:
+    def __init__(
+        self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags, listed: Listed | None
+    ) -> None:
         self.lacking, self.begin = lacking, float(t[0])
+        self.share = listed.share if listed else None
+        self.tops: list[list[tuple[int, float, float, float]]] = [[] for _ in curves.units]
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -115,10 +153,20 @@ class _Search:
         return ROUNDING * (self.best + BESIDE * self.scale)
 
     @property
+    def least(self) -> Array:
+        """What a summit of each quantity must reach to matter."""
+        return np.asarray(self.best - self.rounding if self.share is None else self.share * self.best)
+
+    @property
     def limit(self) -> Array:
         """What each curve must rise above to matter; one of what is nothing beside others of its unit never does."""
-        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding, np.inf)
+        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding if self.share is None else self.least, np.inf)
         return np.asarray(limit[self.quantity])
+
+    def ends(self, values: Array) -> Array:
+        """What each curve must rise above in each step: both its ends."""
+        sizes = np.abs(values)
+        return np.asarray(np.maximum(sizes[:, :-1], sizes[:, 1:]) + self.rounding[self.quantity, None])
 
     def note(self, curve: int, value: float, t: float, xi: float) -> None:
         """Take in what a curve is at a time; what is nothing has its peak at an instant."""
@@ -126,6 +174,8 @@ class _Search:
         rounding = float(self.rounding[q])
         if not math.isfinite(size) or self.lacks(t)[curve]:
             return
+        if self.share is not None:
+            self.list_top(curve, value, t, xi)
         if size > self.best[q]:
             self.best[q] = size
             taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
@@ -134,6 +184,45 @@ class _Search:
             taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
+
+    def list_top(self, curve: int, value: float, t: float, xi: float) -> None:
+        """List what a curve is at a time: the largest of what is less than a step apart, and the largest of these."""
+        q = self.quantity[curve]
+        rows = self.tops[q]
+        near = [row for row in rows if row[0] == curve and abs(row[1] - t) <= self.step]
+        out = near[:1] or (sorted(rows, key=lambda row: abs(row[3]))[:1] if len(rows) == TOPS else [])
+        if not abs(value) >= self.least[q] or any(abs(row[3]) >= abs(value) for row in out):
+            return
+        self.tops[q] = [row for row in rows if row not in out] + [(curve, t, xi, value)]
+
+    def listing(self, t: Array, given: Samples) -> Array:
+        """The local peaks that were found, and those at instants, of what is level some.
+
+        What is not a step's largest is left out, and what is near a larger one.
+        """
+        sizes = np.abs(given.values)
+        around = np.pad(np.nan_to_num(sizes, nan=0.0), ((0, 0), (1, 1)), constant_values=-1.0)
+        before, after, rounding = around[:, :-2], around[:, 2:], self.rounding[self.quantity, None]
+        tops = (sizes >= before - rounding) & (sizes >= after - rounding) & (sizes >= self.least[self.quantity, None])
+        level = np.maximum(sizes - before, sizes - after) <= rounding
+        for curve, limit in enumerate(self.limit):
+            flat = np.flatnonzero(tops[curve] & level[curve])
+            every = 1 + 2 * flat.size // TOPS if math.isfinite(limit) else t.size
+            for i in (*np.flatnonzero(tops[curve] & ~level[curve]), *flat[::every]):
+                self.list_top(curve, given.values[curve, i], float(t[i]), given.places[curve, i])
+        found = np.full((len(self.tops), TOPS, 4), np.nan)
+        for q, rows in enumerate(self.tops):
+            kept: list[tuple[int, float, float, float]] = []
+            for row in sorted(rows, key=lambda row: -abs(row[3])):
+                curve, time, _, value = row
+                i = int(np.clip((time - t[0]) // self.step, 0, max(t.size - 2, 0))) if t.size > 1 else 0
+                size, ends = abs(value) + self.rounding[q], np.nan_to_num(sizes[curve, i : i + 2], nan=0.0)
+                near = any(other[0] == curve and abs(other[1] - time) <= self.step for other in kept)
+                if size >= self.least[q] and (size >= ends).all() and not near:
+                    kept.append(row)
+            found[q, : len(kept)] = np.reshape(kept, (-1, 4))
+            found[q, :, 0] -= int(np.argmax(self.quantity == q))
+        return found
 
     def lacks(self, t: float) -> Flags:
         """Which curves are not sought at a time: in steps beside rest those that are open there are left out."""
@@ -161,6 +250,7 @@ class _Search:
             unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks, depth >= FINEST)
             hiding = hiding | unseen
             bound = np.fmax(highest(values), highest(-values))
+            bound[bound <= self.ends(values)] = -np.inf
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(panel, bound, hiding | kinked)
             self.settle(panel, bound)
@@ -214,7 +304,8 @@ class _Search:
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
         for curve in range(values.shape[0]):
-            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
+            known = (self.best if self.share is None else self.least)[self.quantity[curve]]
+            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > known) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
 
@@ -285,10 +376,10 @@ class _Search:
         n = panel.t.size
         for curve in np.flatnonzero((bound > self.limit[:, None]).any(axis=1)).tolist():
             row, limit = panel.samples.values[curve], self.limit[curve]
-            sizes = np.abs(row)
+            sizes, ends = np.abs(row), self.ends(panel.samples.values)[curve]
             bound[curve, self.told_before(panel.samples.values, curve)] = -np.inf
             for step in np.flatnonzero(bound[curve] > limit).tolist():
-                if bound[curve, step] <= limit + self.noise(curve, row, step):
+                if bound[curve, step] <= max(limit, ends[step]) + self.noise(curve, row, step):
                     bound[curve, step] = -np.inf
                     continue
                 for at in (step, step + 1):
@@ -310,7 +401,7 @@ class _Search:
             times = [(float(panel.t[at] + panel.step * place), tip) for place, tip in kink]
             t = float(start + panel.step * (x + fits.SEVEN // 2))
             summit = Summit(curve, at, signs[k], t, size, slope, bend, steep, rough, trust, times)
-            summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.best[q] - self.rounding[q]
+            summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.least[q]
             yield summit
 
     def told_before(self, values: Array, curve: int) -> Flags:

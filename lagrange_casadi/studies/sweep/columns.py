@@ -17,7 +17,7 @@ from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
-from ...declare.wanted_slopes import SENSITIVITY
+from ...declare.wanted_names import SENSITIVITY
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError

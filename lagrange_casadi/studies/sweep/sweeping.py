@@ -13,7 +13,7 @@ from typing import Annotated, Any
 from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.room import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, Precision
-from ...case import Case
+from ...case import Case, scene_of
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
@@ -89,11 +89,8 @@ def sweep(
     :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
-    own = scene.scene if isinstance(scene, Case) else scene
-    if not isinstance(own, Scene):
-        raise DeclarationError(f"sweep: expected a Scene or a Case, got {own!r}")
     plan = Plan.of(
-        own,
+        scene_of(scene),
         designs_of(grid),
         fixed=parameters,
         t=t,
