@@ -11,8 +11,8 @@ from random_mechanisms import draw
 from random_verdict import is_regular
 
 from lagrange_casadi import evaluate, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import forces

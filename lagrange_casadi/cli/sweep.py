@@ -8,13 +8,13 @@ from pathlib import Path
 
 import click
 
+from ..base.status import Status
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.notes import drawing_notes
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..instants.refusal import Status
 from ..studies.sweep import Axis, Keep, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped

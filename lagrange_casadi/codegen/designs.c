@@ -36,6 +36,8 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
                        double* rms, double* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
   lagrange_casadi_instants follow;
+  const casadi_real* given[1];
+  casadi_real* found[1];
   casadi_int i;
   int j, k, why;
   (void) z;
@@ -46,8 +48,10 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
     for (j = 0; j < DESIGNS_NT; ++j) pairs[j*DESIGNS_NP + k] = pair[j];
   }
   now->p = pairs;
-  for (k = 0; k < DESIGNS_NT*DESIGNS_NP; ++k) now->parameters[k] = pairs[k];
-  designs_fixed(now->parameters, now->constants, now->matter);
+  scene_constants(pairs, now->parameters, now->constants);
+  given[0] = now->parameters;
+  found[0] = now->matter;
+  matter_of(given, found);
   for (k = 0; k < DESIGNS_MARGINS; ++k) {
     margin = designs_lane(now->matter + k, 0);
     if (!(margin >= 0 && margin <= DESIGNS_LARGEST) || (k < DESIGNS_POSITIVE && margin == 0)) return DESIGNS_IMPOSSIBLE;

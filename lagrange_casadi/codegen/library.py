@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -77,11 +77,7 @@ class Library:
             cut = slice(start, start + size)
             self._call(self.entry, out, t=t[..., cut], p=p, guess=None, z=z[:, cut], out=out[:, cut], status=status[cut])
 
-        pool = ThreadPoolExecutor(shares)
-        try:
-            list(pool.map(run, range(0, n, size)))
-        finally:
-            pool.shutdown(cancel_futures=True)
+        _share(run, range(0, n, size), shares)
 
     @property
     def _stretch(self) -> int:
@@ -141,16 +137,7 @@ class DesignsLibrary:
             rows = {name: None if array is None else array[cut] for name, array in results.items()}
             self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows, listed)()
 
-        starts = range(0, n, size)
-        if shares == 1:
-            for start in starts:
-                run(start)
-            return
-        pool = ThreadPoolExecutor(shares)
-        try:
-            list(pool.map(run, starts))
-        finally:
-            pool.shutdown(cancel_futures=True)
+        _share(run, range(0, n, size), shares)
 
     def bound(
         self,
@@ -190,6 +177,19 @@ class DesignsLibrary:
         )
         # The arrays live as long as what reads and writes them.
         return functools.partial(_enter, self.entry, call, (arrays, search, within))
+
+
+def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> None:
+    """Run what begins at each of the starts, by so many threads."""
+    if threads == 1:
+        for start in starts:
+            run(start)
+        return
+    pool = ThreadPoolExecutor(threads)
+    try:
+        list(pool.map(run, starts))
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def _enter(entry: Any, call: Any, arrays: object) -> None:

@@ -20,7 +20,7 @@ from ..base.arrays import Array
 from ..base.quantities import Output, compared
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
-from ..codegen.stages import Stages, compensated, plain, turns_many
+from ..codegen.stages import Stages, stages_for
 from ..declare.description import values_of
 from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
@@ -195,7 +195,7 @@ class ContinuousSolution:
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         graph = compile_scene(scene, wanted, parameters=told)
         p = np.array(list(told.values()))
-        stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
+        stages = stages_for(graph, "double", solution.t, p)
         z, _ = follow(graph, solution.t, p, stages=stages)
         searched = backend or solution.provenance.backend
 

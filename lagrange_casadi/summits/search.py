@@ -22,8 +22,9 @@ import numpy as np
 
 from ..base.arrays import Array
 from . import fits
-from .between import Flags, Numbers, highest, unresolved
-from .panels import INNER, SIDE, SPACING, TOPS, Curves, CurveSource, Listed, Panel, Peaks, Samples, Summit, joined, sides
+from .between import Flags, highest, unresolved
+from .listing import Counted, Tops, base_of
+from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Listed, Panel, Peaks, Samples, Summit, joined, sides
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -81,8 +82,8 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
     """
     base, way = np.zeros(len(curves.units)), listed.way if listed else 0
     if way:
-        base = _base(np.array(curves.quantities), way * samples.values, base.size)
-        source = _Counted(source, way, base[list(curves.quantities), None])
+        base = base_of(np.array(curves.quantities), way * samples.values, base.size)
+        source = Counted(source, way, base[list(curves.quantities), None])
         samples = source.counted(samples)
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
@@ -92,36 +93,14 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
-    value, tops = found.value + none, search.listing(t, given) if listed else None
-    if way:
-        value = way * (value + base)
-    if way and tops is not None:
+    value, tops = found.value + none, None
+    if listed:
+        least, rounding = search.least[search.quantity], search.rounding[search.quantity]
+        tops = search.tops.listing(t, given, least, search.limit, rounding)
+    if tops is not None and way:
         tops[tops[..., 3] < 0.0] = np.nan
-        tops[..., 3] = way * (tops[..., 3] + base[:, None])
+        value, tops[..., 3] = way * (value + base), way * (tops[..., 3] + base[:, None])
     return Peaks(value, found.t + none, found.xi + none, found.told, tops)
-
-
-def _base(quantity: Numbers, values: Array, count: int) -> Array:
-    """Of each quantity what its values are counted from: as far below the least as the largest is above it."""
-    low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    np.fmin.at(low, quantity, np.fmin.reduce(values, axis=1))
-    np.fmax.at(high, quantity, np.fmax.reduce(values, axis=1))
-    return np.where(low <= high, 2 * low - high, 0.0)
-
-
-class _Counted:
-    """Curves times a ``way``, counted from a ``base``."""
-
-    def __init__(self, source: CurveSource, way: int, base: Array) -> None:
-        self.source, self.way, self.base = source, way, base
-
-    def at(self, t: Array) -> Samples:
-        """At times of the span."""
-        return self.counted(self.source.at(t))
-
-    def counted(self, samples: Samples) -> Samples:
-        """The same samples, counted so."""
-        return samples._replace(values=self.way * samples.values - self.base)
 
 
 class _Search:
@@ -132,7 +111,6 @@ class _Search:
     ) -> None:
         self.lacking, self.begin = lacking, float(t[0])
         self.share = listed.share if listed else None
-        self.tops: list[list[tuple[int, float, float, float]]] = [[] for _ in curves.units]
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -146,6 +124,7 @@ class _Search:
         self.samples, self.hidden = samples.values, 0
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
         self.left = PANELS + 4 * t.size
+        self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
     def rounding(self) -> Array:
@@ -174,8 +153,8 @@ class _Search:
         rounding = float(self.rounding[q])
         if not math.isfinite(size) or self.lacks(t)[curve]:
             return
-        if self.share is not None:
-            self.list_top(curve, value, t, xi)
+        if self.share is not None and size >= self.least[q]:
+            self.tops.add(curve, value, t, xi)
         if size > self.best[q]:
             self.best[q] = size
             taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
@@ -184,45 +163,6 @@ class _Search:
             taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
-
-    def list_top(self, curve: int, value: float, t: float, xi: float) -> None:
-        """List what a curve is at a time: the largest of what is less than a step apart, and the largest of these."""
-        q = self.quantity[curve]
-        rows = self.tops[q]
-        near = [row for row in rows if row[0] == curve and abs(row[1] - t) <= self.step]
-        out = near[:1] or (sorted(rows, key=lambda row: abs(row[3]))[:1] if len(rows) == TOPS else [])
-        if not abs(value) >= self.least[q] or any(abs(row[3]) >= abs(value) for row in out):
-            return
-        self.tops[q] = [row for row in rows if row not in out] + [(curve, t, xi, value)]
-
-    def listing(self, t: Array, given: Samples) -> Array:
-        """The local peaks that were found, and those at instants, of what is level some.
-
-        What is not a step's largest is left out, and what is near a larger one.
-        """
-        sizes = np.abs(given.values)
-        around = np.pad(np.nan_to_num(sizes, nan=0.0), ((0, 0), (1, 1)), constant_values=-1.0)
-        before, after, rounding = around[:, :-2], around[:, 2:], self.rounding[self.quantity, None]
-        tops = (sizes >= before - rounding) & (sizes >= after - rounding) & (sizes >= self.least[self.quantity, None])
-        level = np.maximum(sizes - before, sizes - after) <= rounding
-        for curve, limit in enumerate(self.limit):
-            flat = np.flatnonzero(tops[curve] & level[curve])
-            every = 1 + 2 * flat.size // TOPS if math.isfinite(limit) else t.size
-            for i in (*np.flatnonzero(tops[curve] & ~level[curve]), *flat[::every]):
-                self.list_top(curve, given.values[curve, i], float(t[i]), given.places[curve, i])
-        found = np.full((len(self.tops), TOPS, 4), np.nan)
-        for q, rows in enumerate(self.tops):
-            kept: list[tuple[int, float, float, float]] = []
-            for row in sorted(rows, key=lambda row: -abs(row[3])):
-                curve, time, _, value = row
-                i = int(np.clip((time - t[0]) // self.step, 0, max(t.size - 2, 0))) if t.size > 1 else 0
-                size, ends = abs(value) + self.rounding[q], np.nan_to_num(sizes[curve, i : i + 2], nan=0.0)
-                near = any(other[0] == curve and abs(other[1] - time) <= self.step for other in kept)
-                if size >= self.least[q] and (size >= ends).all() and not near:
-                    kept.append(row)
-            found[q, : len(kept)] = np.reshape(kept, (-1, 4))
-            found[q, :, 0] -= int(np.argmax(self.quantity == q))
-        return found
 
     def lacks(self, t: float) -> Flags:
         """Which curves are not sought at a time: in steps beside rest those that are open there are left out."""

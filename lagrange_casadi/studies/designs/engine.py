@@ -11,7 +11,7 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
 from ...base.room import cores, require
+from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
@@ -30,7 +31,6 @@ from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.cost import seconds
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Provenance
 from ...sensitivity.curvatures import Curvatures
@@ -42,6 +42,7 @@ from ...summits.sharpness import bent, with_watched
 from ..solving import checked_span, outputs_of
 from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
+from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
 from .watch import Watch
@@ -50,50 +51,8 @@ from .witness import failures
 _PIECE = 1 << 22
 """How many instants of designs that have their own are held at once."""
 
-KEPT = ("value", "peak_t", "xi", "mean", "rms")
-"""What is kept of each design, by its name in C."""
-
-Results: TypeAlias = dict[str, Any]
-"""Arrays to be filled, a row a design, by their names in C; None for what is not asked for."""
-
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
-
-    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
-    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
-    are whole histories, where they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
-    ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
-    """
-
-    status: npt.NDArray[np.int8]
-    value: Array
-    t: Array
-    xi: Array
-    mean: Array
-    rms: Array
-    series: Array | None
-    over: Array | None = None
-    times: Array | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class History:
-    """One design over instants ``t`` (t,): its ``columns`` (columns, t) and iterated coordinates (z, t).
-
-    Where peaks were sought, ``tops`` (q, :data:`.TOPS`, 4) are local ones of its quantities: see :class:`.Peaks`. ``outcome`` has
-    its status, and what is kept.
-    """
-
-    outcome: Outcome
-    t: Array
-    columns: Array
-    iterated: Array
-    tops: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,8 +201,8 @@ class DesignEngine:
         size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
             some = slice(start, start + size)
-            self._fill(p[some], _rows(found, some), threads or cores(), None if times is None else times[some])
-        outcome = _outcome(found, times=times)
+            self._fill(p[some], rows_of(found, some), threads or cores(), None if times is None else times[some])
+        outcome = outcome_of(found, times=times)
         if self.times.law is not None:
             outcome = replace(outcome, over=self.times.at_drive(outcome.t, p))
         if columns is None:
@@ -268,7 +227,7 @@ class DesignEngine:
         else:
             self._evaluate(p, t, found | {"tops": tops}, 1, listed)
         self._refuse_motions(p, t, found)
-        return History(_outcome(found), t[0], columns[0], found["iterated"][0], tops[0])
+        return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
     def told(self, out: Array, p: Array) -> dict[Output, Array]:
         """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
@@ -320,7 +279,7 @@ class DesignEngine:
         others: Results = {"status": np.zeros(len(p), np.int8), "history": series}
         self._series(p, asked, others, threads)
         failed = (found["status"] == Status.OK) & (others["status"] != Status.OK)
-        _refuse(found, failed, others["status"])
+        refuse(found, failed, others["status"])
         series[found["status"] != Status.OK] = np.nan
 
     def _evaluate(self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None) -> None:
@@ -359,7 +318,7 @@ class DesignEngine:
         if not self.watch:
             return
         status = self.watch.statuses(p, t, found["status"], found["history"])
-        _refuse(found, status != found["status"], status)
+        refuse(found, status != found["status"], status)
 
     @symbolic_property
     def slopes(self) -> Slopes:
@@ -408,21 +367,3 @@ class DesignEngine:
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
         return failures(whole, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
-
-
-def _refuse(found: Results, some: npt.NDArray[np.bool_], status: npt.NDArray[np.int8]) -> None:
-    """Give some designs another status, and no result."""
-    for name, array in found.items():
-        if array is not None:
-            array[some] = status[some] if name == "status" else np.nan
-
-
-def _rows(found: Results, some: slice) -> Results:
-    """Some rows of arrays, to be filled."""
-    return {name: None if array is None else array[some] for name, array in found.items()}
-
-
-def _outcome(found: Results, times: Array | None = None) -> Outcome:
-    """What was kept, without histories."""
-    value, t, xi, mean, rms = (found[name] for name in KEPT)
-    return Outcome(found["status"], value, t, xi, mean, rms, None, times=times)

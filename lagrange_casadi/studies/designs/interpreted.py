@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.status import Status
 from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status, refusal
+from ...instants.refusal import refusal
 from ...instants.rung import Rung
 from ...instants.signals import Quantity, Signals, section_forces
 from ...instants.statistics import counted, shares
 from ...summits.panels import TOPS, Listed
+from .outcome import KEPT
 from .reduction import KeptOutputs
 
 
@@ -60,8 +62,8 @@ def outcome(
         peaks[:, told] = found.value, found.t, found.xi
         tops[told] = np.nan if found.tops is None else found.tops
     means[:, [effort not in told for effort in reduction.efforts]] = np.nan
-    kept_of = dict(zip(("value", "peak_t", "xi", "mean", "rms"), (*peaks, *means), strict=True))
-    return Status.OK, kept_of | {"history": evaluated.out, "iterated": evaluated.iterated, "tops": tops}
+    every = dict(zip(KEPT, (*peaks, *means), strict=True))
+    return Status.OK, every | {"history": evaluated.out, "iterated": evaluated.iterated, "tops": tops}
 
 
 def _means(t: Array, values: Array) -> tuple[Any, Any]:

@@ -9,7 +9,8 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.quantities import Output
 from ...summits.panels import Listed
-from ..designs.engine import DesignEngine, History
+from ..designs.engine import DesignEngine
+from ..designs.outcome import History
 
 KEEP = 0.7
 """Of the largest: local peaks that are looked at."""

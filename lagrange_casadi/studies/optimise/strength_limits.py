@@ -7,7 +7,7 @@ import re
 
 from ...base.numerals import real
 from ...declare.scene import Scene
-from ...equations.described import materials_of, template
+from ...equations.model_data import materials_of, template
 from ...errors import DeclarationError
 from ...strength.fatigue import lacking, strengths
 from ..sweep.meanings import WAYS
