@@ -1,14 +1,15 @@
-"""Notes on a sweep: whether joints that rub come to rest in its designs, and whether drives make whole turns, the same in all."""
+"""Notes on a sweep: joints that rub and rest in its designs, whole turns of drives in all of them, and fatigue that is left out."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from ...base.status import Status
+from ...beams.told import beam_of
 from ...declare.description import kinds_of_described
 from ...declare.notes import rest_note
 from ...declare.scene import Scene
@@ -16,8 +17,10 @@ from ...declare.times import Over, Times, Timing
 from ...declare.turned import note
 from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
+from ...strength.fatigue import lacking
 from ..evaluate import evaluate
 from .axes import designs_of
+from .meanings import LEAST
 from .reading import Sweep
 
 _RESTS_OF = 16
@@ -25,6 +28,13 @@ _RESTS_OF = 16
 
 _TURNS_OF = 1024
 """Designs, evenly spread over all of them."""
+
+
+def fatigue_notes(found: Sweep) -> Iterator[str]:
+    """Say of each link with a factor of safety why none against fatigue is kept."""
+    for name, body in found.description["bodies"].items():
+        if f"{LEAST}:safety:{name}" in found.columns and f"{LEAST}:fatigue:{name}" not in found.columns:
+            yield f"no factor against fatigue of '{name}' is kept: {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
 
 
 def resting_note(

@@ -7,7 +7,7 @@ of all designs at once (:mod:`...strength.fibres`), else of one design after ano
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,8 +18,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...beams.told import beam_of, beam_told
-from ...declare.description import Description
+from ...beams.told import beam_told
 from ...declare.masses import ALL
 from ...equations.model_data import ModelData
 from ...instants.statistics import counted
@@ -38,13 +37,6 @@ _CRITERION = "goodman"
 
 _ENDLESS = 0.9
 """Utilisation at places up to which nothing wears between them: of a polynomial of degree 5 they miss less than the rest."""
-
-
-def left_out(description: Description, columns: Collection[str]) -> Iterator[str]:
-    """Say of each link with a factor of safety among ``columns`` why there is none against fatigue."""
-    for name, body in description["bodies"].items():
-        if f"{LEAST}:safety:{name}" in columns and f"{LEAST}:fatigue:{name}" not in columns:
-            yield f"no factor against fatigue of '{name}' is kept: {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
 
 
 @dataclass(frozen=True, eq=False)
