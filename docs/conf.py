@@ -35,7 +35,7 @@ exclude_patterns = ["_*"]
 UNLISTED = [
     *("Axis", "Backend", "Between", "Deflection", "Derivatives", "Design", "Figure", "Listed", "Over", "Progress", "Quantity"),
     *("Range", "RigidMass", "Spread", "Starts", "StiffSafety", "Times", "Timetable", "Transmission", "Vibration", "View"),
-    *("IN_SPACE", "check_picture", "elastic.deflection.deflection", "fingerprint", "outputs", "read_rows", "time"),
+    *("IN_SPACE", "check_picture", "elastic.deflection.deflection", "fingerprint", "outputs", "read_rows", "time", r"Wanted\.of"),
     *(r"_pickle\.PicklingError", r"h5py\._hl\..*"),
 ]
 """Names that docstrings and signatures mention, and that have no page."""
@@ -45,7 +45,7 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:class", r"lagrange_casadi\..*"),  # types in signatures that are no part of the interface
     ("py:.*", r"casadi\..*|(SX|DM|Function)"),  # CasADi has no inventory
-    ("py:(class|func|data|attr)", "|".join(UNLISTED)),
+    ("py:(class|func|meth|data|attr)", "|".join(UNLISTED)),
     ("py:mod", r"\.*[a-z_.]+"),  # modules that docstrings name to developers
 ]
 templates_path = ["_templates"]
