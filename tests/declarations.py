@@ -2,7 +2,7 @@
 
 from lagrange_casadi.declare.declared import Declared
 from lagrange_casadi.declare.stated import Stated
-from lagrange_casadi.equations.described import template
+from lagrange_casadi.equations.model_data import template
 
 
 def declaration(scene, values):

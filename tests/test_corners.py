@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.report.contents import contents
 from lagrange_casadi.report.live import Live
 from lagrange_casadi.studies.designs.engine import DesignEngine

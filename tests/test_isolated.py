@@ -9,11 +9,11 @@ from drawn_curves import T, shown, told_by_limits
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]

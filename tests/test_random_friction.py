@@ -11,7 +11,10 @@ from random_mechanisms import draw
 from random_verdict import is_regular
 
 from lagrange_casadi import evaluate, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import forces
 from lagrange_casadi.summits import search
 
@@ -158,6 +161,13 @@ def keeps_peaks(made, monkeypatch):
 @pytest.mark.parametrize("seed", [46, 80])
 def test_peaks_are_found_where_comparisons_are_rounding(seed, monkeypatch):
     keeps_peaks(rubbed(seed), monkeypatch)
+
+
+def test_designs_tell_peaks_where_an_acceleration_is_rounding():
+    """Designs know no rounding: their graph has no kink at an acceleration that is zero by the shape of the mechanism."""
+    scene = rubbed(46).scene()
+    found = DesignEngine.of(scene, ["effort"], rung=Rung("vm")).evaluate([list(scene.mechanism.values().values())])
+    assert found.status.tolist() == [Status.OK]
 
 
 @pytest.mark.long

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mechanisms import pendulum
 
 from lagrange_casadi import codegen, evaluate, motion
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import refine

@@ -70,6 +70,7 @@ def test_designs_without_a_result_are_counted():
         ("l", 0.001, 0.001),
         ("l", "0.1mm", 1e-4),
         ("l", "50um", 5e-5),
+        ("l", "0.1 cm", 1e-3),
         ("l", " 1e-3 m ", 1e-3),
         ("l", "1%", 0.004),
         ("mass", "2g", 2e-3),

@@ -13,7 +13,7 @@ from ..case import load_case
 from ..declare.description import Description, coordinates_of
 from ..declare.scene import Scene, kinds
 from ..equations.derive import compile_scene
-from ..equations.described import template
+from ..equations.model_data import template
 from ..equations.scene_lines import scene_lines
 from ..instants.solution import Solution
 from ..store import runs as store

@@ -8,17 +8,18 @@ from pathlib import Path
 
 import click
 
+from ..base.status import Status
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.notes import drawing_notes
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..instants.refusal import Status
 from ..studies.sweep import Axis, Keep, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
 from ..studies.sweep.notes import resting_note, turning_note
+from ..studies.sweep.strength import left_out
 from .echo import echo
 from .options import parameters
 from .progress import shown
@@ -82,7 +83,7 @@ def sweep(
     _report(found)
     turns = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
     rests = resting_note(scene, found, parameters(settings), t=t, over=over, wanted=want or None)
-    for note in filter(None, (*drawing_notes(found.description), rests, turns)):
+    for note in filter(None, (*drawing_notes(found.description), rests, turns, *left_out(found.description, found.columns))):
         echo(f"note: {note}")
     echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.compensated import DTYPES
+from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
@@ -56,11 +58,8 @@ CALL = Call(
 )
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
 
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED", "BEYOND", "JAM", "SLIP", "REST")
-"""What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
-mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent, the swing
-of an angle, how far what is put into curves is beyond their ends, and of frictions how far they are from a jam,
-what is left of their laws, and whether one is at rest."""
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
+"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants, or the mechanism's extent."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -74,11 +73,11 @@ class Reduction:
     """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
 
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of each of ``links``. ``units``
-    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
-    limit, ``doubts`` the checks that leave a quantity open, by number of both. ``matter(p)`` gives first ``margins`` numbers that
-    must not be negative, ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
-    ``sections.c`` takes for each link. ``watches`` are what the last columns are watched for, ``knots`` times of kinks: see
-    :class:`.Sharpness`.
+    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are the columns of a graph's bounds with
+    their kinds and limits, then those of ``ROWSIZE``; ``doubts`` are the checks that leave a quantity open, by number of both.
+    ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either: the first is
+    the mechanism's extent [m]. Then comes what ``sections.c`` takes for each link. ``watches`` are what the last columns are
+    watched for, ``knots`` times of kinks: see :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -126,13 +125,15 @@ def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: 
     """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates instants alone."""
     parts = Parts.of(graph, stages)
     text = emit_scene(graph, stages, newton, parts)
-    text += print_functions({"matter_of": reduction.matter}, stages.precision, prefix="matter", packs=True)
+    text += print_functions(
+        {"matter_of": reduction.matter, "status_of": graph.status}, stages.precision, prefix="matter", packs=True
+    )
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text += (
         interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
     )
-    text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
+    text += _tables(graph, reduction) + _source("sections.c") + turning(reduction.links)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
@@ -163,6 +164,7 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "WATCHES": len(reduction.watches),
         "OUTPUTS": sizes["columns"] - len(reduction.watches),
         "CHECKS": checks,
+        "BOUNDS": len(graph.bounds),
         "DOUBTS": len(reduction.doubts),
         "EFFORTS": len(reduction.efforts),
         "NEAR": _real(reduction.near),
@@ -185,14 +187,19 @@ def _defined(macros: Mapping[str, object]) -> str:
     return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
 
 
-def _tables(reduction: Reduction) -> str:
-    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("CLOSURE",), (0.0,))
+def _tables(graph: Program, reduction: Reduction) -> str:
+    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",), (0.0,))
+    sizes = itertools.count(len(graph.bounds))
+    beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in graph.bounds] or [-1]
+    statuses = [Status.OK, *(rule.status for rule in graph.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
     return "".join(
         (
             _table("int", "designs_checked", columns),
-            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
+            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds)),
+            _table("int", "designs_sized", beside),
+            _table("int", "designs_status", map(int, statuses)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),

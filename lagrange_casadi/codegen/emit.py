@@ -13,6 +13,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.status import Status
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.program import Program
@@ -48,9 +49,6 @@ INSTANTS = Call(
     },
 )
 """What :data:`EVALUATE` and :data:`FOLLOW` take; the C says of each what it reads and writes."""
-
-OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
-"""Status of an instant."""
 
 START = f"""\
 {LANES_PLACE}#include <math.h>
@@ -313,10 +311,11 @@ def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
 
 
 def _told(newton: int | None) -> str:
+    ok, lost, slow = (int(status) for status in (Status.OK, Status.NOT_CONVERGED, Status.SLOW))
     if newton is None:
-        return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where a loop did not converge, {SLOW} where not
+        return f"""status[i] becomes {ok}, or {lost} where a loop did not converge, {slow} where not
    quadratically."""
-    return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where the last of {newton} steps is
+    return f"""status[i] becomes {ok}, or {lost} where the last of {newton} steps is
    too large to believe."""
 
 
@@ -335,10 +334,10 @@ def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
         "nc": stages.drive.size1_out(0),
         "nd": graph.instant.size1_in("d"),
         "nz": graph.instant.size1_in("z"),
-        "OK": OK,
-        "NOT_CONVERGED": NOT_CONVERGED,
-        "NOT_FINITE": NOT_FINITE,
-        "SLOW": SLOW,
+        "OK": int(Status.OK),
+        "NOT_CONVERGED": int(Status.NOT_CONVERGED),
+        "NOT_FINITE": int(Status.NOT_FINITE),
+        "SLOW": int(Status.SLOW),
     }
 
 

@@ -191,6 +191,8 @@ class Scene(Graphs):
     rounding
         How far axes [rad] and places [of its size] in space may be off where loops do not close as declared, 0 to 1e-3.
 
+    Notes
+    -----
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
     """

@@ -71,6 +71,8 @@ def compile_scene(
     elastic
         Whether the functions tell how forces change with what equilibrium leaves open.
 
+    Notes
+    -----
     A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
     declaration.
 

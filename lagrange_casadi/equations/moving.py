@@ -22,10 +22,10 @@ from . import kinematics
 from .assembly import assemble
 from .bars import across_bar
 from .checks import Check, Column
-from .described import template
 from .drives import pushed
 from .kinematics import Start
 from .mobility import needed_reactions
+from .model_data import template
 from .multibody import Coordinate, Multibody, column, own_coordinate
 from .tree import span
 from .turns import count_turns

@@ -78,6 +78,8 @@ def export(
     wasm
         Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and ``README.wasm.md``. Needs ziglang.
 
+    Notes
+    -----
     Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
     folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
     what :func:`.evaluate` raises.

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..codegen.emit import OK
+from ..base.status import Status
 from ..equations.checks import Check, Column
 from ..equations.program import Program
 from .backends import run
-from .rules import rules
+from .rules import limits
 from .rung import Rung
 
 
@@ -27,9 +27,9 @@ def undetermined(graph: Program, out: Array, p: Array, rung: Rung) -> tuple[Outp
     """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
     if not graph.doubtful:
         return ()
-    extent = graph.extent(p)
-    limits = {r.column: r.limit * (extent if r.kind == "OPEN_MOMENT" else 1.0) for r in rules(graph, rung.precision, rung.newton)}
-    return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > limits[k]))
+    known = zip(graph.bounds, limits(graph, rung.precision, rung.newton, graph.extent(p)), strict=True)
+    most = {bound.column: limit for bound, limit in known}
+    return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > most[k]))
 
 
 def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) -> tuple[Program, tuple[Output, ...]]:
@@ -40,7 +40,7 @@ def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) ->
     if not graph.doubtful:
         return graph, ()
     table, _ = run(graph, t, p, Rung("vm"))
-    left_open = undetermined(graph, table.out[:, table.status == OK], p, Rung())
+    left_open = undetermined(graph, table.out[:, table.status == Status.OK], p, Rung())
     others = () if telling else tuple(output for output in graph.doubtful if output not in left_open)
     return _without(graph, (*left_open, *(Check("open", output) for output in (*left_open, *others)))), left_open
 

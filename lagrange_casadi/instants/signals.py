@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.status import Status
 from ..base.tables import table_of
-from ..codegen.emit import NOT_CONVERGED
 from ..codegen.search import Search
 from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
@@ -129,7 +129,7 @@ class Signals:
         failed = np.zeros(t.size, dtype=bool)
         for k in range(t.size if self.graph.newton else 0):
             at, status = follow(self.graph, t[k : k + 1], self.p, self.z[:, near[k]], stages=self.stages, newton=self.newton)
-            z[:, k], failed[k] = at[:, 0], status[0] == NOT_CONVERGED
+            z[:, k], failed[k] = at[:, 0], status[0] == Status.NOT_CONVERGED
         return z, failed
 
     def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from ..declare.scene import Scene
-from ..equations.described import template
+from ..equations.model_data import template
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.solution import Solution
 from ..instants.told import told

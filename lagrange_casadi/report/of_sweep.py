@@ -18,8 +18,8 @@ from ..declare.description import values_of
 from ..declare.scene import Scene, Wanted
 from ..declare.wanted_names import SENSITIVITY
 from ..equations.derive import compile_scene
-from ..equations.described import template
 from ..equations.fingerprint import fingerprint, sources
+from ..equations.model_data import template
 from ..errors import DeclarationError, shown
 from ..studies.evaluate import evaluate
 from ..studies.sweep.axes import DESIGN

@@ -59,6 +59,8 @@ def evaluate(
     elastic
         Whether least strain energy tells what equilibrium leaves open: see :class:`.Scene`.
 
+    Notes
+    -----
     Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.base.tables` lists
     units and signs. A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and
     :class:`CertificateWarning` is given. The method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for

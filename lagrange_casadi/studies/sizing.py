@@ -21,7 +21,7 @@ from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance
 from ..elastic.deflection import Against, Deflection
 from ..equations.bars import unaimed
-from ..equations.described import beam_at, template
+from ..equations.model_data import beam_at, template
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..strength.member import Member

@@ -11,13 +11,13 @@ import numpy as np
 from ..arguments import Outputs, public
 from ..base.arrays import Array
 from ..base.numerals import real
+from ..base.status import Status
 from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Backend
 from ..declare.parts import Parameter
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.refusal import Status
 from .designs.prepared import prepare
 
 _LARGEST = 1_000_000

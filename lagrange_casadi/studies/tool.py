@@ -21,7 +21,7 @@ from ..declare.pushed import with_push
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance, nodes
-from ..equations.described import template
+from ..equations.model_data import template
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.member import Member

@@ -20,6 +20,7 @@ from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
 from ...base.room import cores, require
+from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
@@ -30,7 +31,6 @@ from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.cost import seconds
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Provenance
 from ...sensitivity.curvatures import Curvatures

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.status import Status
 from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status, refusal
+from ...instants.refusal import refusal
 from ...instants.rung import Rung
 from ...instants.signals import Quantity, Signals, section_forces
 from ...instants.statistics import counted, shares

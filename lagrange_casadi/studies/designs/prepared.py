@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
+from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.vocabulary import Backend, Precision
 from ...declare.description import fitted_of
@@ -21,7 +22,6 @@ from ...declare.times import Over, Times
 from ...declare.wanted_names import without_fitted, without_life
 from ...equations.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate

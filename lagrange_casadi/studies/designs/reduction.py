@@ -9,6 +9,7 @@ import casadi as ca
 
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
+from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
 from ...base.vocabulary import Precision
@@ -22,8 +23,7 @@ from ...equations.program import Program
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
-from ...instants.refusal import Status
-from ...instants.rules import rules
+from ...instants.rules import limit
 from ...instants.rung import Rung
 from ...summits.sharpness import Sharpness
 
@@ -142,13 +142,9 @@ def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
 
 
 def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
-    """The rules of a graph as the emitted C takes them: a row is followed by the column that is the size of its terms."""
-    found: list[tuple[int, str, float]] = []
-    for rule in rules(graph, rung.precision, rung.newton):
-        found.append((rule.column, rule.kind, rule.limit))
-        if rule.kind == "ROW":
-            found.append((rule.beside, "ROWSIZE", 0.0))
-    return found
+    """What a graph's columns must keep to, as the emitted C takes it; last are the sizes of the terms of rows."""
+    found = [(bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton)) for bound in graph.bounds]
+    return [*found, *((bound.size, "ROWSIZE", 0.0) for bound in graph.bounds if bound.kind == "ROW")]
 
 
 @symbolic

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.arrays import Array
-from ...instants.refusal import Status
+from ...base.status import Status
 from ..designs.engine import DesignEngine
 from ..designs.outcome import Outcome
 from .fatigue import tired_link

@@ -130,6 +130,8 @@ def optimise(
     progress
         Is called after each step with the number of the start, the objective and the worst excess over a limit.
 
+    Notes
+    -----
     Programs with some points of every quantity are solved by IPOPT with exact derivatives. What exceeds a limit elsewhere is added
     to them, until nothing does. An interrupt ends the search; the best design so far is given. One that violates a constraint is
     marked: it is not ``feasible``.

@@ -7,9 +7,9 @@ import re
 
 from ...base.numerals import real
 from ...declare.scene import Scene
-from ...equations.described import materials_of, template
+from ...equations.model_data import materials_of, template
 from ...errors import DeclarationError
-from ...strength.fatigue import strengths, tires
+from ...strength.fatigue import lacking, strengths
 from ..sweep.meanings import WAYS
 from .terms import Constraint
 
@@ -35,5 +35,5 @@ def constraints_of(text: str, scene: Scene) -> list[Constraint]:
     material = materials_of(template(scene).content)[link]
     if way == "fatigue":
         strengths(material, "goodman")
-    ways = tuple(w for w in WAYS if w != "fatigue" or tires(material)) if way == "safety" else (way,)
+    ways = tuple(w for w in WAYS if w != "fatigue" or not lacking(material)) if way == "safety" else (way,)
     return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters) for each in ways]

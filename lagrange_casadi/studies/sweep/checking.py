@@ -8,10 +8,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ...base.status import Status
 from ...declare.description import values_of
 from ...declare.even_points import points
 from ...errors import one_line
-from ...instants.refusal import Status
 from ...store.untrusted import check_chunks, parsed, told_as
 from ...store.words import unlike, unlike_conventions
 from .axes import are_described, counted, grouped, size_of

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from ...base.status import Status
 from ...declare.description import kinds_of_described
 from ...declare.notes import rest_note
 from ...declare.scene import Scene
 from ...declare.times import Over, Times, Timing
 from ...declare.turned import note
-from ...equations.described import template
+from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
-from ...instants.refusal import Status
 from ..evaluate import evaluate
 from .axes import designs_of
 from .reading import Sweep

@@ -84,6 +84,8 @@ def sweep(
         Called with what is being done (``designs``, after an interrupt ``stopping``, then ``file``), how much of it is done, and of
         how much.
 
+    Notes
+    -----
     Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
     :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
     :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
