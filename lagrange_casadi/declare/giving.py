@@ -32,9 +32,3 @@ def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
             )
         beam.material.needs(f"elastic link '{name}'", "elasticity")
     return tuple(name for name in having if name in elastic)
-
-
-def felt(mechanism: Mechanism) -> list[str]:
-    """The names of all outputs by which links are found that what is open loads."""
-    sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
-    return [*(f"reaction:{joint}" for joint in mechanism.joints), *sections]

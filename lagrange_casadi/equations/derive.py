@@ -24,12 +24,12 @@ from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
 from .fingerprint import fingerprint
-from .least_work import feeling, least_work
+from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
 from .multibody import column
-from .open_forces import open_forces
+from .open_forces import Forces
 from .own import own_outputs
 from .program import Program
 from .reciprocals import share_reciprocals
@@ -48,7 +48,7 @@ _STEPS = 50
 
 @public
 @symbolic
-def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool = False) -> Program:
+def compile_scene(scene: Scene, wanted: Outputs | None = None) -> Program:
     """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
     What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
@@ -59,8 +59,6 @@ def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool 
         The scene.
     wanted
         Output names, as in :class:`.Scene`; by default the scene's own.
-    elastic
-        Whether the functions tell how forces change with what equilibrium leaves open.
 
     A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
     declaration.
@@ -71,7 +69,7 @@ def compile_scene(scene: Scene, wanted: Outputs | None = None, *, elastic: bool 
     want = Wanted.of(scene.mechanism, names)
     _check_aimed(scene, names)
     try:
-        found = _kept(scene, want, elastic)
+        found = _kept(scene, want)
     except PostureError as error:
         error.scene = scene
         raise
@@ -88,19 +86,13 @@ derive = compile_scene
 def as_derived(scene: Scene, wanted: Outputs) -> Scene:
     """Return the scene that :func:`compile_scene` makes a graph of: itself, or one whose rounded axes are corrected."""
     compile_scene(scene, wanted)
-    found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
+    found = _kept(scene, Wanted.of(scene.mechanism, wanted))
     assert isinstance(found, _Derived)
     return found.scene
 
 
 @symbolic
-def assembled(
-    scene: Scene,
-    values: Mapping[str, float],
-    wanted: Sequence[str] | None = None,
-    *,
-    elastic: bool = False,
-) -> Scene:
+def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
     So it is too where loops close with its own parameters but not with ``values``, and axes are corrected for one or the other.
@@ -108,17 +100,17 @@ def assembled(
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
-        graph = compile_scene(scene, wanted, elastic=elastic)
+        graph = compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
         there = _at(scene, tuple(values.items()))
-        compile_scene(there, wanted, elastic=elastic)
+        compile_scene(there, wanted)
         return there
     if scene.mechanism.space and scene.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            if compile_scene(there, wanted, elastic=elastic).data.rounding or graph.data.rounding:
+            if compile_scene(there, wanted).data.rounding or graph.data.rounding:
                 return there
     return scene
 
@@ -142,31 +134,30 @@ class _Derived:
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
     identity = fingerprint(scene, want)
-    key = f"{identity}-elastic" if identity and elastic else identity
-    text = cache.read(f"{key}.graph") if key else None
+    text = cache.read(f"{identity}.graph") if identity else None
     if text is not None:
         graph = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
         return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
     try:
-        graph = replace(_derive(scene, want, elastic), identity=identity)
+        graph = replace(_derive(scene, want), identity=identity)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
-        found = None if near is None else _kept(near, want, elastic)
+        found = None if near is None else _kept(near, want)
         if isinstance(found, _Derived):
             return replace(found, graph=replace(found.graph, identity=identity))
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
-        found = _kept(near, want, elastic)
+        found = _kept(near, want)
         if isinstance(found, _Derived):
             return replace(found, graph=replace(found.graph, identity=identity))
-    if key:
-        cache.write(f"{key}.graph", graph.dumps())
+    if identity:
+        cache.write(f"{identity}.graph", graph.dumps())
     return _Derived(graph, scene)
 
 
@@ -219,25 +210,22 @@ class _Borne:
         return cls(acting, forces.free, rubbed.forces)
 
 
-def _derive(scene: Scene, asked: Wanted, elastic: bool) -> Program:
+def _derive(scene: Scene, asked: Wanted) -> Program:
     mechanism = scene.mechanism
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
     moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
     borne = _Borne.of(moving, columns) if want.forces else _Borne({}, ca.SX(0, 1), {})
     columns = {key: value for key, value in columns.items() if key not in borne.columns}
-    free, inputs = borne.free, moving.inputs
     acting = borne.columns | own_outputs(moving.body, moving.solved, columns | borne.columns)
-    opened = open_forces(acting, free, inputs, borne.frictions) if (elastic or scene.elastic) and free.numel() else None
-    least = least_work(mechanism, scene.elastic, columns | acting, free, moving.begins) if opened else None
-    loaded = acting if least is None else least.completed(acting, free)
-    strength = _strength(scene, asked, columns | loaded)
-    acting = (acting if elastic else loaded) | strength | ({} if least is None else least.doubts(strength))
-    columns |= _settled(acting, free)
+    least = _least_energy(scene, acting, borne) if scene.elastic else None
+    forces = Forces.over(acting, borne.free) if least is None else least.completed(acting, borne.free)
+    forces = forces.with_those_of(lambda told: _strength(scene, asked, {**columns, **told}))
+    columns |= forces.columns
     columns = columns if want is asked else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
+    instant = share_reciprocals(ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p")
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
@@ -245,8 +233,22 @@ def _derive(scene: Scene, asked: Wanted, elastic: bool) -> Program:
         newton=moving.solved.newton,
         columns=tuple(columns),
         loop_angles=loop_angles,
-        open_forces=opened if elastic else None,
+        completion=None if least is None else Completion.of(least, forces, columns, moving.inputs),
     )
+
+
+def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> LeastEnergy | None:
+    """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
+
+    Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what presses on it.
+    """
+    for name, value in borne.frictions.items():
+        if ca.depends_on(ca.SX(value), borne.free):
+            raise DeclarationError(
+                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open; elasticity tells it without friction"
+            )
+    open_ = any(ca.depends_on(ca.SX(value), borne.free) for value in acting.values())
+    return least_energy(scene.mechanism, scene.elastic, acting, borne.free) if open_ else None
 
 
 def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
@@ -276,22 +278,9 @@ def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict
 
 def _felt_alone(key: Column, asked: Wanted) -> bool:
     """Whether a column is there for strain energy alone."""
-    if not isinstance(key, Output):
+    output = key.part if isinstance(key, Check) else key
+    if not isinstance(output, Output):
         return False
-    return (key.group == "reaction" and key.part not in asked.reactions) or (key.along and key.part not in asked.sections)
-
-
-def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:
-    """Forces with nothing for what equilibrium leaves open, and by a check that it is ``open`` how much a force changes with that.
-
-    What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
-    at instants that are looked at then.
-    """
-    if not free.numel():
-        return columns
-    forces = column(columns.values())
-    slopes = ca.jacobian(forces, free)
-    slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
-    doubted = ((output, slopes[k, :]) for k, output in enumerate(columns) if slopes[k, :].nnz() and isinstance(output, Output))
-    sizes: dict[Column, Any] = {Check("open", output): ca.sum2(ca.fabs(slope)) for output, slope in doubted}
-    return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
+    return (output.group == "reaction" and output.part not in asked.reactions) or (
+        output.along and output.part not in asked.sections
+    )
