@@ -39,15 +39,13 @@ class Forces:
 
     def with_those_of(self, made: Callable[[Mapping[Column, Any]], Mapping[Column, Any]]) -> Forces:
         """Add what is ``made`` of these forces, which is open with what goes into it."""
-        symbols = {output: ca.SX.sym(str(output)) for output in self.open}
-        told = dict(self.values)
-        told.update(symbols)
-        more = made(told)
+        symbols: dict[Column, Any] = {output: ca.SX.sym(str(output)) for output in self.open}
+        more = made({**self.values, **symbols})
         if not symbols or not more:
             return replace(self, values={**self.values, **more})
         found, names = column(map(ca.SX, more.values())), column(symbols.values())
         sparsity = ca.jacobian_sparsity(found, names)
-        into = {key: [output for j, output in enumerate(symbols) if sparsity.has_nz(k, j)] for k, key in enumerate(more)}
+        into = {key: [output for j, output in enumerate(self.open) if sparsity.has_nz(k, j)] for k, key in enumerate(more)}
         placed = ca.substitute(found, names, column(self.values[output] for output in symbols))
         values = {**self.values, **dict(zip(more, ca.vertsplit(placed), strict=True))}
         sums = {key: sum(self.open[output] for output in each) for key, each in into.items() if isinstance(key, Output) and each}
