@@ -1,7 +1,7 @@
 """What certificates read of a scene, without anything that is derived."""
 
 from lagrange_casadi.declare.declared import Declared, equations_of
-from lagrange_casadi.equations.described import described
+from lagrange_casadi.equations.model_data import described
 
 
 def declaration(scene, values):

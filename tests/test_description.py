@@ -8,7 +8,7 @@ import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, motion
 from lagrange_casadi.declare.description import coordinates_of, drives_of, measured_of, motions_of, shape_of
-from lagrange_casadi.equations.described import described
+from lagrange_casadi.equations.model_data import described
 from lagrange_casadi.store.untrusted import check_shape
 
 pytestmark = pytest.mark.quick

@@ -13,7 +13,7 @@ from ..case import load_case
 from ..declare.description import Description, coordinates_of
 from ..declare.scene import Scene, kinds, outputs
 from ..equations.derive import compile_scene
-from ..equations.described import described
+from ..equations.model_data import described
 from ..instants.solution import Solution
 from ..store import runs as store
 from ..studies.sweep import Sweep, is_sweep

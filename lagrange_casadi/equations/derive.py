@@ -14,9 +14,13 @@ from ..arguments import Outputs, public
 from ..base import cache
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
+from ..base.tables import Table, table_of
+from ..declare.density import Density
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
-from ..declare.limits import told_parameters
+from ..declare.limits import END, told_parameters
+from ..declare.parts import Link
+from ..declare.results import Asked
 from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from .bars import bars_of, unaimed
@@ -24,16 +28,17 @@ from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
 from .fingerprint import fingerprint
+from .kinematics import Kinematics
 from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
-from .multibody import column
+from .multibody import Multibody, column
 from .open_forces import Forces
-from .own import own_outputs
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
+from .section_function import Place, Section
 from .stations import gathered
 from .strength import stresses, utilisation
 
@@ -284,3 +289,31 @@ def _felt_alone(key: Column, asked: Wanted) -> bool:
     return (output.group == "reaction" and output.part not in asked.reactions) or (
         output.along and output.part not in asked.sections
     )
+
+
+def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]) -> dict[Column, Any]:
+    """The user's outputs as expressions of an instant, where ``found`` are the columns that they may be made of."""
+    mechanism = body.mechanism
+    asked = [asked for asked in mechanism.asked if any(asked in mechanism.outputs[name].made_of for name in body.own)]
+    values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
+    symbols = column(one.symbol for one in asked)
+    placed = solved.evaluate(column(body.own.values()))
+    return {
+        Output("output", name): value
+        for name, value in zip(body.own, ca.vertsplit(ca.substitute(placed, symbols, values)) if body.own else (), strict=True)
+    }
+
+
+def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table) -> Any:
+    if asked.output.group == "section":
+        link = links[asked.output.part]
+        assert isinstance(link.mass, Density)
+        section = Section(link.name, table, found, link.length, link.mass)
+        # One graph serves both precisions.
+        return section.at(asked.output.member, Place(asked.ratio), END["single"])
+    if asked.output not in found:
+        drives = ", ".join(str(key.part) for key in found if isinstance(key, Output) and key.group == "effort")
+        raise DeclarationError(
+            f"an output is made of {asked.output}, and joint '{asked.output.part}' is no drive; drives: {drives}"
+        )
+    return found[asked.output]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -15,12 +16,12 @@ from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
+from ..beams.beam import beam_of
 from ..beams.material import Material
-from ..beams.told import beam_of
 from ..declare.corners import Corners
 from ..declare.declared import Declared, EquationGraph, equations_of
 from ..declare.density import Density
-from ..declare.description import Description, Template
+from ..declare.description import Description, Template, template_of
 from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
 from ..declare.masses import ALL, masses_of
@@ -31,9 +32,9 @@ from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import UnknownNameError
 from .checks import Column
-from .described import template
 from .gaps import extent
 from .section_function import Section
+from .tree import span
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,3 +211,26 @@ def _jumps(density: Density) -> tuple[float, ...]:
 def _closings(mechanism: Mechanism) -> dict[str, str]:
     kinds = (("bar", mechanism.links), ("path", mechanism.paths), ("joint", mechanism.joints))
     return {name: kind for kind, names in kinds for name in names}
+
+
+@symbolic
+def described(scene: Scene, values: Mapping[str, float]) -> Description:
+    """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
+    return template(scene).filled(values)
+
+
+@symbolic
+@functools.lru_cache(maxsize=32)
+def template(scene: Scene) -> Template:
+    """The description of a scene's mechanism but for its numbers.
+
+    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be none, and the coordinates that are
+    ``unmeasured``.
+    """
+    mechanism = scene.mechanism
+    found = template_of(mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights))
+    if not mechanism.space:
+        return found
+    tree = span(scene.guided, scene.laws)
+    unmeasured = [name for name, (joint, axis) in mechanism.coordinates.items() if not tree.measures(joint, axis)]
+    return replace(found, content=found.content | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured})

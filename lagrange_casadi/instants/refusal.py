@@ -17,14 +17,13 @@ from ..base.vocabulary import Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.ends import share_beyond
-from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
 from ..equations.program import Program
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
 from .backends import Evaluated, run
-from .rules import Rule, rules
+from .rules import Rule, passes_dead_centre, rules
 from .rung import Rung
 
 _JAM = "friction there has no force that holds its law, or several; expected less mu, a longer guide, or a push nearer to its line"

@@ -12,7 +12,11 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
 from ..arithmetic.compensated import ROUNDING
+from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.tables import MOMENT
 from ..base.vocabulary import Precision
@@ -114,3 +118,21 @@ def misfit_limit(precision: Precision, newton: int | None) -> float:
 def open_limit(precision: Precision, newton: int | None) -> float:
     """How far a force may change with what equilibrium leaves open, and be determined: of a moment, of the mechanism's extent."""
     return OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision])
+
+
+NEAR = 0.3
+"""Sines of the transmission angle below which a loop may pass a dead centre."""
+
+
+def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
+    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
+
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
+    last are looked at too, each from its one side.
+    """
+    found = np.zeros(closure.size, dtype=bool)
+    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
+    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
+    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
+    return found

@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from ..declare.scene import Scene, Wanted
 from ..declare.wanted_slopes import SENSITIVITY
-from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
+from ..equations.model_data import described
 from ..errors import DeclarationError, shown
 from ..studies.evaluate import evaluate
 from ..studies.sweep.axes import DESIGN

@@ -26,7 +26,6 @@ from ..equations.derive import assembled, compile_scene
 from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
-from ..instants.cost import seconds
 from ..instants.derivatives import Derivatives
 from ..instants.determinacy import completed, determinate, undetermined
 from ..instants.from_table import columns
@@ -34,7 +33,7 @@ from ..instants.holding import holding
 from ..instants.ordering import in_order
 from ..instants.phases import phases
 from ..instants.refusal import refuse
-from ..instants.rung import Rung
+from ..instants.rung import Rung, seconds
 from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance

@@ -15,7 +15,6 @@ from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
 from ...codegen.stages import Stages, compensated, plain, turns_many
-from ...equations.dead_centres import NEAR
 from ...equations.mobility import stations_of
 from ...equations.model_data import ModelData
 from ...equations.program import Program
@@ -23,7 +22,7 @@ from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
 from ...instants.refusal import Status
-from ...instants.rules import rules
+from ...instants.rules import NEAR, rules
 from ...instants.rung import Rung
 from ...summits.sharpness import Sharpness
 
