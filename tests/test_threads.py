@@ -86,6 +86,37 @@ def test_no_constant_is_dropped_while_another_thread_asks_for_it(times):
     assert done.returncode == 0, done.stderr
 
 
+def test_properties_of_expressions_wait_for_one_lock():
+    """A thread that makes expressions reads a property of one scene, while another waits within that property of another one."""
+    done = subprocess.run(
+        [sys.executable, "-c", IN_TURN], cwd=Path(__file__).parent, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+IN_TURN = """
+import threading
+import casadi as ca
+from lagrange_casadi import symbolic
+from lagrange_casadi.declare.kinks import Smooth
+from threaded import press
+
+scenes, moving = [press(0), press(1)], ca.SX.sym("t")
+demands = [scene.demands() for scene in scenes]
+smooth = [Smooth.of(ca.fabs(k * moving), moving, ca.SX(0, 1)) for k in (1, 2)]
+pairs = dict.fromkeys(("laws", "guided", "prescribed", "span"), scenes) | {"function": demands, "_bends": smooth}
+for name, (first, second) in pairs.items():
+    for whole in (first, second):
+        vars(whole).pop(name, None)
+    other = threading.Thread(target=getattr, args=(first, name), daemon=True)
+    with symbolic:
+        other.start()
+        other.join(0.2)
+        getattr(second, name)
+    other.join()
+"""
+
+
 WAYS = {
     "evaluate": lambda scene, folder: evaluate(scene, wanted=["effort", "sensitivity"]),
     "interpreted": lambda scene, folder: evaluate(scene, backend="vm"),

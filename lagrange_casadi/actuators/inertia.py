@@ -15,7 +15,6 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from ..declare.times import Over, Times, instants_of
@@ -97,7 +96,7 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
     driven = tuple(c.name for c in body.coordinates if c.driven)
-    laws = Laws.of({name: scene.laws[name] for name in driven}, mechanism.symbols)
+    laws = scene.prescribed.only(driven)
     values = list(mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)

@@ -14,6 +14,7 @@ import casadi as ca
 
 from .interpret import Arithmetic, interpret
 from .lookups import Lookup
+from .scalars import applied
 
 Box = tuple[Any, Any]
 
@@ -25,10 +26,6 @@ _RISING = {ca.OP_SQRT, ca.OP_LOG, ca.OP_LOG1P, ca.OP_EXP, ca.OP_EXPM1, ca.OP_SIN
 _RISING |= {ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_ERF}
 _STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASSIGN, ca.OP_TWICE}
 """What rises with its operands, and rounds nothing."""
-
-_BINARY = {ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV, ca.OP_POW, ca.OP_CONSTPOW, ca.OP_ATAN2, ca.OP_HYPOT, ca.OP_FMIN, ca.OP_FMAX}
-_BINARY |= {ca.OP_FMOD, ca.OP_REMAINDER, ca.OP_COPYSIGN, ca.OP_IF_ELSE_ZERO}
-_BINARY |= {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR}
 
 
 def boxed(function: Any) -> tuple[list[Any], list[Box], Any]:
@@ -109,7 +106,7 @@ class _Boxes:
 
     def _monotone(self, code: int, exact: bool = False) -> Callable[..., Box]:
         def rule(*boxes: Box) -> Box:
-            found = tuple(_applied(code, ends) for ends in zip(*boxes, strict=True))
+            found = tuple(applied(code, *ends) for ends in zip(*boxes, strict=True))
             return (found[0], found[1]) if exact else self.wider(found)
 
         return rule
@@ -168,16 +165,12 @@ class _Boxes:
         return ca.SX(min(table.numbers)), ca.SX(max(table.numbers))
 
 
-def _applied(code: int, operands: Any) -> Any:
-    return ca.SX.binary(code, *operands) if code in _BINARY else ca.SX.unary(code, *operands)
-
-
 def _once(code: int, rule: Callable[..., Box]) -> Callable[..., Box]:
     """What is known to the last bit is computed as it is elsewhere."""
 
     def ruled(*boxes: Box) -> Box:
         if all(box[0] is box[1] for box in boxes):
-            return (_applied(code, [box[0] for box in boxes]),) * 2
+            return (applied(code, *(box[0] for box in boxes)),) * 2
         return rule(*boxes)
 
     return ruled

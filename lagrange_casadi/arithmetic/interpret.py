@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,19 +18,22 @@ import numpy as np
 
 from ..errors import DeclarationError
 from .lookups import Lookup, lookup
+from .scalars import applied
 
 
 @dataclass(frozen=True)
 class Step:
     """An instruction: what it does (one of CasADi's ``OP_`` codes), the places it reads, the place it writes, and its number.
 
-    Of an input or output the places are those of argument and nonzero. Of a call there is the table that it looks up, if it does.
+    Of an input or output the places are those of argument and nonzero. Of a call there is the function, and the table if it looks
+    one up.
     """
 
     operation: int
     arguments: tuple[int, ...]
     results: tuple[int, ...]
     constant: float = 0.0
+    called: Any = None
     looked_up: Lookup | None = None
 
 
@@ -60,10 +63,10 @@ def steps(function: Any) -> tuple[Step, ...]:
         operation = function.instruction_id(k)
         if operation == ca.OP_CALL:
             written = function.instructions_sx() if written is None else written
-        looked_up = lookup(written[k].which_function()) if operation == ca.OP_CALL else None
+        called = written[k].which_function() if operation == ca.OP_CALL else None
         number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
         places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))
-        found.append(Step(operation, *places, number, looked_up))
+        found.append(Step(operation, *places, number, called, lookup(called) if called is not None else None))
     return tuple(found)
 
 
@@ -73,54 +76,71 @@ def followable(function: Any) -> bool:
     return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN or step.looked_up for step in steps(function))
 
 
+def replay(function: Any, inputs: Sequence[Sequence[Any]], made: Callable[[int, Step, list[Any]], Any]) -> list[list[Any]]:
+    """The nonzeros of every output of an SX function, from those of its inputs.
+
+    ``made`` makes the value of every other step of its number, the step and its operands: a list if the step has several results.
+    """
+    work: dict[int, Any] = {}
+    outputs: list[list[Any]] = [[None] * function.nnz_out(i) for i in range(function.n_out())]
+    for k, step in enumerate(steps(function)):
+        if step.operation == ca.OP_INPUT:
+            work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
+        elif step.operation == ca.OP_OUTPUT:
+            outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
+        else:
+            value = made(k, step, [work[place] for place in step.arguments])
+            if len(step.results) == 1:
+                work[step.results[0]] = value
+            else:
+                work |= zip(step.results, value, strict=True)
+    return outputs
+
+
 def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic) -> list[list[Any]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
     Raises :class:`DeclarationError` where the function calls another one, or does what the arithmetic has no name for.
     """
-    work: dict[int, Any] = {}
-    outputs: list[list[Any]] = [[arithmetic.constant(0.0)] * function.nnz_out(i) for i in range(function.n_out())]
-    for step in steps(function):
-        if (rule := arithmetic.operations.get(step.operation)) is not None and step.operation != ca.OP_CALL:
-            work[step.results[0]] = rule(*[work[place] for place in step.arguments])
-        elif step.operation == ca.OP_CONST:
-            work[step.results[0]] = arithmetic.constant(step.constant)
-        elif step.operation == ca.OP_INPUT:
-            work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
-        elif step.operation == ca.OP_OUTPUT:
-            outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
-        elif rule is not None and step.looked_up is not None:
-            work[step.results[0]] = rule(step.looked_up, *[work[place] for place in step.arguments])
-        else:
-            unknown = f"takes {operation_name(step.operation)}, unknown here"
-            what = "calls another one" if step.operation == ca.OP_CALL else unknown
-            raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
-    return outputs
+
+    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+        rule = arithmetic.operations.get(step.operation)
+        if rule is not None and step.operation != ca.OP_CALL:
+            return rule(*operands)
+        if step.operation == ca.OP_CONST:
+            return arithmetic.constant(step.constant)
+        if rule is not None and step.looked_up is not None:
+            return rule(step.looked_up, *operands)
+        unknown = f"takes {operation_name(step.operation)}, unknown here"
+        what = "calls another one" if step.operation == ca.OP_CALL else unknown
+        raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
+
+    return replay(function, inputs, made)
 
 
-def operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, list[Any]]]:
+def expressed(step: Step, operands: Sequence[Any]) -> Any:
+    """The expression of a step that is no call, but of a table, from the expressions that it reads."""
+    if step.operation == ca.OP_CONST:
+        return ca.SX(step.constant)
+    return step.looked_up.function(*operands) if step.looked_up is not None else applied(step.operation, *operands)
+
+
+def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any]]]:
     """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is applied to.
 
     Of a table's cell (``OP_CALL``) the second is the numbers between its cells.
     """
-    work: dict[int, Any] = {}
-    for step in steps(function):
-        if step.operation == ca.OP_OUTPUT:
-            continue
-        if step.operation == ca.OP_CONST:
-            found = ca.SX(step.constant)
-        elif step.operation == ca.OP_INPUT:
-            found = inputs[step.arguments[0]].nz[step.arguments[1]]
-        elif step.looked_up is not None:
-            operands = [work[place] for place in step.arguments]
-            if step.looked_up.kind == "cell":
-                yield ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]
-            found = step.looked_up.function(*operands)
-        else:
-            operands = [work[place] for place in step.arguments]
-            yield step.operation, operands
-            found = ca.SX.unary(step.operation, *operands) if len(operands) == 1 else ca.SX.binary(step.operation, *operands)
-        work[step.results[0]] = found
+    found: list[tuple[int, list[Any]]] = []
+
+    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+        if step.looked_up is None and step.operation != ca.OP_CONST:
+            found.append((step.operation, operands))
+        elif step.looked_up is not None and step.looked_up.kind == "cell":
+            found.append((ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]))
+        return expressed(step, operands)
+
+    replay(function, [given.nonzeros() for given in inputs], made)
+    return found
 
 
 def written_out(expression: Any) -> Any:
@@ -142,31 +162,23 @@ def _has_expression(function: Any) -> bool:
 
 def _written_out(function: Any, inputs: Sequence[Any]) -> list[Any]:
     """Return the outputs of an SX function of expressions, with what it calls written out."""
-    written, work = function.instructions_sx(), dict[int, Any]()
-    outputs = [ca.SX(function.sparsity_out(k)) for k in range(function.n_out())]
-    for k in range(function.n_instructions()):
-        operation, places, results = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
-        if operation == ca.OP_OUTPUT:
-            outputs[results[0]].nz[results[1]] = work[places[0]]
-        elif operation == ca.OP_CONST:
-            work[results[0]] = ca.SX(function.instruction_constant(k))
-        elif operation == ca.OP_INPUT:
-            work[results[0]] = ca.SX(inputs[places[0]]).nz[places[1]]
-        elif operation == ca.OP_CALL:
-            called = written[k].which_function()
-            values = iter([work[place] for place in places])
-            given = [ca.SX(called.sparsity_in(i), _column(values, called.nnz_in(i))) for i in range(called.n_in())]
-            found = _written_out(called, given) if _has_expression(called) else called.call(given)
-            every = [row.nz[i] for row in found for i in range(row.nnz())]
-            work |= {place: value for place, value in zip(results, every, strict=True) if place >= 0}
-        else:
-            operands = [work[place] for place in places]
-            work[results[0]] = ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
-    return outputs
+
+    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+        called = step.called
+        if called is None:
+            return expressed(step, operands)
+        values = iter(operands)
+        given = [_filled(called.sparsity_in(i), itertools.islice(values, called.nnz_in(i))) for i in range(called.n_in())]
+        found = _written_out(called, given) if _has_expression(called) else called.call(given)
+        every = [value for row in found for value in row.nonzeros()]
+        return every if len(step.results) > 1 else every[0]
+
+    outputs = replay(function, [given.nonzeros() for given in inputs], made)
+    return [_filled(function.sparsity_out(i), nonzeros) for i, nonzeros in enumerate(outputs)]
 
 
-def _column(values: Iterator[Any], count: int) -> Any:
-    return ca.vertcat(ca.SX(0, 1), *itertools.islice(values, count))
+def _filled(sparsity: Any, nonzeros: Iterable[Any]) -> Any:
+    return ca.SX(sparsity, ca.vertcat(ca.SX(0, 1), *nonzeros))
 
 
 def operation_name(operation: int) -> str:

@@ -39,6 +39,11 @@ def products_less(a: Any, b: Any, c: Any, d: Any) -> Any:
     return less(product(a, b), product(c, d))
 
 
+def applied(operation: int, *operands: Any) -> Any:
+    """An operation, by CasADi's ``OP_`` code, of one or two expressions."""
+    return ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)
+
+
 def as_expression(value: Any) -> Any:
     """A number as an expression, an expression as it is."""
     return value if isinstance(value, _SX) else _SX(value)

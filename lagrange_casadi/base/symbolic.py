@@ -11,9 +11,13 @@ import inspect
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
+Value = TypeVar("Value")
 
 _lock = threading.RLock()
 _dropped: deque[dict[str, Any]] = deque()
@@ -50,6 +54,30 @@ class _Symbolic:
 
 
 symbolic = _Symbolic()
+
+
+class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like cached_property
+    """Property that makes expressions when it is first read, and is kept with its object.
+
+    Until Python 3.12 a ``cached_property`` has a lock of its own. Two threads that take it and that of expressions in turn would
+    wait for each other; here there is one lock.
+    """
+
+    @overload
+    def __get__(self, instance: None, owner: type[Any] | None = None) -> Self: ...
+
+    @overload
+    def __get__(self, instance: object, owner: type[Any] | None = None) -> Value: ...
+
+    def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
+        """Return the value, which is made once."""
+        if instance is None:
+            return self
+        with symbolic:
+            kept, name = vars(instance), str(self.attrname)
+            if name not in kept:
+                kept[name] = self.func(instance)
+            return kept[name]
 
 
 class Graphs:

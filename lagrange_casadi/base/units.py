@@ -7,7 +7,7 @@ import re
 from contextlib import suppress
 from decimal import Decimal, DecimalException
 from numbers import Integral
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias, TypeGuard
 
 import casadi as ca
 import numpy as np
@@ -96,9 +96,9 @@ def in_words(unit: str) -> str:
 
 def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
     """A whole number in a range. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
-    if not is_whole(value) or abs(value) >= 2**63 or not least <= value <= most:  # type: ignore[operator, arg-type]
+    if not is_whole(value) or abs(value) >= 2**63 or not least <= value <= most:
         raise DeclarationError(f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}")
-    return int(value)  # type: ignore[call-overload, no-any-return]
+    return int(value)
 
 
 def within(what: str, value: object, low: float, high: float) -> float:
@@ -109,7 +109,7 @@ def within(what: str, value: object, low: float, high: float) -> float:
     return found
 
 
-def is_whole(value: object) -> bool:
+def is_whole(value: object) -> TypeGuard[int]:
     """Whether it is a whole number, of whatever size, and no truth value."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 

@@ -120,7 +120,7 @@ class Reduction:
 def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
     """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
     parts = Parts.of(graph, stages)
-    text = emit(graph, stages, newton)
+    text = emit(graph, stages, newton, parts)
     text += print_functions({"matter_of": reduction.matter}, stages.precision, prefix="matter", packs=True)
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})

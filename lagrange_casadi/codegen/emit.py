@@ -213,14 +213,14 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
 """
 
 
-def emit(graph: Program, stages: Stages | None = None, newton: int | None = None) -> str:
+def emit(graph: Program, stages: Stages | None = None, newton: int | None = None, parts: Parts | None = None) -> str:
     """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi.
 
     ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps iterated loops take an
     instant, None for as many as they need.
     """
     stages = plain(graph) if stages is None else stages
-    parts = Parts.of(graph, stages)
+    parts = parts or Parts.of(graph, stages)
     sizes, single = parts.sizes, stages.precision == "single"
     text = (_START_SINGLE if single else "") + START + INSTANTS.text(sizes["real"])
     text += print_functions(parts.narrow, stages.precision, prefix="follow")

@@ -128,10 +128,6 @@ def source(precision: Precision) -> str:
 
 
 _PRELUDE = """\
-#include <math.h>
-#ifndef CASADI_SYMBOL_EXPORT
-#define CASADI_SYMBOL_EXPORT
-#endif
 typedef lanes_real search_real;
 #ifdef LANES_SINGLE
 #define SEARCH_FABS fabsf

@@ -23,6 +23,7 @@ import numpy as np
 from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
+from ..arithmetic.scalars import applied
 from ..base.arrays import Array
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
@@ -237,8 +238,7 @@ class _Counting:
         )
 
     def _plain(self, code: int, values: Sequence[_Value]) -> Any:
-        operands = [self.settled(value) for value in values]
-        return ca.SX.unary(code, *operands) if len(operands) == 1 else ca.SX.binary(code, *operands)
+        return applied(code, *map(self.settled, values))
 
     def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Any:
         """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest others take their place."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -15,7 +14,7 @@ import numpy as np
 
 from ..arithmetic.boxes import boxed
 from ..base.arrays import Array
-from ..base.symbolic import symbolic
+from ..base.symbolic import symbolic_property
 from .limits_beside import Flags
 
 _STRETCHES = 64
@@ -45,8 +44,7 @@ class Clearance:
         self._marks, self._whole, self._open = marks, whole, open_
         self._kept = _Kept()
 
-    @cached_property
-    @symbolic
+    @symbolic_property
     def _near(self) -> Any:
         """The function ``(low, high, p, most) -> (near, most)`` of bounds of what is seen: whether any mark may come near.
 

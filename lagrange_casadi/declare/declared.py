@@ -1,6 +1,6 @@
 """A mechanism as its certificate reads it: straight from the declaration, as numbers in space; a plane is z = 0.
 
-Nothing here comes from the derivation, so a wrong derivation cannot hide. A :class:`Declaration` serves any values of the
+Nothing here comes from the derivation, so a wrong derivation cannot hide. An :class:`EquationGraph` serves any values of the
 parameters; :class:`Declared` are the numbers for some values.
 """
 

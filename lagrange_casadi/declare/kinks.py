@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..base.arrays import Array
-from ..base.symbolic import symbolic
+from ..base.symbolic import symbolic_property
 from ..errors import DeclarationError
 from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
@@ -166,8 +166,7 @@ class Smooth:
     def _named(self, place: Array) -> dict[str, float]:
         return {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)}
 
-    @cached_property
-    @symbolic
+    @symbolic_property
     def _bends(self) -> Any:
         """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second one along a way."""
         x, p, way = self.turns.sx_in()
@@ -175,7 +174,7 @@ class Smooth:
         along = ca.jtimes(ca.dot(slopes[1:], way), x, way)
         return ca.Function("bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True})
 
-    @cached_property
+    @symbolic_property
     def clearance(self) -> Clearance:
         """Tells along which paths no mark comes near to where it passes, at a small part of the cost of looking for kinks."""
         return Clearance(self.marks, self.whole, self.open)

@@ -43,13 +43,18 @@ class Laws(Graphs):
         return max(lows), min(highs)
 
     @symbolic
-    def only(self, joint: str) -> Laws:
-        """The law of one of the drives."""
-        k = self.joints.index(joint)
+    def only(self, joints: Sequence[str]) -> Laws:
+        """The laws of some of the drives, in an order of their own."""
+        if self.joints == tuple(joints):
+            return self
         t, p = self.motion.sx_in()
-        motion = ca.Function("motion", [t, p], [row[k] for row in self.motion(t, p)], *_NAMES, {"cse": True})
-        beyond = None if self.beyond is None else ca.Function("beyond", [t, p], [self.beyond(t, p)[k]], ["t", "p"], ["beyond"])
-        return Laws((joint,), motion, (self.spans[k],), (self.knots[k],), beyond)
+        some = [self.joints.index(joint) for joint in joints]
+        motion = ca.Function("motion", [t, p], [row[some] for row in self.motion(t, p)], *_NAMES, {"cse": True})
+        beyond = None
+        if self.beyond is not None:
+            beyond = ca.Function("beyond", [t, p], [self.beyond(t, p)[some]], ["t", "p"], ["beyond"], {"cse": True})
+        spans, knots = tuple(self.spans[k] for k in some), tuple(self.knots[k] for k in some)
+        return Laws(tuple(joints), motion, spans, knots, beyond)
 
     @symbolic
     def jerk(self) -> Any:

@@ -7,14 +7,13 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
 
 from ..base.numerals import readable
-from ..base.symbolic import Graphs, symbolic
+from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.vocabulary import Precision
 from ..errors import ParameterError
 from ..geometry.vectors import dot, nil
@@ -51,7 +50,7 @@ class Demands:
     symbols: Any
     each: tuple[Demand, ...]
 
-    @cached_property
+    @symbolic_property
     def function(self) -> Any:
         """``possible(p)``: the value of each demand."""
         values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))

@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Arithmetic, interpret, steps
+from ..arithmetic.scalars import applied
 from ..errors import DeclarationError
 
 Polynomial = tuple[Any, ...]
@@ -52,7 +53,7 @@ def _alone(operation: int) -> Callable[..., Polynomial]:
         numbers = [value[0] for value in values]
         if looked_up:
             return (looked_up[0].function(*numbers),)
-        return (ca.SX.unary(operation, *numbers) if len(numbers) == 1 else ca.SX.binary(operation, *numbers),)
+        return (applied(operation, *numbers),)
 
     return apply
 

@@ -87,7 +87,7 @@ class Reaching:
     @functools.lru_cache(maxsize=64)
     def of(cls, laws: Laws, joint: str) -> Reaching:
         """Return the law of a drive, to be inverted."""
-        one = laws.only(joint)
+        one = laws.only([joint])
         law, (span,) = one.motion, one.spans
         t, p = law.sx_in()
         d, rate, _ = law(t, p)

@@ -6,12 +6,11 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
 from ..arguments import Outputs, fitting, public, texts
-from ..base.symbolic import Graphs, symbolic
+from ..base.symbolic import Graphs, symbolic, symbolic_property
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import number, within
 from ..base.vocabulary import Precision
@@ -30,7 +29,7 @@ from .parts import Expression, Friction
 from .possible import Demands, demands
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
-from .times import TURNS, Over, Times, Timing, prescribed, prescribed_span
+from .times import TURNS, Over, Times, Timing, span_of
 from .wanted_slopes import SENSITIVITY, others, sensitivities
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
@@ -295,17 +294,17 @@ class Scene(Graphs):
         if not timing.shared:
             self.span  # noqa: B018 - it refuses what has no instants
 
-    @cached_property
+    @symbolic_property
     def laws(self) -> Mapping[str, Motion]:
         """The laws of motion by joint, those of the guides of points and poses too (:mod:`.guiding`)."""
         return MappingProxyType(laws_of(self.mechanism, self.motion))
 
-    @property
+    @symbolic_property
     def prescribed(self) -> Laws:
         """These laws as functions of time and the parameters."""
-        return prescribed(self)
+        return Laws.of(self.laws, self.mechanism.symbols)
 
-    @cached_property
+    @symbolic_property
     def guided(self) -> Mechanism:
         """The mechanism, with the guides of points and poses whose motion is given."""
         return guided(self.mechanism, self.motion)
@@ -357,10 +356,10 @@ class Scene(Graphs):
             raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
         return Timing.of(self.guided, self.laws, self.t if t is None else t, self.over if t is None and over is None else over)
 
-    @property
+    @symbolic_property
     def span(self) -> tuple[float, float]:
         """Its own first and last instant [s], with the parameters with which it is assembled."""
-        return prescribed_span(self)
+        return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def demands(self, precision: Precision = "double") -> Demands:
         """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""

@@ -17,7 +17,6 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.brief import Brief
-from ..base.symbolic import symbolic
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, UnknownNameError, shown
@@ -312,18 +311,3 @@ def _text(written: str, symbols: Any) -> str:
 
 def _row(values: Mapping[str, float]) -> Array:
     return np.array(list(values.values()), float)[None]
-
-
-# No properties that are kept: their lock and that of expressions would wait for each other.
-@symbolic
-@functools.lru_cache(maxsize=64)
-def prescribed(scene: Any) -> Laws:
-    """Return the laws of a scene as functions of time and the parameters."""
-    return Laws.of(scene.laws, scene.mechanism.symbols)
-
-
-@symbolic
-@functools.lru_cache(maxsize=64)
-def prescribed_span(scene: Any) -> tuple[float, float]:
-    """Return the first and last instant of a scene [s], with the parameters with which it is assembled."""
-    return span_of(prescribed(scene), scene.timing(), scene.mechanism.values(scene.assembly))

@@ -13,7 +13,6 @@ import casadi as ca
 import numpy as np
 
 from ..base.symbolic import symbolic
-from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 
 
@@ -52,7 +51,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         _spell(content, words, expressions)
     except _UntoldError:
         return None
-    laws = motion_function(scene.laws, mechanism.symbols)
+    laws = scene.prescribed.motion
     if any(f.class_name() in _UNTOLD for f in [laws, *laws.find_functions()]):
         return None
     written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))

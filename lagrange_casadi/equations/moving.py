@@ -40,7 +40,6 @@ class Moving:
     scene: Scene
     want: Wanted
     body: Multibody
-    driven: tuple[str, ...]
     laws: Laws
     start: Start
     solved: kinematics.Kinematics
@@ -52,15 +51,14 @@ class Moving:
         mechanism, tree = scene.mechanism, span(scene.guided, scene.laws)
         borne = needed_reactions(mechanism, want.reactions, want.sections)
         body = assemble(scene.guided, tree, scene.laws, borne, pushed(scene.needs_drives, scene.weights), want.own)
-        driven = tuple(c.name for c in body.coordinates if c.driven)
-        laws = Laws.of({name: scene.laws[name] for name in driven}, mechanism.symbols)
+        laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
         motion = laws.motion
         values = list(mechanism.values(scene.assembly).values())
         first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
         start = Start(scene.span[0], first, values)
         solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
         solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
-        return cls(scene, want, body, driven, laws, start, solved, swings)
+        return cls(scene, want, body, laws, start, solved, swings)
 
     @property
     def inputs(self) -> list[Any]:
@@ -105,7 +103,7 @@ class Moving:
     def _motions(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
         """Motions and poses; and of angles that loops set, how often each coordinate's turns go into them."""
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
-        motions, kinds = _motion_columns(mechanism, body, solved, self.driven), kinds_of(mechanism)
+        motions, kinds = _motion_columns(mechanism, body, solved, self.laws.joints), kinds_of(mechanism)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}

@@ -69,7 +69,7 @@ class Program(Graphs):
 
     @property
     def laws(self) -> Laws:
-        """The motions of the drives; what samples give stands apart from what can be followed in any arithmetic."""
+        """The motions of the drives."""
         return self.data.laws
 
     @property

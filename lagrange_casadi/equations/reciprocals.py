@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.interpret import Step, followable, steps
+from ..arithmetic.interpret import Step, expressed, followable, replay, steps
 from ..arithmetic.scalars import less, product
 from ..base.symbolic import symbolic
 
@@ -30,15 +30,15 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
     uses = Counter(divisor for divisor, _ in divisors.values())
     inverses: dict[int, Any] = {}
 
-    def made(k: int, operation: int, operands: list[Any]) -> Any:
+    def made(k: int, step: Step, operands: list[Any]) -> Any:
         if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
             x = operands[-1]
             # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
             inverse = inverses.setdefault(divisors[k][0], ca.SX.binary(ca.OP_COPYSIGN, ca.SX.binary(ca.OP_DIV, 1.0, x), x))
-            return product(operands[0], inverse) if operation == ca.OP_DIV else inverse
-        if operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
+            return product(operands[0], inverse) if step.operation == ca.OP_DIV else inverse
+        if step.operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
             return less(operands[0].dep(1), operands[0].dep(0))
-        return _applied(operation, operands)
+        return expressed(step, operands)
 
     return _replayed(function, made)
 
@@ -52,35 +52,19 @@ def differentiable(function: Any) -> Any:
     if not followable(function):
         return function
 
-    def made(_k: int, operation: int, operands: list[Any]) -> Any:
-        if operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
+    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+        if step.operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
             return operands[0]
-        return _applied(operation, operands)
+        return expressed(step, operands)
 
     return _replayed(function, made)
 
 
-def _applied(operation: int, operands: list[Any]) -> Any:
-    return ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
-
-
-def _replayed(function: Any, made: Callable[[int, int, list[Any]], Any]) -> Any:
-    """The function of one output again, with what ``made`` makes of the number of a step, its operation and its operands."""
+def _replayed(function: Any, made: Callable[[int, Step, list[Any]], Any]) -> Any:
+    """The function of one output again, with what ``made`` makes of the number of a step, the step and its operands."""
     inputs = function.sx_in()
-    work: dict[int, Any] = {}
-    out = ca.SX(function.sparsity_out(0))
-    for k, step in enumerate(steps(function)):
-        operation, arguments, results = step.operation, step.arguments, step.results
-        if operation == ca.OP_OUTPUT:
-            out.nz[results[1]] = work[arguments[0]]
-        elif operation == ca.OP_CONST:
-            work[results[0]] = ca.SX(step.constant)
-        elif operation == ca.OP_INPUT:
-            work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
-        elif step.looked_up is not None:
-            work[results[0]] = step.looked_up.function(work[arguments[0]])
-        else:
-            work[results[0]] = made(k, operation, [work[a] for a in arguments])
+    (nonzeros,) = replay(function, [given.nonzeros() for given in inputs], made)
+    out = ca.SX(function.sparsity_out(0), ca.vertcat(ca.SX(0, 1), *nonzeros))
     names = [function.name_in(i) for i in range(function.n_in())]
     return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
 

@@ -27,7 +27,6 @@ from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.measures import Measures
 from ..declare.mechanism import Mechanism
-from ..declare.motion import motion_function
 from ..declare.parts import Body, Expression, Friction, Link, Load, Point
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
@@ -283,7 +282,7 @@ class _Search:
         body = assemble(mechanism, span(mechanism, scene.laws), scene.laws, ())
         values, t = list(scene.mechanism.values(scene.assembly).values()), scene.span[0]
         driven = [c for c in body.coordinates if c.driven]
-        motion = motion_function({c.name: scene.laws[c.name] for c in driven}, mechanism.symbols)
+        motion = scene.prescribed.only([c.name for c in driven]).motion
         posture = reference_posture(scene.mechanism) | dict(scene.posture)
         told = {c: posture[c.told_as] for c in body.coordinates if c.told_as in posture}
         told |= dict(zip(driven, ca.DM(motion(t, values)[0]).full().ravel(), strict=True))

@@ -18,11 +18,11 @@ from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
-import numpy as np
 
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, Terms, table_of
+from ..beams.properties import larger, smaller
 from ..declare.density import Density
 from .checks import Column
 from .mobility import stations_of
@@ -39,10 +39,7 @@ def edge(ratio: Any, slack: float, side: Side = "tip") -> Any:
     feel what acts there, on the base's side it does. At the ends of a link there is one value: a section at the tip feels
     what acts at the tip, and no section feels what acts at the base.
     """
-    symbolic = isinstance(ratio, ca.SX)
-    if side == "tip":
-        return (ca.fmin if symbolic else np.minimum)(ratio + slack, 1.0 - slack)
-    return (ca.fmax if symbolic else np.maximum)(ratio - slack, slack)
+    return smaller(ratio + slack, 1.0 - slack) if side == "tip" else larger(ratio - slack, slack)
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ def end_slopes(laws: Laws, timing: Timing, first: float, last: float, p: Array) 
     bounds = timing.bound_slopes(p)
     if not timing.joint:
         return bounds
-    motion = laws.only(timing.joint).motion
+    motion = laws.only([timing.joint]).motion
     rates = np.array([float(motion(time, p)[1]) for time in (first, last)])
     t, values = motion.sx_in()
     slope = ca.Function("slope", [t, values], [ca.densify(ca.jacobian(motion(t, values)[0], values))])
@@ -37,7 +37,7 @@ def end_bends(laws: Laws, timing: Timing, first: float, last: float, p: Array) -
     t, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)
     along: Any = t
     if timing.joint:
-        along = laws.only(timing.joint).motion(t, values)[0]
+        along = laws.only([timing.joint]).motion(t, values)[0]
     found = []
     for time, bound in zip((first, last), timing.ends(values), strict=True):
         hessian, gradient = ca.hessian(ca.SX(along - bound), ca.vertcat(t, values))

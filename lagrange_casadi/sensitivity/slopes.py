@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .. import codegen
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.symbolic import symbolic_property
 from ..codegen.stages import plain
 from ..equations.program import Program
 from ..instants.backends import compiled
@@ -98,7 +99,7 @@ class Slopes:
             self._single[number] = PointFunction.of(self.graph, self.points.quantities[number : number + 1])
         return self._single[number]
 
-    @cached_property
+    @symbolic_property
     def _single(self) -> dict[int, PointFunction]:
         """Those that were asked for, by number."""
         return {}

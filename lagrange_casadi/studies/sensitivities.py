@@ -11,6 +11,7 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.symbolic import symbolic_property
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..equations.derive import assembled, compile_scene
@@ -180,7 +181,7 @@ class Sensitivities:
             found[some] = at(solution.t[rows[some]], self._iterated[rows[some]], chosen, xi[some])
         return found if output.group != "section" else found.reshape(solution.t.size, along.size, *size)
 
-    @cached_property
+    @symbolic_property
     def _curvatures(self) -> Curvatures:
         return Curvatures.of(self.slopes, self.rung)
 

@@ -20,6 +20,7 @@ from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
 from ...base.room import cores, require
+from ...base.symbolic import symbolic_property
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
@@ -321,7 +322,7 @@ class DesignEngine:
             if array is not None:
                 array[some] = np.nan
 
-    @cached_property
+    @symbolic_property
     def slopes(self) -> Slopes:
         """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
         return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
@@ -330,7 +331,7 @@ class DesignEngine:
         """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
         return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
 
-    @cached_property
+    @symbolic_property
     def curvatures(self) -> Curvatures:
         """Their second derivatives at points; they are derived and compiled when they are first asked for."""
         return Curvatures.of(self.slopes, self.rung)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
+from ...base.symbolic import symbolic_property
 from ...base.vocabulary import Backend, Precision
 from ...declare.scene import Scene, without_fitted, without_life
 from ...declare.times import Over, Times
@@ -64,7 +65,7 @@ class Gradient:
     look: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
     add_up: Callable[[], MeanSlopes] = field(repr=False)
 
-    @cached_property
+    @symbolic_property
     def tied(self) -> npt.NDArray[np.bool_]:
         """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
 
@@ -82,7 +83,7 @@ class Gradient:
         """Those of their roots of mean squares; NaN where that is 0."""
         return self._named(self._means.rms)
 
-    @cached_property
+    @symbolic_property
     def _means(self) -> MeanSlopes:
         return self.add_up()
 

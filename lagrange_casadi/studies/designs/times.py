@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.symbolic import symbolic_property
 from ...declare.even_points import are_even
 from ...declare.laws import Laws
 from ...declare.reaching import Reaching
@@ -26,7 +26,7 @@ class DesignTimes:
     values: Mapping[str, float]
     timing: Timing
 
-    @cached_property
+    @symbolic_property
     def law(self) -> Reaching | None:
         """The law of the drive that they go by, if any."""
         joint = self.timing.joint
@@ -39,7 +39,7 @@ class DesignTimes:
             return self.timing.fixed
         return not self.law.varies and (self.law.steady or not isinstance(self.timing.around, str))
 
-    @cached_property
+    @symbolic_property
     def default(self) -> tuple[Array, Array]:
         """Those of the parameters' defaults as they are asked for, and as many in equal steps of time, each (t,).
 

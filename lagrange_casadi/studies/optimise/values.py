@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ...base.quantities import Output
-from ...base.symbolic import symbolic
+from ...base.symbolic import symbolic, symbolic_property
 from ...base.tables import table_of
 from ...declare.limits import END
 from ...equations.checks import Column
@@ -133,7 +133,7 @@ class PointValues:
         found = [out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k] for name, k in names.items()]
         return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
 
-    @cached_property
+    @symbolic_property
     def _instant(self) -> Any:
         return differentiable(self.graph.instant)
 
@@ -155,7 +155,7 @@ class PointValues:
         found = at_drives.call([t, d, rate, acceleration, z, p, xi, place])
         return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
 
-    @cached_property
+    @symbolic_property
     def _span(self) -> Any:
         """The first and the last instant as functions of the parameters.
 
@@ -176,7 +176,7 @@ class PointValues:
             ends = [(bound - d) / rate for bound in ends]
         return ca.Function("span", [symbols], [ca.densify(ca.SX(end)) for end in ends])
 
-    @cached_property
+    @symbolic_property
     def _loops(self) -> Any:
         """The loops' solution near a guess."""
         assert self.graph.newton is not None
