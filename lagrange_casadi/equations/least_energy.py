@@ -52,14 +52,14 @@ _POINTS = ("revolute", "spherical", "universal", "weld")
 
 
 def feeling(mechanism: Mechanism, want: Wanted) -> Wanted:
-    """What is wanted, and all section forces and reactions, by which it is found what is open."""
+    """Add to what is wanted all section forces and reactions, by which it is found what is open."""
     sections = tuple(name for name, link in mechanism.links.items() if isinstance(link.mass, Density))
     return replace(want, reactions=tuple(mechanism.joints), sections=sections)
 
 
 @dataclass(frozen=True, eq=False)
 class LeastEnergy:
-    """What is open as ``x + ways y``: chosen by least energy, and by what stays open, ``y``; ways of what does not are nil.
+    """Choice of what is open as ``x + ways y``: ``x`` by least energy, ``y`` by what stays open; ways of what does not are nil.
 
     Of each link whose stiffness is not known, ``firm`` says why, and ``through`` whether it is loaded by what is open. ``idle``
     and ``chosen`` tell whether something of it loads no link, and whether something was chosen. ``residual`` is how far the energy
@@ -84,7 +84,7 @@ class LeastEnergy:
 
 @dataclass(frozen=True, eq=False)
 class Completion:
-    """What is told of least strain energy beside the columns of a graph.
+    """Account of least strain energy beside the columns of a graph.
 
     ``function(t, d, d_rate, d_acceleration, z, p)`` has a row for each of ``doubted``, outputs, how much it changes with what
     equilibrium leaves open; for each of ``firm``, links, whether it is loaded by that; and what else :class:`LeastEnergy` tells.
@@ -103,7 +103,7 @@ class Completion:
         return cls(tuple(doubted), least.firm, ca.Function("completion", inputs, [rows], names, ["out"], {"cse": True}))
 
     def reasons(self, through: Iterable[bool], *, idle: bool) -> tuple[str, ...]:
-        """Why something stays open: by which of the firm links it goes ``through``, and whether some of it is ``idle``."""
+        """Tell why something stays open: by which of the firm links it goes ``through``, and whether some of it is ``idle``."""
         loaded = [(link, why) for (link, why), does in zip(self.firm.items(), through, strict=True) if does]
         bare = [f"'{link}'" for link, why in loaded if why == _NO_BEAM]
         found = [f"they go through {', '.join(bare)}, which {'has' if len(bare) == 1 else 'have'} no beam"] if bare else []
@@ -197,7 +197,7 @@ def _relaxed(way: _Way, later: Sequence[_Way]) -> Any:
 
 
 def _strains(beams: Sequence[tuple[Loaded, Moduli]], free: Any, more: int = 0) -> tuple[Any, Any, Any]:
-    """What strains links at Gauss's nodes: with nothing for what is open, by each number of that, and the weights of squares."""
+    """Return what strains links at Gauss's nodes: with nothing for what is open, by each number of that, and the weights of squares."""
     found, weights = [], []
     for link, moduli in beams:
         for part in link.spans:
@@ -241,7 +241,7 @@ def _links(mechanism: Mechanism, elastic: Elastic) -> tuple[dict[str, Moduli], d
 
 
 def _unit(mechanism: Mechanism, member: str) -> Any:
-    """One, of a component of a force; of a moment a length."""
+    """Return one for a component of a force, for a moment a length."""
     return extent(mechanism) if member.startswith(("m", "bending", "torsion")) else 1.0
 
 
