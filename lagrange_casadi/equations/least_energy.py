@@ -197,7 +197,7 @@ def _relaxed(way: _Way, later: Sequence[_Way]) -> Any:
 
 
 def _strains(beams: Sequence[tuple[Loaded, Moduli]], free: Any, more: int = 0) -> tuple[Any, Any, Any]:
-    """Return what strains links at Gauss's nodes: with nothing for what is open, by each number of that, and the weights of squares."""
+    """Return what strains links at Gauss's nodes with nothing for what is open, by each number of that, and weights of squares."""
     found, weights = [], []
     for link, moduli in beams:
         for part in link.spans:
