@@ -73,6 +73,11 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     return Case(file, scene, tuple(figures))
 
 
+def scene_of(given: Scene | Case) -> Scene:
+    """Return the scene that a user hands over, or that of a case."""
+    return given.scene if isinstance(given, Case) else given
+
+
 def _file(given: Path) -> Path:
     """The file of a case."""
     try:

@@ -85,8 +85,30 @@ def verdict(expression, k):
     return Verdict("smooth" if worst < 1e-7 and largest < 50.0 else "unclear", values)
 
 
-def shown(expression, k, place):
+def shown(expression, k, place, low=0.0):
     """Whether value or slope differ across a place, however near to it: a kink that halving went by for it is small."""
-    near = curve(expression, k)(np.clip(place + 1e-8 * np.array([-4.0, -2.0, -1.0, 1.0, 2.0, 4.0]), 0.0, 1.0))
+    near = curve(expression, k)(np.clip(place + 1e-8 * np.array([-4.0, -2.0, -1.0, 1.0, 2.0, 4.0]), low, 1.0))
     gaps = np.abs(near[:, [3, 4, 5]] - near[:, [2, 1, 0]])
     return bool((gaps[:, 0] > 0.6 * gaps[:, 2]).any() and (gaps[:, 0] > 1e-7 * np.abs(near).max(axis=1)).any())
+
+
+def told_by_limits(expression, k, place=0.0):
+    """By values, slopes and curvatures at ever smaller distances: "kink", "isolated" or "smooth"; None where it is not clear."""
+    slope = ca.gradient(expression, T)
+    f = ca.Function("f", [T, K], [ca.densify(ca.vertcat(expression, slope, ca.gradient(slope, T)))])
+    with np.errstate(all="ignore"):
+        here = f(place, k).full().ravel()
+        h = 2.0 ** -np.arange(6, 12)
+        rows = np.array([[f(place + way * one, k).full().ravel() for one in h] for way in (-1, 1)])
+    if not (np.isfinite(here).all() and np.isfinite(rows).all()):
+        return None
+    for part in (2.0, 4.0, 8.0):
+        # A power series in h loses a term.
+        rows = (part * rows[:, 1:] - rows[:, :-1]) / (part - 1)
+    if np.abs(rows[:, -1] - rows[:, -2]).max() > 1e-5:
+        return None
+    before, after = rows[:, -1]
+    if np.abs(after - before)[:2].max() > 1e-4:
+        return "kink"
+    low, high = np.minimum(before, after), np.maximum(before, after)
+    return "isolated" if ((here < low - 1e-4) | (here > high + 1e-4)).any() else "smooth"

@@ -12,7 +12,7 @@ import mechanisms
 import numpy as np
 
 from lagrange_casadi.instants.solution import Provenance
-from lagrange_casadi.studies.designs.engine import Outcome
+from lagrange_casadi.studies.designs.outcome import Outcome
 from lagrange_casadi.studies.sweep import plan, sweep
 from lagrange_casadi.version import __version__
 

@@ -314,7 +314,7 @@ def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
         assert 0.1 < solution.errors[name] / true[name] < 1e3, name
 
 
-@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+@pytest.mark.parametrize("backend", ["vm", "lanes", pytest.param("c", marks=pytest.mark.long)])
 def test_one_step_an_instant_begins_with_a_closed_loop(backend):
     """Whatever the parameters: the guess of the graph is that of their defaults."""
     parameters = {"r": 0.07, "l": 0.35}

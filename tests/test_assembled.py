@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, sweep
+from lagrange_casadi import Mechanism, Scene, compile_scene, derive, evaluate, export, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
@@ -56,6 +56,20 @@ def test_where_defaults_serve_they_choose():
     graph = derive(scene)
     evaluate(scene, parameters={"q": 0.4})
     assert derive(scene) is graph
+
+
+def test_a_scene_is_compiled_with_values_where_its_own_do_not_serve():
+    """With those where they are needed, and only there; one that has been compiled so needs the scene no more."""
+    with pytest.raises(AssemblyError):
+        compile_scene(four_bar(SHORT), ["effort"])
+    program, own = compile_scene(four_bar(SHORT), ["effort"], parameters=VALUES), compile_scene(four_bar(LONG), ["effort"])
+    p = list(VALUES.values())
+    t, motion = 0.1, program.motion(0.1, p)
+    np.testing.assert_array_equal(program.instant(t, *motion, [], p).full(), own.instant(t, *motion, [], p).full())
+    scene = four_bar(LONG)
+    assert compile_scene(scene, ["effort"], parameters={"q": 0.4}) is compile_scene(scene, ["effort"])
+    with pytest.raises(UnknownNameError):
+        compile_scene(scene, ["effort"], parameters={"z": 1.0})
 
 
 def test_it_is_said_with_what_it_was_tried():

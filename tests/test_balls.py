@@ -30,7 +30,7 @@ def made(name):
     """What was drawn, the scene of it, and what is true at the instants."""
     drawn = plain(MADE[name]())
     scene = dataclasses.replace(declared(drawn, AROUND[0]), t=AROUND, xi=(0, 1, 3))
-    return drawn, scene, {k: drawn.solve(float(t)) for k, t in enumerate(np.linspace(*AROUND)) if k in (0, 4, 5)}
+    return drawn, scene, {k: drawn.solve(float(t)) for k, t in enumerate(np.linspace(*AROUND)) if k in (4, 5)}
 
 
 def turns_of(solution):
@@ -81,7 +81,7 @@ def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     beside = evaluate(scene, t=(0.1, 0.3, 8), backend="vm")
     assert beside.certified
     assert not beside.undetermined
-    for k in (0, 3, 4, 7):
+    for k in (3, 4):
         places = postures(drawn, float(beside.t[k]))
         for turn in turns_of(beside):
             gap = beside.motion(turn).value[k] - places[turn]

@@ -60,3 +60,33 @@ def test_the_mode_has_unit_modal_mass():
     """Strain energy of the mode is half the square of its frequency."""
     mode = first_mode(lambda u: 2 + u, lambda u: 3 - u, 0.7, (0.0, 1.0), ("clamped", "pinned"))
     assert np.sum(mode.weights * (2 + mode.u) * mode.curvature**2) == pytest.approx(mode.upper**2, rel=1e-8)
+
+
+@pytest.mark.parametrize("ends", itertools.product(ENDS, ENDS), ids="-".join)
+def test_a_beam_may_have_parts_without_mass_or_none_at_all(ends):
+    """As the mass of a part goes to nothing, the frequency tends to that of the beam whose part has none."""
+
+    def found(rest):
+        return first_mode(lambda u: 100.0 + 0 * u, lambda u: np.where(u < 0.4, 3.0, rest), 1.7, (0.0, 0.4, 1.0), ends)
+
+    none, little = found(0.0), found(1e-9)
+    assert none.upper == pytest.approx(little.upper, rel=1e-7)
+    assert none.lower == (little.lower if little.lower is None else pytest.approx(little.lower, rel=1e-5))
+    assert np.abs(none.curvature) == pytest.approx(np.abs(little.curvature), rel=1e-5, abs=1e-6 * np.abs(little.curvature).max())
+    nothing = first_mode(lambda u: 100.0 + 0 * u, lambda u: 0.0 * u, 1.7, (0.0, 1.0), ends)
+    assert nothing.upper == np.inf
+    assert nothing.lower == (None if none.lower is None else np.inf)
+
+
+def test_a_mass_on_a_beam_without_any_is_that_of_a_spring():
+    """Of a mass spread over so little of the middle as a point, w^2 = 48 EI/(m l^3) between pins."""
+    width = 1e-3
+    edges = (0.0, 0.5 - width / 2, 0.5 + width / 2, 1.0)
+    mode = first_mode(
+        lambda u: 100.0 + 0 * u,
+        lambda u: np.where(np.abs(u - 0.5) < width / 2, 3.0 / (1.7 * width), 0.0),
+        1.7,
+        edges,
+        ("pinned", "pinned"),
+    )
+    assert mode.upper == pytest.approx(math.sqrt(48 * 100.0 / (3.0 * 1.7**3)), rel=1e-5)

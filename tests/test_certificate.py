@@ -13,12 +13,12 @@ from mechanisms import far, ladder, parallelogram, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, save
 from lagrange_casadi.base.quantities import Output
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import main
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
 from lagrange_casadi.instants import refusal
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.solution import Solution
 from lagrange_casadi.judge.certificate import LOOSE, certify

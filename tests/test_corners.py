@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.report.contents import contents
 from lagrange_casadi.report.live import Live
 from lagrange_casadi.studies.designs.engine import DesignEngine
@@ -162,7 +162,7 @@ def test_a_live_page_says_that_sliders_go_by_corners(monkeypatch):
     m.prismatic("way", m.ground, m.point_mass("body", m.parameter("mass", 2.0)), axis=(1, 0))
     plain = Scene(m, {"way": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 11))
     for made, many in ((constraint(), 1), (plain, 0)):
-        found = contents(evaluate(made), Live(made, made.timing(), None, "run"))["notes"]
+        found = contents(evaluate(made), Live.of(made, made.timing(), None, "run"))["notes"]
         assert sum("Corners" in note for note in found) == many
 
 

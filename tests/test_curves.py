@@ -14,8 +14,8 @@ from mechanisms import cam, cam_lift, sampled_cam
 from splines import by_hand
 
 from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, export, motion, refine, table
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.reference import reference
 from lagrange_casadi.studies.designs.engine import DesignEngine

@@ -16,8 +16,9 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 STEEL = beams.material("C45+QT")
 DRAWS = FAMILIES | {"anyhow": anyhow}
 RATIOS = (0.0, 0.25, 0.5, 0.75, 1.0)
-QUICK = [("anyhow", 0), ("anyhow", 8), ("rssr", 0), ("rsur", 1), ("rssp", 1), ("suspension", 0), ("tree", 3), ("loop", 1)]
-MANY = [("anyhow", seed) for seed in range(100, 400)]
+QUICK = [("anyhow", 8), ("rssr", 0), ("rssp", 1), ("tree", 3)]
+MANY = [("anyhow", 0), ("rsur", 1), ("suspension", 0), ("loop", 1)]
+MANY += [("anyhow", seed) for seed in range(100, 400)]
 MANY += [(name, seed) for name in ("tree", "loop", "rssr", "rsur", "rssp", "rsup") for seed in range(100, 130)]
 MANY += [(name, seed) for name in ("suspension", "arm") for seed in range(100, 110)]
 

@@ -8,7 +8,7 @@ import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, motion
 from lagrange_casadi.declare.description import coordinates_of, drives_of, measured_of, motions_of, shape_of
-from lagrange_casadi.equations.model_data import described
+from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.store.untrusted import check_shape
 
 pytestmark = pytest.mark.quick
@@ -30,7 +30,7 @@ def scene(drives=None):
 
 
 def test_all_is_told_in_plain_numbers():
-    found = described(scene(), {"lead": 0.2})
+    found = template(scene()).filled({"lead": 0.2})
     assert json.loads(json.dumps(found)) == found
     assert found["gravity"] == [1.0, 2.0, 3.0]
     assert found["bodies"]["tool"]["centre"] == {"x": 0.01, "y": 0.02, "z": 0.03, "inertia": [*map(list, INERTIA)]}
@@ -49,7 +49,7 @@ def test_all_is_told_in_plain_numbers():
 
 @pytest.mark.parametrize("drives", [None, ["U:turn_1", "U:turn_2", "N"]])
 def test_drives_are_coordinates(drives):
-    found = described(scene(drives), {"lead": 0.2})
+    found = template(scene(drives)).filled({"lead": 0.2})
     assert drives_of(found) == measured_of(found) == [*coordinates_of(found)] == ["U:turn_1", "U:turn_2", "N"]
     assert motions_of(found) == {"U:turn_1": "angle", "U:turn_2": "angle", "N": "angle"}
 
@@ -70,7 +70,7 @@ OTHERWISE = [
 @pytest.mark.parametrize(("path", "value"), OTHERWISE)
 def test_what_a_file_has_otherwise_is_refused(path, value):
     """Of a mechanism in space all is held to its own shape, and what has a gravity of two components to that of a plane."""
-    found = json.loads(json.dumps(described(scene(), {"lead": 0.2})))
+    found = json.loads(json.dumps(template(scene()).filled({"lead": 0.2})))
     check_shape(found, shape_of, "mechanism")
     part = found
     for key in path[:-1]:

@@ -12,9 +12,9 @@ from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.codegen import library
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of

@@ -10,8 +10,8 @@ from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of, valu
 from mechanisms import crank_and_rod, lobes, pendulum
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, load_case, motion
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import ContinuousSolution, forces, refine

@@ -10,10 +10,11 @@ from mechanisms import double_crank, flat_parallelogram, slider_crank, truss_pla
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, load_case
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.refusal import Status, refusal
+from lagrange_casadi.instants.refusal import refusal
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -9,7 +9,7 @@ from mechanisms import press, slider_crank, uneven
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -1,5 +1,6 @@
 """The documentation is run, and its tables are the code's."""
 
+import inspect
 import re
 import subprocess
 from pathlib import Path
@@ -7,7 +8,8 @@ from pathlib import Path
 import pytest
 
 import lagrange_casadi
-from lagrange_casadi import export, load_case
+from lagrange_casadi import errors, export, load_case
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
@@ -20,10 +22,14 @@ PAGES = [
     "README.md",
     *(
         f"docs/{page}.md"
-        for page in ("method", "declaring", "loads", "machines", "space", "strength", "sweeps", "report", "animations", "optimise")
+        for page in (
+            *("method", "declaring", "loads", "machines", "space", "strength", "sweeps", "report", "animations", "optimise"),
+            *("reference/python", "tutorials/connecting_rod", "tutorials/two_loops"),
+        )
     ),
 ]
-PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
+WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if "generated" not in page.parts)
+PROSE = ["README.md", "CONTRIBUTING.md", *(page.relative_to(ROOT).as_posix() for page in WRITTEN)]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
 
 
@@ -33,13 +39,15 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks
+    names = {}
     for block in blocks:
-        exec(compile(block, page, "exec"), {})
+        exec(compile(block, page, "exec"), names if "tutorials" in page else {})  # a tutorial goes on where it was
 
 
-def test_the_exported_c_is_called_as_shown(tmp_path):
+@pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
+def test_the_exported_c_is_called_as_shown(page, tmp_path):
     compiler = find_compiler("c")
-    (block,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)
+    (block,) = re.findall(r"```c\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
     body = block.replace("slider_crank_prepare(", "slider_crank_status s = slider_crank_prepare(")
     checked = re.sub(r"^slider_crank_(evaluate|section)\(", r"s = s ? s : slider_crank_\1(", body, flags=re.MULTILINE)
@@ -56,10 +64,10 @@ def test_links_lead_somewhere(page):
         assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
 
 
-def synopses(page):
+def synopses(page, heading):
     """The options that a page's synopses give every command."""
     found = {}
-    for line in (ROOT / page).read_text().partition("## From the command line")[2].split("\n\n")[1].splitlines():
+    for line in (ROOT / page).read_text().partition(f"## {heading}")[2].split("\n\n")[1].splitlines():
         if line.startswith("    lagrange-casadi "):
             name = line.split()[1]
         found.setdefault(name, set()).update(re.findall(r"--[a-z-]+", line))
@@ -71,14 +79,14 @@ def options(name):
 
 
 def test_the_synopses_of_sweeps_are_whole():
-    found = synopses("docs/sweeps.md")
+    found = synopses("docs/sweeps.md", "From the command line")
     assert set(found) == {"sweep", "best", "table", "plot", "info", "check"}
     for name, named in found.items():
         assert named == options(name) - ({"--want"} if name == "info" else set()), name
 
 
 def test_synopses_name_options_that_there_are():
-    found = synopses("README.md")
+    found = synopses("docs/reference/command_line.md", "Synopsis")
     assert set(found) == set(program.commands)
     for name, named in found.items():
         assert named <= options(name), name
@@ -129,6 +137,44 @@ def test_the_schema_lists_every_quantity(request):
     assert f"schema version {SCHEMA_VERSION}" in text
 
 
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 150
+
+
+def test_the_reference_has_every_public_name():
+    parts = re.findall(r"currentmodule:: (\S+)\n(.*?)\n```", (ROOT / "docs" / "reference" / "python.md").read_text(), re.DOTALL)
+    listed = {f"{module}.{name}" for module, part in parts for name in part.split()}
+    doors = {name: thing for name in lagrange_casadi.__all__ if inspect.ismodule(thing := getattr(lagrange_casadi, name))}
+    named = {
+        f"lagrange_casadi.{name}" for name in lagrange_casadi.__all__ if name not in (*doors, "LagrangeCasadiError", "__version__")
+    }
+    for door, module in doors.items():
+        named |= {f"lagrange_casadi.{door}.{name}" for name in getattr(module, "__all__", [])}
+    assert named <= listed
+
+
+def rows_of(page):
+    """Cells of the rows of a page's tables, code without its marks."""
+    lines = (ROOT / page).read_text().splitlines()
+    return [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+
+
+def test_every_error_and_every_status_has_a_cure():
+    cells = {row[0]: row[1:] for row in rows_of("docs/reference/errors.md")}
+    for name, error in vars(errors).items():
+        if inspect.isclass(error) and issubclass(error, errors.LagrangeCasadiError) and error is not errors.LagrangeCasadiError:
+            assert cells[name][0] == str(error.exit_status)
+            assert all(cells[name])
+    for status in Status:
+        assert cells[status.name][0] == str(status.value)
+        assert all(cells[status.name]) or status == Status.OK
+
+
+def test_every_case_has_a_picture():
+    cases = {page.parent.name for page in (ROOT / "cases").glob("*/case.py")}
+    assert {picture.stem for picture in (ROOT / "docs" / "gallery").glob("*.svg")} == cases
+
+
 def test_the_changelog_names_the_version():
     assert f"## {lagrange_casadi.__version__}" in (ROOT / "CHANGELOG.md").read_text()
 
@@ -164,3 +210,17 @@ def test_the_glossary_is_in_order_and_found():
     assert len({anchor(word) for word in words}) == len(words) > 50
     for page in ("README.md", "docs/architecture.md", "CONTRIBUTING.md"):
         assert "glossary.md)" in (ROOT / page).read_text()
+
+
+TRUSTED = {
+    "What runs code": ["loading it runs it", "Dask scheduler as pickles", "`--flags` (`flags=`) go to it", "The cache folder"],
+    "The seal": ["tells damage", "no signature"],
+    "Files of unknown origin": ["`--time-limit`", "What it does not promise"],
+}
+
+
+@pytest.mark.parametrize("heading", TRUSTED)
+def test_what_is_trusted_is_said_on_one_page(heading):
+    page = " ".join((ROOT / "docs/trust.md").read_text().split())
+    part = re.split(rf"#+ {heading} ", page)[1].split(" ## ")[0]
+    assert [words for words in TRUSTED[heading] if words not in part] == []

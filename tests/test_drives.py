@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from mechanisms import block, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import check, load, save
 from lagrange_casadi.studies.designs.engine import DesignEngine

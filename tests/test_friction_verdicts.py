@@ -9,8 +9,8 @@ from compiled import told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine, sweep
 from lagrange_casadi.animation import Film, write_animation
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
@@ -159,7 +159,7 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     assert "nan" not in (tmp_path / "rest.svg").read_text().lower()
 
 
-@every
+@pytest.mark.parametrize("backend", ["lanes", "vm", pytest.param("c", marks=pytest.mark.long)])
 def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend):
     """As a run tells them, between the instants too; what is at rest throughout has none, and what does not rub has all."""
     scene = reciprocating(expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion", "section:rod"])

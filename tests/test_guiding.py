@@ -8,10 +8,9 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, motion, save
-from lagrange_casadi.declare.kinds import kinds_of
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
@@ -61,7 +60,9 @@ def the_same(scene, k, motors):
 def test_it_is_the_motion_of_the_motors(scene, motors, loads):
     """A tool on its path, and a plate in its pose, in closed form; the same forces where the motors' motion is given."""
     scene = scene()
-    assert derive(scene).newton is None
+    program = derive(scene)
+    assert program.newton is None
+    kinds = program.data.kinds
     for k in (3, 17, 38):
         found, other = the_same(scene, k, motors)
         one = evaluate(other, backend="vm")
@@ -70,8 +71,8 @@ def test_it_is_the_motion_of_the_motors(scene, motors, loads):
         assert one.certified
         for output, values in one.outputs.items():
             if output.group in ("effort", "reaction", "pose", "law"):
-                unit = output.unit(kinds_of(scene.mechanism))
-                size = max(np.abs(v).max() for o, v in found.outputs.items() if o.unit(kinds_of(scene.mechanism)) == unit)
+                unit = output.unit(kinds)
+                size = max(np.abs(v).max() for o, v in found.outputs.items() if o.unit(kinds) == unit)
                 assert abs(values[0] - found.outputs[output][k]) < 1e-12 * size, output
 
 

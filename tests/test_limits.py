@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")

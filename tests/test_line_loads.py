@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, load, motion, refine, save
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -9,7 +9,7 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from machines import SCENES
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -8,9 +8,9 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.motion import Motion, dwell, move, moves, polynomial, s_curve, samples, trapezoid
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -205,7 +205,7 @@ def shaper():
     return Scene(m, {"main": law}, over=("main", 1.0, "400 deg", 37), posture={"rocker": 1.5})
 
 
-@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
+@pytest.mark.parametrize("backend", ["auto", "vm", pytest.param("c", marks=pytest.mark.long)])
 def test_a_peak_at_a_jump_has_the_slopes_of_its_own_side(backend):
     """Where the speed passes zero the tool is there or not, by rounding; the peak is of the side on which it is."""
     f = prepare(shaper(), wanted=["reaction:foot", "effort"], backend=backend)

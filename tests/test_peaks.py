@@ -9,7 +9,7 @@ from balance import settle
 from conftest import CASES, NAMES, PLANAR
 from mechanisms import LENGTH, MASS, G, four_bar, lobes, parallelogram, pendulum
 
-from lagrange_casadi import Scene, derive, evaluate, load, load_case, motion, save
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.studies.peaks import forces, rates, refine, shortfall
 
@@ -255,6 +255,10 @@ def test_misuse_is_named(slider_crank):
     other = Scene(scene.mechanism, {"O": motion.polynomial(0, 1.0)}, posture=scene.posture)
     with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):
         refine(other, solution)
+    more = Mechanism("slider_crank")
+    more.revolute("O", more.ground, more.link("a", length=more.parameter("z", 1.0, "m"), mass=1.0))
+    with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):
+        refine(Scene(more, {"O": motion.polynomial(0, 1.0)}), solution)
     with pytest.raises(DeclarationError, match="at least one number of instants"):
         shortfall(scene, [])
     with pytest.raises(DeclarationError, match="no quantity is there that is determined and not zero"):

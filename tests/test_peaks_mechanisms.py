@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import forces

@@ -5,9 +5,9 @@ import pytest
 from prepared import prepared
 
 from lagrange_casadi import Mechanism, Scene, density, evaluate
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

@@ -10,8 +10,13 @@ from oracle import FORCES
 from random_mechanisms import draw
 from random_verdict import is_regular
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import evaluate, refine
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.peaks import forces
+from lagrange_casadi.summits import search
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -123,3 +128,51 @@ def test_many_of_them_rub_and_few_jam():
     assert len(made) > len(SEEDS) / 10
     assert sum(compare(one) is None for one in made) < len(made) / 4
     assert math.isfinite(max(worst for one in made if (worst := compare(one)) is not None))
+
+
+DENSE = 4001
+
+
+def keeps_peaks(made, monkeypatch):
+    """Peaks between instants are those of many instants, found in few panels, though what frictions compare is all rounding."""
+    scene, panels = made.scene(), []
+    parameters, (start, stop, _) = made.drawn.keywords.get("parameters"), made.drawn.grid
+    try:
+        solution, dense = (
+            evaluate(scene, parameters=parameters, t=(start, stop, n), certificate=False) for n in (made.drawn.grid[2], DENSE)
+        )
+    except AssemblyError as error:
+        if "jams" not in str(error):
+            raise
+        return
+    one = search._Search.panel
+    monkeypatch.setattr(search._Search, "panel", lambda *given: panels.append(1) or one(*given))
+    names = [*forces(solution), *(name for name in solution.names() if name.endswith(":loss"))]
+    peaks = refine(scene, solution, names)
+    assert len(panels) < search.PANELS / 8
+    largest = {
+        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit) for unit in map(dense.unit, names)
+    }
+    for peak in peaks:
+        size, many = largest[peak.unit], abs(dense.peak(peak.name).value)
+        assert many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size, f"{peak}, {many}\n{made.source}"
+
+
+@pytest.mark.parametrize("seed", [46, 80])
+def test_peaks_are_found_where_comparisons_are_rounding(seed, monkeypatch):
+    keeps_peaks(rubbed(seed), monkeypatch)
+
+
+def test_designs_tell_peaks_where_an_acceleration_is_rounding():
+    """Designs know no rounding: their graph has no kink at an acceleration that is zero by the shape of the mechanism."""
+    scene = rubbed(46).scene()
+    found = DesignEngine.of(scene, ["effort"], rung=Rung("vm")).evaluate([list(scene.mechanism.values().values())])
+    assert found.status.tolist() == [Status.OK]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_peak_is_found(seed, monkeypatch):
+    made = rubbed(seed)
+    if made is not None:
+        keeps_peaks(made, monkeypatch)

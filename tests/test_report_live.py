@@ -74,7 +74,7 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
     given = scene.mechanism.parameters.values()
     values = {one.name: one.default * (1 + 0.05 * rng.uniform(-1, 1)) for one in given}
     moving = {name: value * (1 + 0.01 * rng.uniform(-1, 1)) for name, value in values.items()}
-    text = page(evaluate(scene, wanted=wanted, backend="vm", **asked), Live(scene, scene.timing(**asked), wanted, "run"))
+    text = page(evaluate(scene, wanted=wanted, backend="vm", **asked), Live.of(scene, scene.timing(**asked), wanted, "run"))
     alive.opened(chromium, tmp_path / "live.html", text)
     found = chromium.run(INNER % json.dumps(list(values.values())))
     assert isinstance(found, dict), found

@@ -76,7 +76,7 @@ def test_what_has_no_beam_has_no_map():
 def test_of_another_design_stress_is_evaluated_and_what_is_not_says_so(chromium, scene, tmp_path):
     wanted = [*WANTED, "sensitivity:r"]
     solution = evaluate(scene, wanted=wanted, backend="vm", certificate=False)
-    text = page(solution, Live(scene, scene.timing(), wanted, "run"))
+    text = page(solution, Live.of(scene, scene.timing(), wanted, "run"))
     alive.opened(chromium, tmp_path / "live.html", text)
     rows = chromium.run(
         f"(() => {{ window.page.live.engine.show({json.dumps([0.09, 0.4, 0.02])}); return window.page.contents.rows; }})()"

@@ -74,7 +74,7 @@ def test_a_chain_of_thirty_links_and_two_thousand_instants_plays_at_thirty_pictu
 @pytest.mark.parametrize("name", ["slider_crank", "delta"])
 def test_a_slider_is_followed_at_thirty_pictures_a_second(chromium, tmp_path, name):
     scene = load_case(CASES / name).scene
-    text = page(evaluate(scene), Live(scene, scene.timing(), scene.wanted, "run"))
+    text = page(evaluate(scene), Live.of(scene, scene.timing(), scene.wanted, "run"))
     alive.opened(chromium, tmp_path / "live.html", text)
     assert work(chromium, DRAG) < PICTURE
     assert chromium.complaints == []

@@ -44,7 +44,7 @@ def vm(scene, count=5):
     return evaluate(scene, wanted=["effort"], t=(*scene.span, count), backend="vm")
 
 
-@pytest.mark.parametrize("noise", [1e-14, 1e-12, 1e-9, 3e-7])
+@pytest.mark.parametrize("noise", [1e-14, 3e-7, *(pytest.param(noise, marks=pytest.mark.long) for noise in (1e-12, 1e-9))])
 def test_a_screw_in_a_loop_keeps_its_turns(noise):
     """Each step of the motor is more than a half turn: a loop that is iterated from one instant to the next would lose some."""
     exact, found = (
@@ -53,7 +53,7 @@ def test_a_screw_in_a_loop_keeps_its_turns(noise):
     assert_near(found, exact, noise)
 
 
-@pytest.mark.parametrize("name", ["cardan_shaft", "delta", "five_link_suspension"])
+@pytest.mark.parametrize("name", ["cardan_shaft", "five_link_suspension", pytest.param("delta", marks=pytest.mark.long)])
 def test_given_places_and_axes_of_parameters_may_be_rounded(name):
     assert_near(vm(drawn(name, 1e-7)), vm(drawn(name, 0.0)), 1e-7)
 
@@ -67,7 +67,7 @@ def test_every_case_in_space(name, seed):
         assert_near(vm(drawn(name, noise, seed), 9), exact, noise)
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("name", [name for name in PLANAR if name not in CLOSING])
 def test_planar_cases_in_space(name, turned):
@@ -130,7 +130,7 @@ def rounded(solution):
     return any("rounding" in note for note in solution.notes)
 
 
-@pytest.mark.parametrize("noise", [1e-12, 1e-9, 2e-7])
+@pytest.mark.parametrize("noise", [1e-12, 2e-7, pytest.param(1e-9, marks=pytest.mark.long)])
 def test_hard_points(noise):
     found = vm(four_bar(noise, 0.0, hard=True))
     assert rounded(found) == (noise > 1e-10)
@@ -165,7 +165,7 @@ def pressing(noise, tilt=None):
     return Scene(m, laws, t=(0.0, 0.6, 7), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
 
 
-@pytest.mark.parametrize("tilt", [1e-5, 1e-7])
+@pytest.mark.parametrize("tilt", [1e-7, pytest.param(1e-5, marks=pytest.mark.long)])
 def test_a_tilt_that_was_meant_stays_beside_a_loop_that_was_rounded(tilt):
     """The joint that carries it closes no loop."""
     noise = 1e-9
@@ -230,7 +230,11 @@ def offset(by, default):
     return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
 
 
-@pytest.mark.parametrize(("default", "raised"), [(1.0, 1.0), (1.0, 3.0), (1.0, -2.0), (0.0, 1.0), (0.0, 0.01)])
+BY_DEFAULT = [(1.0, 1.0), (1.0, 3.0), (0.0, 1.0)]
+RAISED = [(1.0, -2.0), (0.0, 0.01), *(pytest.param(*pair, marks=pytest.mark.long) for pair in BY_DEFAULT)]
+
+
+@pytest.mark.parametrize(("default", "raised"), RAISED)
 def test_corrections_are_sought_for_the_parameters_in_use(default, raised):
     """One correction does not serve all of them, and loops that close by default may not for others."""
     exact, found = (evaluate(offset(by, default), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))

@@ -13,7 +13,6 @@ from truth import truth
 
 from lagrange_casadi import derive, load_case
 from lagrange_casadi.base.quantities import FORCES, Output
-from lagrange_casadi.declare.kinds import kinds_of
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.sensitivity.curvatures import Curvatures, unit_ways
 from lagrange_casadi.sensitivity.series import at_instants
@@ -149,7 +148,7 @@ def test_in_space_too(name):
     values = scene.mechanism.values()
     p = np.array(list(values.values()))
     rows = list(graph.outputs)
-    kinds = [f"{row.group} {row.unit(kinds_of(scene.mechanism))}" for row in rows]
+    kinds = [f"{row.group} {row.unit(graph.data.kinds)}" for row in rows]
     instants = np.linspace(start, t, 40)
     found = at_instants(graph, rows, instants, p, list(range(p.size)), Rung("vm"))[-1]
     sizes: dict[str, float] = {}

@@ -17,7 +17,7 @@ def beside():
     return Scene(m, laws, wanted=["effort", "reaction", "friction"], t=(0, 0.7, 36))
 
 
-@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
+@pytest.mark.parametrize("backend", ["auto", "c", pytest.param("vm", marks=pytest.mark.long)])
 def test_slopes_of_what_friction_at_rest_has_nothing_to_do_with(backend):
     """There they are no numbers only of what depends on friction: of peaks at rest, and of means over all instants."""
     f = prepare(beside(), backend=backend)

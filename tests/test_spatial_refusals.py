@@ -9,8 +9,8 @@ import pytest
 from prepared import prepared
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError, ParameterError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

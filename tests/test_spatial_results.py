@@ -12,10 +12,10 @@ from spatial_scenes import beams
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, motion, refine, save
 from lagrange_casadi.base.seal import seal
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.exports import export
 from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, default_figures
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import SCHEMA, check
 from lagrange_casadi.studies.designs.engine import DesignEngine

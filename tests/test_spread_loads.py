@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from spread import Spread
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, load, motion, refine, save
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.studies.designs.engine import DesignEngine

@@ -8,9 +8,9 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Scene, SpatialMechanism, density, evaluate, load, motion, refine, save
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 

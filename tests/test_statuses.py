@@ -2,7 +2,7 @@
 
 import itertools
 
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.portable.statuses import SHARED, STATUSES
 
 PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}

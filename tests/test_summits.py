@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import pendulum
 
-from lagrange_casadi import evaluate, motion
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi import codegen, evaluate, motion
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import refine
-from lagrange_casadi.summits.panels import Curves, Samples
+from lagrange_casadi.summits.panels import Curves, Listed, Samples
 from lagrange_casadi.summits.search import peaks
 from lagrange_casadi.summits.sharpness import Kind, Watch
 
@@ -191,6 +191,58 @@ def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
     sides = law(np.array([at, np.nextafter(at, 0), np.nextafter(at, 3), 1.6 - 4e-16]))
     assert found.value[0] == pytest.approx(sides.max(), rel=1e-12)
     assert source.times <= 80
+
+
+def local(values, share):
+    """The local tops of values, all of them (down to the least) or those down to a share of the largest."""
+    around = np.pad(values, 1, constant_values=-np.inf)
+    tops = np.flatnonzero((values >= around[:-2]) & (values > around[2:]))
+    return tops[values[tops] >= (values.min() if share is None else share * values.max())]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("way", [0, 1, -1])
+@pytest.mark.parametrize("language", ["c", "c++", None])
+def test_local_peaks_are_listed(language, way):
+    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant the first instant."""
+    find = peaks if language is None else codegen.load_search(codegen.find_compiler(language)).peaks
+    laws = (
+        lambda x: np.sin(9 * x) + 0.4 * x,
+        lambda x: -3 + 0.2 * np.sin(7 * x + 1),
+        lambda x: 1 - np.abs(x - 1.013) + 0.05 * np.sin(11 * x),
+        lambda x: 2.5 + 0 * x,
+    )
+
+    class Source:
+        def at(self, t):
+            values = np.array([law(t) for law in laws])
+            return Samples(values, np.full(values.shape, np.nan), t[None])
+
+    times, fine = np.linspace(0.0, 2.0, 51), np.linspace(0.0, 2.0, 200_001)
+    curves = Curves((0, 1, 2, 3), (0, 1, 2, 3), (), (Watch(Kind.SWITCH, (1.013,)),))
+    found = find(Source(), curves, times, Source().at(times), np.zeros(50, bool), Listed(0.51 if way else 0.3, way))
+    plain = find(Source(), curves, times, Source().at(times), np.zeros(50, bool))
+    assert found.told.all()
+    for k, law in enumerate(laws):
+        sized = way * law(fine) if way else np.abs(law(fine))
+        rows = found.tops[k]
+        rows = rows[~np.isnan(rows[:, 0])]
+        assert (rows[:, 0] == 0).all()
+        rows = rows[np.argsort(rows[:, 1])]
+        np.testing.assert_allclose(rows[:, 3], law(rows[:, 1]), rtol=0, atol=1e-14)
+        assert found.value[k] == pytest.approx(rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13)
+        if not way:
+            assert found.value[k] == pytest.approx(plain.value[k], rel=1e-13)
+        if k == 3:
+            assert rows[0, 1] == 0.0
+            continue
+        expected = local(sized, None if way else 0.3)
+        low, high = sized.min(), sized.max()
+        # At the very least of the values a peak may be listed or not.
+        expected = expected[sized[expected] > low + 0.05 * (high - low)] if way else expected
+        rows = rows[way * rows[:, 3] > low + 0.05 * (high - low)] if way else rows
+        np.testing.assert_allclose(rows[:, 1], fine[expected], atol=2e-5)
+        np.testing.assert_allclose(rows[:, 3], law(fine[expected]), rtol=1e-8)
 
 
 def test_what_touches_zero_by_rounding_opens_few_steps():

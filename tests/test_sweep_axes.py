@@ -174,14 +174,16 @@ def test_all_values_out_of_range_are_named_at_once():
 
     mechanism = load_case(CASES / "slider_crank").scene.mechanism
     with pytest.raises(ParameterError) as caught:
-        check_designs(Grid({"l": (-0.1, 0.4, 6), "r": [0.1, 0.2], "m1": [0.1, -1.0, -2.0]}), mechanism, {})
+        check_designs(Grid({"l": (-0.1, 0.4, 6), "r": [0.1, 0.2], "m1": [0.1, -1.0, -2.0]}), mechanism.parameters, {})
     assert str(caught.value) == "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its range [0, inf]"
     with pytest.raises(ParameterError) as caught:
-        check_designs(Listed(("l", "r"), [[-1, 1], [1, 1], [1, -3]], np.array([2, 3, 5])), mechanism, {"m1": -4.0, "m2": 0.1})
+        check_designs(
+            Listed(("l", "r"), [[-1, 1], [1, 1], [1, -3]], np.array([2, 3, 5])), mechanism.parameters, {"m1": -4.0, "m2": 0.1}
+        )
     told = "l = -1 in line 2, out of its range [0, inf]; r = -3 in line 5, out of its range [0, inf]; parameter 'm1' = -4 kg is "
     assert str(caught.value) == f"{told}out of its range [0, inf]"
     with pytest.raises(ParameterError) as caught:
-        check_designs(Grid({"l": [0.2]}), mechanism, {"r": -1.0, "m1": np.nan})
+        check_designs(Grid({"l": [0.2]}), mechanism.parameters, {"r": -1.0, "m1": np.nan})
     told = "parameter 'r' = -1 m is out of its range [0, inf]; parameter 'm1' must be a finite number, got nan"
     assert str(caught.value) == told
 
@@ -193,10 +195,10 @@ def test_many_values_out_of_range_are_counted():
 def test_names_are_checked():
     mechanism = sweeps.scene().mechanism
     with pytest.raises(UnknownNameError, match=r"unknown parameter 'q'; valid: r, l, m1, m2, m3"):
-        check_designs(Grid({"q": [1.0]}), mechanism, {})
+        check_designs(Grid({"q": [1.0]}), mechanism.parameters, {})
     with pytest.raises(UnknownNameError, match=r"unknown parameters 'q', 'k', 'x'; valid: r, l, m1, m2, m3"):
-        check_designs(Grid({"q": [1.0], "l": [1.0], "k": [1.0]}), mechanism, {"x": 1.0, "r": 0.1})
+        check_designs(Grid({"q": [1.0], "l": [1.0], "k": [1.0]}), mechanism.parameters, {"x": 1.0, "r": 0.1})
     with pytest.raises(DeclarationError, match=r"parameter 'l' is swept and set to 0\.3 as well"):
-        check_designs(Grid({"l": [1.0]}), mechanism, {"l": 0.3})
+        check_designs(Grid({"l": [1.0]}), mechanism.parameters, {"l": 0.3})
     with pytest.raises(DeclarationError, match=r"'design' is a result of a sweep, not a parameter: take the results out"):
-        check_designs(Listed(("design", "l"), [[0.0, 1.0]]), mechanism, {})
+        check_designs(Listed(("design", "l"), [[0.0, 1.0]]), mechanism.parameters, {})

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 from mechanisms import press, slider_crank, uneven
 
 from lagrange_casadi import Sweep, derive, evaluate, sweep
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.studies.sweep.axes import designs_of
 from lagrange_casadi.studies.sweep.checking import check_sweep
 from lagrange_casadi.studies.sweep.plan import Plan, signature

@@ -33,13 +33,13 @@ def test_angles_may_have_a_unit(tmp_path):
     m.parameter("l", 0.2, "m")
     listed = read_designs(path)
     np.testing.assert_array_equal(listed.rows, [[math.pi / 6, 0.2], [0.5, 0.3], [math.pi / 2, 0.4], [1.0, 0.1]])
-    check_designs(listed, m, {})
+    check_designs(listed, m.parameters, {})
     path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n0.5,20 deg\n")
     with pytest.raises(DeclarationError, match=r"d\.csv, column 'l': expected numbers \[m\], not angles"):
-        check_designs(read_designs(path), m, {})
+        check_designs(read_designs(path), m.parameters, {})
     path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n")
     with pytest.raises(ParameterError, match=r"phi = 3\.490658504 in line 3, out of its range \[0, 2\]"):
-        check_designs(read_designs(path), m, {})
+        check_designs(read_designs(path), m.parameters, {})
     path.write_text("phi,l\nmuch deg,0.2\n")
     with pytest.raises(DeclarationError, match="line 2, column 'phi': expected a finite number, got 'much deg'"):
         read_designs(path)
@@ -100,7 +100,7 @@ def test_a_sweep_names_the_place_in_the_file(tmp_path):
     ):
         path.write_text(text)
         with pytest.raises(DeclarationError) as caught:
-            check_designs(read_designs(path), mechanism, {})
+            check_designs(read_designs(path), mechanism.parameters, {})
         assert str(caught.value).startswith(f"{path}, {says}")
 
 

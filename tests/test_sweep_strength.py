@@ -1,6 +1,9 @@
 """Least factors of safety, lives and masses of many designs, against those of one solution after another."""
 
+import itertools
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,12 +11,12 @@ from click.testing import CliRunner
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, best, evaluate, optimise, sweep
-from lagrange_casadi.cli import program
+from lagrange_casadi.cli import main, program
 from lagrange_casadi.errors import DeclarationError, NoDesignError
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
-from lagrange_casadi.strength.fatigue import Histories, factor, factor_score, loaded, used
+from lagrange_casadi.strength.fatigue import CRITERIA, Histories, factor, factor_score, lacking, loaded, used
 from lagrange_casadi.strength.fibres import FibreStresses
 from lagrange_casadi.strength.worst import worst
 from lagrange_casadi.studies.designs.engine import DesignEngine
@@ -211,7 +214,7 @@ def test_strength_that_is_open_has_no_number(tmp_path):
         assert np.isnan(found[name]).all(), name
     assert np.isfinite(found["peak:section:arm:bending"]).all()
     with pytest.raises(NoDesignError, match="no design within the bounds has a result: section:a0:axial is open for all of them"):
-        optimise(scene, minimise="peak:utilisation:a0:fatigue", over={"l": (0.95, 1.1)}, backend="vm")
+        optimise(scene, minimise="peak:utilisation:a0:fatigue", over={"l": (0.95, 1.1)}, screen=4)
 
 
 def test_what_rounding_leaves_at_a_free_end_buckles_nothing():
@@ -226,3 +229,51 @@ def test_what_rounding_leaves_at_a_free_end_buckles_nothing():
     assert found["status"].tolist() == [0, 0]
     assert found["least:buckling:arm"].tolist() == [math.inf, math.inf]
     assert evaluate(scene, certificate=False, backend="vm").safety("arm").against("buckling") == math.inf
+
+
+LACKING = [names for count in range(3) for names in itertools.combinations(("endurance", "ultimate"), count)]
+
+
+def without(*names):
+    return press(beams.rectangle(0.03, 0.012), material=STEEL.but(**dict.fromkeys(names)), t=(0, 0.2, 5))
+
+
+@pytest.mark.parametrize("names", LACKING, ids=" ".join)
+def test_fatigue_is_open_alike_in_solutions_and_sweeps(names, tmp_path, capsys, monkeypatch):
+    """It is left out by name where the material lacks a number, and the other factors stay."""
+    safety = evaluate(without(*names), certificate=False, backend="vm").safety("rod")
+    found = sweep(without(*names), {"r": [0.1]}, wanted=["safety:rod"], backend="vm")
+    why = f"material 'C45+QT' has no {' and no '.join(names)}"
+    assert safety.is_open == ((f"fatigue: {why}",) if names else ())
+    assert ("least:fatigue:rod" in found.columns) == (not names)
+    assert {f"least:{verdict.against}:rod" for verdict in safety.verdicts} == set(found.columns) & {
+        f"least:{way}:rod" for way in ("yield", "buckling", "fatigue")
+    }
+    if names:
+        with pytest.raises(DeclarationError, match=re.escape(why)):
+            optimise(without(*names), minimise="r", over={"r": (0.05, 0.1)}, subject_to=["least:fatigue:rod >= 2"])
+        with pytest.raises(DeclarationError, match=r"'C45.QT' has no .*, which output 'life:rod' needs"):
+            sweep(without(*names), {"r": [0.1]}, wanted=["life:rod"], backend="vm")
+    monkeypatch.chdir(tmp_path)
+    Path("case.py").write_text(
+        "import sys\n"
+        f"sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
+        "from test_sweep_strength import without\n"
+        f"def scene():\n    return without(*{names!r})\n"
+    )
+    assert main(["sweep", "case.py", "--backend", "vm", "--grid", "r=0.1:0.11:2", "--want", "safety:rod", "--quiet"]) == 0
+    assert capsys.readouterr().out.count(f"note: no factor against fatigue of 'rod' is kept: {why}") == len(names[:1])
+
+
+@pytest.mark.parametrize("names", itertools.product(["endurance", "ultimate", "yield_strength"], repeat=2), ids=" ".join)
+@pytest.mark.parametrize("criterion", CRITERIA)
+def test_fatigue_is_open_where_it_cannot_be_computed(criterion, names):
+    material = STEEL.but(**dict.fromkeys(names))
+    try:
+        factor(1e8, 1e8, material, criterion)
+        missing = ""
+    except DeclarationError as error:
+        missing = str(error).partition(",")[0]
+    told = lacking(material, criterion).partition(": ")[2]
+    assert bool(told) == bool(missing)
+    assert told.startswith(missing)

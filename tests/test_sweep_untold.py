@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, motion, sweep
-from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.studies.sweep.checking import check_sweep
 
 pytestmark = pytest.mark.quick

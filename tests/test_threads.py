@@ -78,7 +78,7 @@ def test_no_switch_of_casadis_is_turned(fresh_cache):
     assert not lost
 
 
-@pytest.mark.parametrize("times", [200, pytest.param(5000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("times", [100, pytest.param(5000, marks=pytest.mark.long)])
 def test_no_constant_is_dropped_while_another_thread_asks_for_it(times):
     """CasADi crashes then, for its constants are those of the whole process."""
     command = [sys.executable, constants.__file__, str(times)]
@@ -191,8 +191,12 @@ def hammered(asked, values, times=4):
         sys.setswitchinterval(before)
 
 
-@pytest.mark.parametrize("way", ASKED)
-@pytest.mark.parametrize("asked", [{}, {"newton": 3}, {"backend": "vm"}, {"waved": True}], ids=str)
+ITERATED, INTERPRETED, WAVED = {"newton": 3}, {"backend": "vm"}, {"waved": True}
+QUICK = [*(({}, way) for way in ASKED), (ITERATED, "series"), (ITERATED, "gradient"), (INTERPRETED, "peaks"), (WAVED, "designs")]
+REST = [(asked, way) for asked in (ITERATED, INTERPRETED, WAVED) for way in ASKED if (asked, way) not in QUICK]
+
+
+@pytest.mark.parametrize(("asked", "way"), [*QUICK, *(pytest.param(*pair, marks=pytest.mark.long) for pair in REST)], ids=str)
 def test_a_prepared_scene_answers_each_thread(asked, way):
     """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants of each design's own."""
     scene, slow = threaded.press(0, pinned if "newton" in asked else Mechanism.revolute), "backend" in asked

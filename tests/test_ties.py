@@ -2,6 +2,7 @@
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
@@ -81,6 +82,22 @@ def test_along_a_link():
     shrunk = abs(f.peaks(tip=9.9).value[f.quantities.index("section:arm:shear")])
     assert grown == pytest.approx(10.1)
     assert shrunk == pytest.approx(10.1)
+
+
+def test_kinks_between_instants():
+    """Two tents as high, each by a parameter of its own, whose tips no instant meets."""
+    m = Mechanism("tents")
+    m.set_gravity(0, 0)
+    a, b = m.parameter("a", 2.0, "N m"), m.parameter("b", 2.0, "N m")
+    arm = m.link("arm", length=1.0, mass=1.0)
+    angle = m.coordinate(m.revolute("O", m.ground, arm))
+    first, second = (ca.fmax(0.0, 1 - ca.fabs(angle - place) / 0.3) for place in (0.413, 1.627))
+    m.torque("push", arm, a * first + b * second)
+    f = prepare(Scene(m, {"O": polynomial(0.0, 1.0)}, wanted=["effort"], t=(0.0, 2.0, 41)))
+    gradient = f.gradient()
+    assert gradient.kinds.tolist() == [PeakKind.SWITCH]
+    assert gradient.tied.tolist() == [True]
+    assert f.gradient(b=1.99).tied.tolist() == [False]
 
 
 def test_solutions_say_it_too():

@@ -70,6 +70,7 @@ def test_designs_without_a_result_are_counted():
         ("l", 0.001, 0.001),
         ("l", "0.1mm", 1e-4),
         ("l", "50um", 5e-5),
+        ("l", "0.1 cm", 1e-3),
         ("l", " 1e-3 m ", 1e-3),
         ("l", "1%", 0.004),
         ("mass", "2g", 2e-3),
@@ -79,7 +80,7 @@ def test_designs_without_a_result_are_counted():
 )
 def test_tolerances_are_read_with_their_units(name, value, found):
     mechanism = rotor().mechanism
-    assert read_tolerance(mechanism, name, value, mechanism.values()[name]) == pytest.approx(found, rel=1e-14)
+    assert read_tolerance(mechanism.parameters, name, value, mechanism.values()[name]) == pytest.approx(found, rel=1e-14)
 
 
 @pytest.mark.parametrize("value", ["0.1deg", "x", "", "-1mm", 0.0, math.nan, math.inf, True, None, "1 furlong", "mm", "%"])

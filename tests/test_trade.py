@@ -25,7 +25,9 @@ WANTED = ("effort", "motion", "section")
 
 @pytest.fixture(scope="module")
 def measured():
-    return trade(iterated(WANTED), rungs=SOME)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(importlib.import_module("lagrange_casadi.studies.trade"), "INSTANTS", 1000)
+        return trade(iterated(WANTED), rungs=SOME)
 
 
 def test_every_rung_is_measured(measured):

@@ -8,15 +8,16 @@ import pytest
 from mechanisms import press, uneven
 
 from lagrange_casadi import Mechanism, Scene, motion
-from lagrange_casadi.declare.kinds import kinds_of
+from lagrange_casadi.declare.description import kinds_of_described
 from lagrange_casadi.declare.turned import note
-from lagrange_casadi.studies.sweep.turning import turning_note
+from lagrange_casadi.equations.model_data import template
+from lagrange_casadi.studies.sweep.notes import turning_note
 
 pytestmark = pytest.mark.quick
 
 
 def said(scene, rows=((600.0, 0.5),), **asked):
-    return note(scene.prescribed, kinds_of(scene.guided), scene.timing(**asked), np.array(rows))
+    return note(scene.prescribed, kinds_of_described(template(scene).content), scene.timing(**asked), np.array(rows))
 
 
 @pytest.mark.parametrize("law", [motion.polynomial, uneven, lambda _, w: motion.polynomial(0, 0, 100.0), lambda _, w: sampled()])

@@ -16,10 +16,10 @@ from mechanisms import DAMPING, DRAG_LINK, FREE, STIFFNESS, coil, slider_crank, 
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
+from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.equations.turns import tells_turns
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 from lagrange_casadi.studies.peaks import refine

@@ -113,3 +113,17 @@ def test_in_space_the_softer_plane_counts():
 def test_other_words_are_refused():
     with pytest.raises(DeclarationError, match="expected how base and tip are held, two of pinned, clamped, free, guided"):
         vibration(evaluate(strong.press(SHAPE), certificate=False), "rod", ("pinned", "loose"))
+
+
+@pytest.mark.parametrize("kind", [Mechanism, SpatialMechanism])
+def test_a_link_without_mass_has_no_frequency_and_swings_nowhere(kind):
+    m = kind("light")
+    arm = m.link("arm", length=0.4, mass=0.0, beam=beams.Beam(SHAPE, strong.STEEL))
+    m.force("push", arm.tip, y=-20.0)
+    m.revolute("O", m.ground, arm, **({"axis": (0, 0, 1)} if kind is SpatialMechanism else {}))
+    scene = Scene(m, {"O": harmonic(0.0, 1.0, 5.0)}, t=(0, 0.2, 65), wanted=("deflection",))
+    solution = evaluate(scene, certificate=False)
+    found = vibration(solution, "arm")
+    assert (found.frequency, found.lower, found.excess, found.enough) == (math.inf, math.inf, 0.0, True)
+    assert found.words == "no bending frequency of its own, for it has no mass"
+    assert solution.notes == ()

@@ -15,7 +15,7 @@ from stepped import iterated
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, save, sensitivities
 from lagrange_casadi.base.quantities import quotient
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.wanted_slopes import by_parameters, others
+from lagrange_casadi.declare.wanted_names import by_parameters, others
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.instants.derivatives import derivatives
@@ -211,9 +211,9 @@ def test_a_derivative_that_is_none_is_told(tmp_path):
 
 def test_names():
     mechanism = slider_crank().mechanism
-    assert by_parameters(mechanism, ["all", "effort"]) == ()
-    assert by_parameters(mechanism, ["sensitivity:m2", "sensitivity:r"]) == ("r", "m2")
-    assert by_parameters(mechanism, ["sensitivity"]) == ("r", "l", "m1", "m2", "m3")
+    assert by_parameters(mechanism.parameters, ["all", "effort"]) == ()
+    assert by_parameters(mechanism.parameters, ["sensitivity:m2", "sensitivity:r"]) == ("r", "m2")
+    assert by_parameters(mechanism.parameters, ["sensitivity"]) == ("r", "l", "m1", "m2", "m3")
     assert others(["effort", "sensitivity", "sensitivity:l"]) == ("effort",)
     with pytest.raises(UnknownNameError, match=r"unknown output 'sensitivity:x'"):
         slider_crank(wanted=["effort", "sensitivity:x"])

@@ -53,17 +53,18 @@ def inertia_at(
     Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives and motions are not as many, and
     as :func:`.evaluate` does.
     """
-    values = scene.mechanism.values(parameters)
-    seen = seen_inertia(assembled(scene, values, ["motion"]))
+    values = scene.values(parameters)
+    seen = seen_inertia(scene, values)
     if joint not in seen.drives:
         raise UnknownNameError("drive", joint, seen.drives)
     several = len(seen.motions) > 1
-    if scene.mechanism.rows or (several and len(seen.drives) != len(seen.motions)):
-        why = "non-holonomic constraints" if scene.mechanism.rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
+    rows = seen.program.data.template.content["rows"]
+    if rows or (several and len(seen.drives) != len(seen.motions)):
+        why = "non-holonomic constraints" if rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
         raise DeclarationError(f"inertia at '{joint}': with {why} no drive moves alone, the others at rest")
     times, p = instants_of(scene.prescribed, scene.timing(t, over), values).t, np.array(list(values.values()))
-    found, _ = run(seen.graph, times, p, _VM)
-    refuse(seen.graph, found, times, p, _VM)
+    found, _ = run(seen.program, times, p, _VM)
+    refuse(seen.program, found, times, p, _VM)
     return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
 
 
@@ -83,15 +84,16 @@ def _alone(seen: SeenInertia, out: Array, drive: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SeenInertia:
-    """A graph whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
+    """A program whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
 
-    graph: Program
+    program: Program
     motions: tuple[str, ...]
     drives: tuple[str, ...]
 
 
-def seen_inertia(scene: Scene) -> SeenInertia:
-    """The graph of a scene. Raises as :func:`.compile_scene` does."""
+def seen_inertia(scene: Scene, parameters: Mapping[str, float]) -> SeenInertia:
+    """Compile what drives of a scene see, assembled as :func:`.compile_scene` does it. Raises as that does."""
+    scene = assembled(scene, parameters, ["motion"])
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
     body = assemble(scene.guided, span(scene.guided, scene.laws), scene.laws, ())
@@ -114,5 +116,4 @@ def seen_inertia(scene: Scene) -> SeenInertia:
     instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
     columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
     data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
-    graph = Program(data, want, instant, solved.newton, tuple(columns), {})
-    return SeenInertia(graph, driven, drives)
+    return SeenInertia(Program(data, want, instant, solved.newton, tuple(columns), {}), driven, drives)

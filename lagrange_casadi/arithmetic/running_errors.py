@@ -25,7 +25,7 @@ def running_errors(function: Any, *columns: npt.NDArray[np.float64]) -> npt.NDAr
     Numbers that are put in are known to half a unit in the last place, as constants are that are not whole.
     """
     rows, count = function.size1_out(0), columns[0].shape[1]
-    if not count or not followable(function):
+    if not rows or not count or not followable(function):
         return np.zeros((rows, count))
     given = [[(row, np.spacing(np.abs(row)) / 2) for row in column] for column in columns]
     with np.errstate(all="ignore"):

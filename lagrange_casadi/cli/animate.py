@@ -11,7 +11,7 @@ from ..animation import Film, check_ending, write_animation
 from ..base.publish import check_writable
 from ..case import load_case
 from ..declare.even_points import EvenPoints
-from ..declare.scene import Scene
+from ..declare.scene import Scene, kinds
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..judge.certificate import failure
@@ -55,8 +55,8 @@ def animate(
         case = load_case(target)
         out = out or Path(f"{case.name}.gif")
         check_writable(out)
-        wanted = _wanted(case.scene, film)
-        solution = evaluate(case.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
+        scene = case.scene
+        solution = evaluate(scene, parameters=parameters(settings), t=t, over=over, wanted=_wanted(scene, film))
         write_animation(solution, out, film)
     echo(f"wrote {out}")
     if solution.failed:
@@ -67,5 +67,5 @@ def _wanted(scene: Scene, film: Film) -> list[str]:
     """Motion, and the forces that are to be shown."""
     wanted = ["motion"]
     if film.forces:
-        wanted += ["effort", "reaction", *(["load"] if scene.mechanism.loads else [])]
+        wanted += ["effort", "reaction", *(kind for kind in kinds(scene.outputs) if kind == "load")]
     return [*wanted, "section"] if film.section else wanted

@@ -38,7 +38,7 @@ def drawn_ways(error: PostureError) -> str:
     if not isinstance(scene, Scene) or error.lacking:
         return ""
     picture = io.BytesIO()
-    path = Path(f"{scene.mechanism.name}_postures.png")
+    path = Path(f"{scene.name}_postures.png")
     with suppress(LagrangeCasadiError):
         if many := method("PostureError.drawn")(scene, picture):
             with writing(path) as (file,):

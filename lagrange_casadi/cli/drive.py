@@ -60,7 +60,7 @@ def drive_command(
             raise click.UsageError(f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}")
         check_picture(plot)
     given = parameters(settings)
-    wanted = ["effort", "motion", *(kind for kind in kinds(scene.mechanism) if kind in _FORCES)]
+    wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
     solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
     lines = [f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"]
     failed: LagrangeCasadiError | None = None

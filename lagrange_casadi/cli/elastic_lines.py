@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ..declare.mechanism import Mechanism
-from ..declare.scene import strength_of
+from ..declare.description import beams_of
+from ..declare.wanted_names import among
 from ..elastic.vibration import vibration
 from ..instants.solution import Solution
 from .strength_lines import told
@@ -13,9 +13,9 @@ from .strength_lines import told
 _FROM = {"ends": "from the line between its ends", "base": "from its axis at the base"}
 
 
-def elastic_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[str]) -> Iterator[str]:
+def elastic_lines(solution: Solution, wanted: Sequence[str]) -> Iterator[str]:
     """The deflections that are wanted of links that have a beam; or why they cannot be told."""
-    if links := strength_of(mechanism, "deflection", wanted):
+    if links := among("deflection", beams_of(solution.description), wanted):
         yield "deflections across the links, largest in size:"
         for link in links:
             yield from told(link, lambda name: list(_lines(solution, name)))

@@ -11,9 +11,10 @@ import click
 
 from ..case import load_case
 from ..declare.description import Description, coordinates_of
-from ..declare.scene import Scene, kinds, outputs
+from ..declare.scene import Scene, kinds
 from ..equations.derive import compile_scene
-from ..equations.model_data import described
+from ..equations.model_data import template
+from ..equations.scene_lines import scene_lines
 from ..instants.solution import Solution
 from ..store import runs as store
 from ..studies.sweep import Sweep, is_sweep
@@ -22,7 +23,6 @@ from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.instant_axis import in_words
 from .echo import echo
 from .report import asked_line, peak_line
-from .scene_lines import scene_lines
 from .strength_lines import untold_lines
 
 
@@ -44,25 +44,21 @@ def info(target: Path, want: tuple[str, ...]) -> None:
 
 
 def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
-    mechanism = scene.mechanism
-    graph = compile_scene(scene, want or None)
-    _describe_mechanism(described(scene, mechanism.values()))
+    program = compile_scene(scene, want or None)
+    _describe_mechanism(template(scene).filled(scene.values()))
     for line in scene_lines(scene):
         echo(line)
     timing = scene.timing()
-    echo(
-        asked_line(
-            timing.words(mechanism.symbols)[:4], bool(timing.joint) and scene.guided.coordinates[timing.joint][1].kind == "slide"
-        )
-    )
+    echo(asked_line(timing.words(program.data.symbols)[:4], timing.slides))
     echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
-    whole = kinds(mechanism)
-    echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
+    outputs = scene.outputs
+    whole = kinds(outputs)
+    echo(f"outputs: {', '.join(outputs)}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
     echo(f"wanted: {', '.join(want or scene.wanted)}")
-    loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in graph.checks("closure")]
+    loops = [f"{name} ({'iterated' if program.iterates(name) else 'closed form'})" for name in program.checks("closure")]
     echo(f"loops closed by: {', '.join(loops) or 'none'}")
-    counts = ", ".join(f"{name} {count}" for name, count in graph.instructions.items())
-    echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")
+    counts = ", ".join(f"{name} {count}" for name, count in program.instructions.items())
+    echo(f"instructions an instant: {sum(program.instructions.values())} ({counts})")
 
 
 def _describe_file(solution: Solution) -> None:

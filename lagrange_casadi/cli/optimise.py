@@ -83,11 +83,12 @@ def optimise(
             found = search(loaded, minimise=list(minimise), over=over, **options)
     if found.stopped and hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, 0.0)  # the interrupt has arrived, and is repeated no more
+    scene = loaded.scene
     with writing(figure) as (picture,):
         if isinstance(found, Optimum):
-            draw_optimum(loaded.scene, found, picture, figure.suffix)
+            draw_optimum(scene, found, picture, figure.suffix)
         else:
-            draw_front(loaded.scene, found, picture, figure.suffix)
+            draw_front(scene, found, picture, figure.suffix)
     for line in optimum_lines(found) if isinstance(found, Optimum) else front_lines(found):
         echo(line)
     echo(f"wrote {out} and {figure}")

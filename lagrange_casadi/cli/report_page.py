@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from ..judge.certificate import failure
 from ..portable.wasm import check_zig
 from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
+from ..report.live import run_of
 from ..report.of_sweep import is_of, write_sweep_report
 from ..store.runs import load
 from ..store.untrusted import told_as
@@ -60,20 +60,17 @@ def report(
             write_report(solution, out)
     else:
         loaded = load_case(target)
+        scene = loaded.scene
         out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        wanted = with_motion(want or loaded.scene.wanted)
-        engine = Live(loaded.scene, loaded.scene.timing(t, over), wanted, _command(loaded.name)) if live else None
+        wanted = with_motion(want or scene.wanted)
+        given, timing = parameters(settings), scene.timing(t, over)
+        engine = Live.of(scene, timing, wanted, run_of(loaded.name), given) if live else None
         # What a page computes anew is what equilibrium tells.
         told = False if live else None
-        solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted, elastic=told)
+        solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted, elastic=told)
         write_report(solution, out, engine)
     _tell(solution, out)
-
-
-def _command(name: str) -> str:
-    """How a command line begins that evaluates a case."""
-    return f"lagrange-casadi run {shlex.quote(name)}"
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
@@ -83,15 +80,16 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     try:
         found = load_case(case or Path(sweep.case))
         check_zig("the mechanism of a design in motion")
-        if case is None and not is_of(sweep, found.scene):
+        scene = found.scene
+        if case is None and not is_of(sweep, scene):
             raise DeclarationError(f"the case '{sweep.case}' is not as it was swept")
     except LagrangeCasadiError as error:
         if case is not None:
             raise
         echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
-        found = None
+        found = scene = None
     with told_as(_UNSHOWN, target):
-        write_sweep_report(sweep, out, None if found is None else found.scene, _command(found.name if found else sweep.case))
+        write_sweep_report(sweep, out, scene, run_of(found.name if found else sweep.case))
     echo(f"wrote {out}: open it in a browser")
 
 

@@ -16,10 +16,11 @@ from ..base.streams import is_standard_output
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare import turned
+from ..declare.description import beams_of, fitted_of, kinds_of_described, values_of
 from ..declare.even_points import EvenPoints
-from ..declare.kinds import kinds_of
-from ..declare.scene import Scene, fitted_of, strength_of
+from ..declare.scene import Scene
 from ..declare.times import Over, Timing
+from ..declare.wanted_names import among
 from ..errors import CertificateError
 from ..instants.frames import TIME, columns
 from ..instants.solution import Solution
@@ -67,11 +68,12 @@ def run(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
+    scene = loaded.scene
     out = out or Path(f"{loaded.name}.h5")
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
     _check_places(out, folder, csv)
     solution = evaluate(
-        loaded.scene,
+        scene,
         parameters=parameters(settings),
         t=t,
         over=over,
@@ -84,7 +86,7 @@ def run(
         flags=flags,
         threads=threads,
         certificate=not no_certificate,
-        elastic=(loaded.scene.elastic or True) if elastic else None,
+        elastic=(scene.elastic or True) if elastic else None,
     )
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual
@@ -97,12 +99,12 @@ def run(
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
     say = partial(echo, err=csv is not None and is_standard_output(csv))
-    asked = want or loaded.scene.wanted
-    for line in _report(loaded.scene, solution, asked, loaded.scene.timing(t, over), backend, refine_peaks):
+    asked = want or scene.wanted
+    for line in _report(scene, solution, asked, scene.timing(t, over), backend, refine_peaks):
         say(line)
     if folder and not loaded.figures:
-        mechanism = loaded.scene.mechanism
-        for line in untold_lines(solution, (*strength_of(mechanism, "safety", asked), *fitted_of(mechanism, asked))):
+        parts = [*beams_of(solution.description), *fitted_of(solution.description)]
+        for line in untold_lines(solution, among("safety", parts, asked)):
             say(line)
     if not no_certificate:
         say(summary(solution.certificate))
@@ -137,9 +139,8 @@ def _report(
     names = [*forces(solution), *resultants(solution)]
     yield from report_lines(solution, refine(scene, solution, names) if refined else ())
     yield from slope_lines(solution, scene, backend)
-    yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
-    yield from elastic_lines(solution, scene.mechanism, want)
-    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
-    yield from (
-        f"note: {note}" for note in (*solution.notes, turned.note(scene.prescribed, kinds_of(scene.guided), timing, told)) if note
-    )
+    yield from strength_lines(solution, want, scene if refined else None)
+    yield from elastic_lines(solution, want)
+    told = np.array([list(values_of(solution.description).values())])
+    turns = turned.note(scene.prescribed, kinds_of_described(solution.description), timing, told)
+    yield from (f"note: {note}" for note in (*solution.notes, turns) if note)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 
-from ..declare.mechanism import Mechanism
-from ..declare.scene import Scene, fitted_of, strength_of
+from ..declare.description import beams_of, fitted_of
+from ..declare.scene import Scene
+from ..declare.wanted_names import among
 from ..equations.stress import KINDS
 from ..errors import DeclarationError
 from ..instants.solution import Solution
@@ -20,20 +21,21 @@ _GUESS = 1e3
 """Cycles below which a life is a guess."""
 
 
-def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[str], scene: Scene | None = None) -> Iterator[str]:
+def strength_lines(solution: Solution, wanted: Sequence[str], scene: Scene | None = None) -> Iterator[str]:
     """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be told.
 
     With its ``scene`` it is that of all times, else that of the instants.
     """
-    if links := strength_of(mechanism, "stress", wanted):
+    beams = beams_of(solution.description)
+    if links := among("stress", beams, wanted):
         yield "stresses along the links, largest in size:"
         for link in links:
             yield from told(link, lambda name: list(_stresses(solution, name, scene)))
-    if links := [*strength_of(mechanism, "safety", wanted), *fitted_of(mechanism, wanted)]:
+    if links := among("safety", [*beams, *fitted_of(solution.description)], wanted):
         yield "factors of safety, and utilisation, which is one over the least of them:"
         for link in links:
             yield from told(link, lambda name: list(safety_lines(_safety(solution, name, scene))))
-    if links := strength_of(mechanism, "life", wanted):
+    if links := among("life", beams, wanted):
         yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
         for link in links:
             yield from told(link, lambda name: [_life(solution.life(name))])

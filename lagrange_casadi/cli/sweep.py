@@ -8,18 +8,18 @@ from pathlib import Path
 
 import click
 
+from ..base.status import Status
 from ..base.vocabulary import Backend, Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.notes import drawing_notes
 from ..declare.times import Over
 from ..errors import CertificateError
-from ..instants.refusal import Status
 from ..studies.sweep import Axis, Keep, Sweep, read_designs
 from ..studies.sweep import sweep as carry_out
 from ..studies.sweep.axes import counted, grouped
-from ..studies.sweep.resting import resting_note
-from ..studies.sweep.turning import turning_note
+from ..studies.sweep.notes import resting_note, turning_note
+from ..studies.sweep.strength import left_out
 from .echo import echo
 from .options import parameters
 from .progress import shown
@@ -56,7 +56,8 @@ def sweep(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
-    swept = read_designs(designs, loaded.scene.mechanism.parameters) if designs else dict(axes)
+    scene = loaded.scene
+    swept = read_designs(designs, scene.parameters) if designs else dict(axes)
     with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
@@ -80,9 +81,9 @@ def sweep(
             progress=progress,
         )
     _report(found)
-    turns = turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings))
-    rests = resting_note(loaded.scene, found, parameters(settings), t=t, over=over, wanted=want or None)
-    for note in filter(None, (*drawing_notes(found.description), rests, turns)):
+    turns = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
+    rests = resting_note(scene, found, parameters(settings), t=t, over=over, wanted=want or None)
+    for note in filter(None, (*drawing_notes(found.description), rests, turns, *left_out(found.description, found.columns))):
         echo(f"note: {note}")
     echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-_NUMBERS = {"long long": ctypes.c_longlong, "int": ctypes.c_int}
+_NUMBERS = {"long long": ctypes.c_longlong, "int": ctypes.c_int, "double": ctypes.c_double}
 
 
 @dataclass(frozen=True, eq=False)
 class Call:
     """A struct of C: its ``name``, and the C type of each member.
 
-    A type is ``long long``, ``int`` or a pointer; ``real`` in it stands for a floating type that :meth:`text` is told.
+    A type is ``long long``, ``int``, ``double`` or a pointer; ``real`` in it stands for a floating type that :meth:`text` is told.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Call:
         # Without slots a member of another name would be taken for an attribute.
         return type(self.name, (ctypes.Structure,), {"__slots__": (), "_fields_": fields})
 
-    def made(self, **values: int | None) -> ctypes.Structure:
+    def made(self, **values: float | None) -> ctypes.Structure:
         """The struct with all its members: numbers, addresses, None for NULL.
 
         Raises ``TypeError`` where one is missing, ``AttributeError`` for one that is unknown.

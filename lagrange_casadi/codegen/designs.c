@@ -16,6 +16,9 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.open = open;
   search.rests = now->rests;
   search.together = LANES;
+  search.way = now->call->way;
+  search.share = now->call->share;
+  search.tops = now->tops;
   search.hiding = now->call->hiding;
   search.at = designs_asked;
   search.of = now;
@@ -33,6 +36,8 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
                        double* rms, double* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
   lagrange_casadi_instants follow;
+  const casadi_real* given[1];
+  casadi_real* found[1];
   casadi_int i;
   int j, k, why;
   (void) z;
@@ -43,8 +48,10 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
     for (j = 0; j < DESIGNS_NT; ++j) pairs[j*DESIGNS_NP + k] = pair[j];
   }
   now->p = pairs;
-  for (k = 0; k < DESIGNS_NT*DESIGNS_NP; ++k) now->parameters[k] = pairs[k];
-  designs_fixed(now->parameters, now->constants, now->matter);
+  scene_constants(pairs, now->parameters, now->constants);
+  given[0] = now->parameters;
+  found[0] = now->matter;
+  matter_of(given, found);
   for (k = 0; k < DESIGNS_MARGINS; ++k) {
     margin = designs_lane(now->matter + k, 0);
     if (!(margin >= 0 && margin <= DESIGNS_LARGEST) || (k < DESIGNS_POSITIVE && margin == 0)) return DESIGNS_IMPOSSIBLE;
@@ -99,8 +106,9 @@ static void designs_timed(designs_now* now, const double* t) {
 
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
-   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
-   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. The room is rows of
+   for instants in equal steps. tops, unless it is NULL, becomes the local peaks of quantities that way and share ask of the search.
+   history, unless it is NULL, becomes outputs by instants, iterated likewise iterated coordinates; of a design without a result all is
+   NaN. bent tells after which instants the motion bends more than they show, its rows are bent_apart values apart. The room is rows of
    stride values, of times, iterated coordinates, curves, their places, what is checked and what is watched, all zero; of the status stride integers that are zero, and of hiding twice as
    many. find searches for peaks, by a search of which tables and room are set. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
@@ -122,11 +130,15 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     double *times = values ? call->peak_t + d*DESIGNS_QUANTITIES : 0, *places = values ? call->xi + d*DESIGNS_QUANTITIES : 0;
     double *means = values ? call->mean + d*DESIGNS_EFFORTS : 0, *squares = values ? call->rms + d*DESIGNS_EFFORTS : 0;
     double* whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
+    double* closed = call->iterated ? call->iterated + d*DESIGNS_NZ*n : 0;
     int why;
     if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
     now.bent = call->bent + d*call->bent_apart;
+    now.tops = call->tops ? call->tops + d*4*DESIGNS_TOPS*DESIGNS_QUANTITIES : 0;
+    for (k = 0; now.tops && k < 4*DESIGNS_TOPS*DESIGNS_QUANTITIES; ++k) now.tops[k] = NAN;
     why = designs_one(&now, p + d*DESIGNS_NP, call->guess, values, times, places, means, squares, whole);
     call->status[d] = (signed char) why;
+    for (i = 0; closed && i < DESIGNS_NZ*n; ++i) closed[i] = why == DESIGNS_OK ? now.z[i/n*stride + i%n] : NAN;
     if (why == DESIGNS_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;

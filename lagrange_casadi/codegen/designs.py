@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -10,13 +11,15 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.compensated import DTYPES
+from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
 from ..equations.turns import LEAP
+from ..summits.panels import TOPS
 from ..summits.sharpness import Watch
 from .calls import Call
-from .emit import FOLLOW, Parts, emit, following
+from .emit import FOLLOW, Parts, emit_scene, following
 from .link_curves import Along, along, turning
 from .printer import function_name, print_functions
 from .search import BASE, OFF, TIP, Tables, interface
@@ -40,6 +43,8 @@ CALL = Call(
         "hiding": "signed char*",
         "search": "const lagrange_casadi_search_call*",
         "find": "lagrange_casadi_find*",
+        "way": "int",
+        "share": "double",
         "status": "signed char*",
         "value": "double*",
         "peak_t": "double*",
@@ -47,15 +52,14 @@ CALL = Call(
         "mean": "double*",
         "rms": "double*",
         "history": "double*",
+        "iterated": "double*",
+        "tops": "double*",
     },
 )
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
 
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED", "BEYOND", "JAM", "SLIP", "REST")
-"""What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
-mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent, the swing
-of an angle, how far what is put into curves is beyond their ends, and of frictions how far they are from a jam,
-what is left of their laws, and whether one is at rest."""
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
+"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants, or the mechanism's extent."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -69,11 +73,11 @@ class Reduction:
     """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
 
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of each of ``links``. ``units``
-    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
-    limit, ``doubts`` the checks that leave a quantity open, by number of both. ``matter(p)`` gives first ``margins`` numbers that
-    must not be negative, ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
-    ``sections.c`` takes for each link. ``watches`` are what the last columns are watched for, ``knots`` times of kinks: see
-    :class:`.Sharpness`.
+    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are the columns of a graph's bounds with
+    their kinds and limits, then those of ``ROWSIZE``; ``doubts`` are the checks that leave a quantity open, by number of both.
+    ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either: the first is
+    the mechanism's extent [m]. Then comes what ``sections.c`` takes for each link. ``watches`` are what the last columns are
+    watched for, ``knots`` times of kinks: see :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -118,17 +122,18 @@ class Reduction:
 
 
 def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
-    """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
+    """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates instants alone."""
     parts = Parts.of(graph, stages)
-    text = emit(graph, stages, newton, parts)
-    text += print_functions({"matter_of": reduction.matter}, stages.precision, prefix="matter", packs=True)
+    text = emit_scene(graph, stages, newton, parts)
+    text += print_functions(
+        {"matter_of": reduction.matter, "status_of": graph.status}, stages.precision, prefix="matter", packs=True
+    )
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text += (
         interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
     )
-    text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
-    text += _WORK.format(**parts.sizes, drive=parts.drive)
+    text += _tables(graph, reduction) + _source("sections.c") + turning(reduction.links)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
@@ -148,9 +153,7 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "LEAP": _real(LEAP),
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
-        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
-        "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
-        "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
+        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")},
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
         "POSITIVE": reduction.positive,
@@ -161,11 +164,13 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "WATCHES": len(reduction.watches),
         "OUTPUTS": sizes["columns"] - len(reduction.watches),
         "CHECKS": checks,
+        "BOUNDS": len(graph.bounds),
         "DOUBTS": len(reduction.doubts),
         "EFFORTS": len(reduction.efforts),
         "NEAR": _real(reduction.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
+        "TOPS": TOPS,
         "END": _real(END[precision]),
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
         "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
@@ -182,14 +187,19 @@ def _defined(macros: Mapping[str, object]) -> str:
     return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
 
 
-def _tables(reduction: Reduction) -> str:
-    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("CLOSURE",), (0.0,))
+def _tables(graph: Program, reduction: Reduction) -> str:
+    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",), (0.0,))
+    sizes = itertools.count(len(graph.bounds))
+    beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in graph.bounds] or [-1]
+    statuses = [Status.OK, *(rule.status for rule in graph.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
     return "".join(
         (
             _table("int", "designs_checked", columns),
-            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
+            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds)),
+            _table("int", "designs_sized", beside),
+            _table("int", "designs_status", map(int, statuses)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
@@ -229,34 +239,3 @@ static void designs_curves(const casadi_real* y, const casadi_real* matter, unsi
 
 def _source(name: str) -> str:
     return "\n" + resources.files(__package__).joinpath(name).read_text()
-
-
-_WORK = """
-/* The columns y of a pack of instants: of its times, at the start of at, and of its iterated coordinates, at DESIGNS_PLACE. */
-static void designs_columns(const casadi_real* parameters, const casadi_real* constants, const DESIGNS_REAL* p, casadi_real* at,
-                            casadi_real* y) {{
-  casadi_int j = 0, k = 0;
-  casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
-  const casadi_real* arg[5];
-  casadi_real* res[3];
-  (void) j; (void) k; (void) p; (void) parameters; (void) time;
-{drive}    arg[0] = counted;
-  arg[1] = rates;
-  arg[2] = rates + {nd};
-  arg[3] = place;
-  arg[4] = constants;
-  res[0] = y;
-  instant(arg, res);
-}}
-
-/* What parameters alone decide. */
-static void designs_fixed(const casadi_real* parameters, casadi_real* constants, casadi_real* matter) {{
-  const casadi_real* arg[1];
-  casadi_real* res[1];
-  arg[0] = parameters;
-  res[0] = constants;
-  constants_of(arg, res);
-  res[0] = matter;
-  matter_of(arg, res);
-}}
-"""

@@ -13,6 +13,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.status import Status
 from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 from ..equations.program import Program
@@ -48,9 +49,6 @@ INSTANTS = Call(
     },
 )
 """What :data:`EVALUATE` and :data:`FOLLOW` take; the C says of each what it reads and writes."""
-
-OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
-"""Status of an instant."""
 
 START = f"""\
 {LANES_PLACE}#include <math.h>
@@ -96,61 +94,91 @@ WIDE = """
 """
 """What follows is for packs."""
 
+_PACK = """
+/* The columns y of a pack of instants: at begins with its times; its iterated coordinates come after what the drive gives. */
+static void scene_columns(const casadi_real* parameters, const casadi_real* constants, casadi_real* at, casadi_real* y) {{
+  casadi_real *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
+  const casadi_real* arg[5];
+  casadi_real* res[3];
+  (void) parameters;
+{drive}  arg[0] = counted;
+  arg[1] = rates;
+  arg[2] = rates + {nd};
+  arg[3] = place;
+  arg[4] = constants;
+  res[0] = y;
+  instant(arg, res);
+}}
+
+/* Parameters as packs, and what they alone decide. */
+static void scene_constants(const {real}* p, casadi_real* parameters, casadi_real* constants) {{
+  const casadi_real* arg[1];
+  casadi_real* res[1];
+  casadi_int k;
+  for (k = 0; k < {nt}*{np}; ++k) parameters[k] = p[k];
+  arg[0] = parameters;
+  res[0] = constants;
+  constants_of(arg, res);
+}}
+
+/* A sum that is finite if all so many columns are; four sums, for each addition waits for the one before. */
+static casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
+  casadi_real sum[4];
+  casadi_int j, k;
+  for (j = 0; j < 4; ++j) sum[j] = 0;
+  for (k = 0; k + 4 <= columns; k += 4) {{
+    for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
+  }}
+  for (; k < columns; ++k) sum[0] = sum[0] + y[k];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}}
+"""
+
+_DRIVE = """  arg[0] = at;
+  arg[1] = parameters;
+  res[0] = counted;
+  res[1] = rates;
+  res[2] = rates + {nd};
+  drive(arg, res);
+"""
+
 _EVALUATE = """
 /* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i] is iterated coordinate k there.
    status[i], {OK} where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite.{single} */
 LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
   const casadi_int n = call->n, stride = call->stride;
-  const {real} *t = call->t, *p = call->p, *z = call->z;
+  const {real} *t = call->t, *z = call->z;
   {real}* out = call->out;
   int* status = call->status;
   casadi_int i, j, k, many;
   {real} lanes[LANES];
-  casadi_real at[{inputs}], y[{rows}], sum[4];
-  casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
-  casadi_real *parameters = place + {nz}, *constants = parameters + {nt}*{np};
-  const casadi_real* arg[5];
-  casadi_real* res[3];
-  for (k = 0; k < {nt}*{np}; ++k) parameters[k] = p[k];
-  arg[0] = parameters;
-  res[0] = constants;
-  constants_of(arg, res);
+  casadi_real at[{inputs}], y[{rows}], parameters[{given}], constants[{fixed}], sum;
+  casadi_real* place = at + {place};
+  scene_constants(call->p, parameters, constants);
   for (i = 0; i < n; i += LANES) {{
     many = n - i < LANES ? n - i : LANES;
     if (many == LANES) {{
-      for (k = 0; k < {nt}; ++k) memcpy(time + k, t + k*stride + i, sizeof lanes);
+      for (k = 0; k < {nt}; ++k) memcpy(at + k, t + k*stride + i, sizeof lanes);
       for (k = 0; k < {nz}; ++k) memcpy(place + k, z + k*stride + i, sizeof lanes);
     }} else {{
       /* The last pack is filled up with the last instant. */
       for (k = 0; k < {nt}; ++k) {{
         for (j = 0; j < LANES; ++j) lanes[j] = t[k*stride + i + (j < many ? j : many - 1)];
-        memcpy(time + k, lanes, sizeof lanes);
+        memcpy(at + k, lanes, sizeof lanes);
       }}
       for (k = 0; k < {nz}; ++k) {{
         for (j = 0; j < LANES; ++j) lanes[j] = z[k*stride + i + (j < many ? j : many - 1)];
         memcpy(place + k, lanes, sizeof lanes);
       }}
     }}
-{drive}    arg[0] = counted;
-    arg[1] = rates;
-    arg[2] = rates + {nd};
-    arg[3] = place;
-    arg[4] = constants;
-    res[0] = y;
-    instant(arg, res);
+    scene_columns(parameters, constants, at, y);
     if (many == LANES) {{
       for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
     }} else {{
       for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, (size_t) many*sizeof({real}));
     }}
-    /* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
-    for (j = 0; j < 4; ++j) sum[j] = 0;
-    for (k = 0; k + 4 <= {columns}; k += 4) {{
-      for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
-    }}
-    for (; k < {columns}; ++k) sum[0] = sum[0] + y[k];
-    sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    memcpy(lanes, sum, sizeof lanes);
+    sum = scene_sum(y, {columns});
+    memcpy(lanes, &sum, sizeof lanes);
     for (j = 0; j < many; ++j) if (!(lanes[j] - lanes[j] == 0) && status[i + j] == {OK}) status[i + j] = {NOT_FINITE};
   }}
 }}
@@ -159,14 +187,6 @@ LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
 _IN_PAIRS = """
    Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride + i] is the rest of t[i],
    p[{np} + k] that of p[k]."""
-
-_DRIVE = """    arg[0] = time;
-    arg[1] = parameters;
-    res[0] = counted;
-    res[1] = rates;
-    res[2] = rates + {nd};
-    drive(arg, res);
-"""
 
 _FOLLOW = """
 /* Iterated loops, each instant from the one before: z[k*stride + i] becomes coordinate k at instant i, and guess, on entry that for
@@ -213,32 +233,36 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
 """
 
 
-def emit(graph: Program, stages: Stages | None = None, newton: int | None = None, parts: Parts | None = None) -> str:
+def emit(graph: Program, stages: Stages | None = None, newton: int | None = None) -> str:
     """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi.
 
     ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps iterated loops take an
     instant, None for as many as they need.
     """
     stages = plain(graph) if stages is None else stages
-    parts = parts or Parts.of(graph, stages)
-    sizes, single = parts.sizes, stages.precision == "single"
-    text = (_START_SINGLE if single else "") + START + INSTANTS.text(sizes["real"])
+    parts = Parts.of(graph, stages)
+    single = _IN_PAIRS.format(**parts.sizes) if stages.precision == "single" else ""
+    return emit_scene(graph, stages, newton, parts) + _EVALUATE.format(**parts.sizes, single=single)
+
+
+def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts) -> str:
+    """What every C file of a scene begins with: its functions, and what runs them for a pack of instants."""
+    sizes = parts.sizes
+    text = (_START_SINGLE if stages.precision == "single" else "") + START + INSTANTS.text(sizes["real"])
     text += print_functions(parts.narrow, stages.precision, prefix="follow")
     if stages.loops:
         text += following(graph, stages, newton, sizes)
-    inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + sizes["constants"]
     text += WIDE + print_functions(parts.wide, stages.precision, prefix="scene", packs=True)
-    return text + _EVALUATE.format(**sizes, drive=parts.drive, single=_IN_PAIRS.format(**sizes) if single else "", inputs=inputs)
+    return text + _PACK.format(**sizes, drive=_DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else "")
 
 
 @dataclass(frozen=True)
 class Parts:
-    """What an emitted file is made of: functions of one instant at a time, functions of packs, sizes, and the text that drives."""
+    """What an emitted file is made of: functions of one instant at a time, functions of packs, and sizes."""
 
     narrow: Mapping[str, ca.Function]
     wide: Mapping[str, ca.Function]
     sizes: dict[str, Any]
-    drive: str
 
     @classmethod
     def of(cls, graph: Program, stages: Stages) -> Parts:
@@ -247,7 +271,10 @@ class Parts:
         narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
         wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
         sizes = _sizes(graph, stages) | {"constants": constants.size1_out(0)}
-        return cls(narrow, wide, sizes, _DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else "")
+        place = sizes["nt"] + sizes["nc"] + 2 * sizes["nd"]
+        room = {"given": sizes["nt"] * sizes["np"], "fixed": sizes["constants"]}
+        sizes |= {"place": place, "inputs": place + sizes["nz"]} | {name: max(1, size) for name, size in room.items()}
+        return cls(narrow, wide, sizes)
 
 
 def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
@@ -283,10 +310,11 @@ def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
 
 
 def _told(newton: int | None) -> str:
+    ok, lost, slow = (int(status) for status in (Status.OK, Status.NOT_CONVERGED, Status.SLOW))
     if newton is None:
-        return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where a loop did not converge, {SLOW} where not
+        return f"""status[i] becomes {ok}, or {lost} where a loop did not converge, {slow} where not
    quadratically."""
-    return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where the last of {newton} steps is
+    return f"""status[i] becomes {ok}, or {lost} where the last of {newton} steps is
    too large to believe."""
 
 
@@ -305,10 +333,10 @@ def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
         "nc": stages.drive.size1_out(0),
         "nd": graph.instant.size1_in("d"),
         "nz": graph.instant.size1_in("z"),
-        "OK": OK,
-        "NOT_CONVERGED": NOT_CONVERGED,
-        "NOT_FINITE": NOT_FINITE,
-        "SLOW": SLOW,
+        "OK": int(Status.OK),
+        "NOT_CONVERGED": int(Status.NOT_CONVERGED),
+        "NOT_FINITE": int(Status.NOT_FINITE),
+        "SLOW": int(Status.SLOW),
     }
 
 

@@ -1,7 +1,7 @@
 /* One design over all instants: its rows, whether it has a result, and means.
 
    Instants are evaluated in packs. Nothing here depends on another design. What the scene is made of stands before this text:
-   designs_columns, designs_quantities, tables, and sizes as macros. */
+   scene_columns, designs_curves, tables, and sizes as macros. */
 typedef DESIGNS_REAL designs_real;
 
 typedef struct {
@@ -13,7 +13,9 @@ typedef struct {
   double half;
   int *status, rests;
   const signed char* bent;
+  double* tops;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
+  casadi_real limits[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
 static designs_real designs_lane(const casadi_real* pack, int lane) {
@@ -51,7 +53,7 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  designs_columns(now->parameters, now->constants, now->p, at, y);
+  scene_columns(now->parameters, now->constants, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -83,7 +85,7 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
 /* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
    watched. */
 static void designs_sample(designs_now* now, double* history) {
-  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum;
   casadi_real most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   designs_real* row;
@@ -93,7 +95,7 @@ static void designs_sample(designs_now* now, double* history) {
   for (i = 0; i < now->n; i += LANES) {
     for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
-    designs_columns(now->parameters, now->constants, now->p, at, y);
+    scene_columns(now->parameters, now->constants, at, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
@@ -102,13 +104,8 @@ static void designs_sample(designs_now* now, double* history) {
     }
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
-    for (k = 0; k < 4; ++k) sum[k] = 0;
-    for (k = 0; k + 4 <= DESIGNS_OUTPUTS; k += 4) {
-      for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
-    }
-    for (; k < DESIGNS_OUTPUTS; ++k) sum[0] = sum[0] + y[k];
-    sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    memcpy(row, sum, sizeof *sum);
+    sum = scene_sum(y, DESIGNS_OUTPUTS);
+    memcpy(row, &sum, sizeof sum);
     for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(row += stride, y + DESIGNS_OUTPUTS + k, sizeof *y);
     if (history) {
       for (k = 0; k < DESIGNS_OUTPUTS; ++k) {
@@ -176,45 +173,50 @@ static designs_real designs_most(const designs_now* now, int check) {
   return most;
 }
 
+/* What the checks of a design must keep to, and beside rows the largest of their terms: the same at all instants. */
+static void designs_bind(designs_now* now) {
+  const designs_real extent = designs_lane(now->matter, 0);
+  int k;
+  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
+    const int kind = designs_kind[k], open = kind == DESIGNS_IS_OPEN || kind == DESIGNS_IS_OPEN_MOMENT;
+    now->limits[k] = open ? (designs_real) INFINITY : kind == DESIGNS_IS_GAP ? designs_limit[k]*extent : designs_limit[k];
+    now->beside[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (designs_real) 0;
+  }
+}
+
+/* The first rule that each of a pack of instants breaks, by number, or zero. */
+static casadi_real designs_broken(const casadi_real* checks, const casadi_real* limits, const casadi_real* beside, casadi_real iterated) {
+  const casadi_real* arg[4];
+  casadi_real* res[1];
+  casadi_real rule;
+  arg[0] = checks;
+  arg[1] = limits;
+  arg[2] = beside;
+  arg[3] = &iterated;
+  res[0] = &rule;
+  status_of(arg, res);
+  return rule;
+}
+
 /* Why an instant has no result, or DESIGNS_OK; that it is at rest only where nothing else is wrong. */
 static int designs_why(const designs_now* now, casadi_int i) {
-  designs_real x, limit;
-  int k, rests = 0;
-  for (k = 0; k < DESIGNS_CHECKS; ++k) {
-    if (designs_kind[k] == DESIGNS_IS_BEYOND && designs_row(now, DESIGNS_CHECKED + k)[i] > designs_limit[k]) return DESIGNS_BEYOND_ENDS;
-  }
-  if (now->status[i] == DESIGNS_NOT_CONVERGED) return DESIGNS_NOT_CONVERGED;
-  for (k = 0; k < DESIGNS_CHECKS; ++k) {
-    x = designs_row(now, DESIGNS_CHECKED + k)[i];
-    limit = designs_limit[k];
-    if (designs_kind[k] == DESIGNS_IS_BEYOND) continue;
+  casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, rule;
+  designs_real x;
+  int k, why;
+  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
+    const designs_real* row = designs_row(now, DESIGNS_CHECKED + k);
+    checks[k] = row[i];
+    beside[k] = now->beside[k];
     if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
-      if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
-      if (!(x > limit)) return DESIGNS_DEAD_CENTRE;
-      if (designs_passes(now, k, i)) return DESIGNS_PASSES_DEAD_CENTRE;
-    } else if (now->status[i] == DESIGNS_SLOW) {
-      return DESIGNS_SLOW;
-    } else if (designs_kind[k] == DESIGNS_IS_GAP) {
-      limit *= designs_lane(now->matter, 0);
-      if (x > limit || x < -limit) return DESIGNS_NOT_CLOSED;
-    } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
-      if (x > limit) return DESIGNS_MISFIT;
-    } else if (designs_kind[k] == DESIGNS_IS_JAM) {
-      if (!(x > limit)) return DESIGNS_JAMS;
-    } else if (designs_kind[k] == DESIGNS_IS_REST) {
-      rests |= x > limit;
-    } else if (designs_kind[k] == DESIGNS_IS_SLIP) {
-      if (x > limit) return DESIGNS_JAMS;
+      beside[k] = (designs_real) designs_passes(now, k, i);
     } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
-      if (!(x <= limit && x >= -limit)) return DESIGNS_TURNED;
-      x = i + 1 < now->n ? designs_row(now, DESIGNS_CHECKED + k)[i + 1] - x : 0;
-      if (x > DESIGNS_LEAP || x < -DESIGNS_LEAP) return DESIGNS_TURNED;
-    } else if (designs_kind[k] == DESIGNS_IS_ROW) {
-      if (!((x < 0 ? -x : x) <= limit*designs_most(now, k + 1))) return DESIGNS_ROW_VIOLATED;
+      beside[k] = i + 1 < now->n ? row[i + 1] - row[i] : 0;
     }
   }
-  if (now->status[i] == DESIGNS_SLOW) return DESIGNS_SLOW;
-  if (rests) return DESIGNS_AT_REST;
+  iterated = (designs_real) now->status[i];
+  rule = designs_broken(checks, now->limits, beside, iterated);
+  why = designs_status[(int) designs_lane(&rule, 0)];
+  if (why != DESIGNS_OK) return why;
   x = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS)[i];
   return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
 }
@@ -222,26 +224,31 @@ static int designs_why(const designs_now* now, casadi_int i) {
 /* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
 static int designs_refused(designs_now* now) {
   const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
-  designs_real limit;
-  casadi_int i;
+  casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, worst;
+  designs_real lane[LANES];
+  casadi_int i, j;
   int k, bad = 0, why;
   now->rests = 0;
+  designs_bind(now);
   for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
-  for (i = 0; i < now->n; ++i) bad |= now->status[i] != DESIGNS_OK;
-  for (k = 0; k < DESIGNS_CHECKS; ++k) {
+  worst = (designs_real) 0;
+  iterated = (designs_real) 0;
+  for (i = 0; DESIGNS_BOUNDS && i < now->n; i += LANES) {
+    for (k = 0; k < DESIGNS_BOUNDS; ++k) memcpy(checks + k, designs_row(now, DESIGNS_CHECKED + k) + i, sizeof *checks);
+    if (DESIGNS_NZ) {
+      for (j = 0; j < LANES; ++j) lane[j] = (designs_real) now->status[i + j < now->n ? i + j : now->n - 1];
+      memcpy(&iterated, lane, sizeof iterated);
+    }
+    worst = designs_larger(worst, designs_broken(checks, now->limits, now->beside, iterated));
+  }
+  for (j = 0; j < LANES; ++j) bad |= designs_lane(&worst, (int) j) > 0;
+  /* What is seen beside other instants. */
+  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
     row = designs_row(now, DESIGNS_CHECKED + k);
     if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
       for (i = 0; i < now->n; ++i) bad |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
-    } else if (designs_kind[k] == DESIGNS_IS_GAP) {
-      limit = designs_limit[k]*designs_lane(now->matter, 0);
-      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
-    } else if (designs_kind[k] == DESIGNS_IS_JAM) {
-      for (i = 0; i < now->n; ++i) bad |= !(row[i] > designs_limit[k]);
-    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_BEYOND || designs_kind[k] == DESIGNS_IS_SLIP) {
-      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= designs_limit[k]);
-    } else if (designs_kind[k] == DESIGNS_IS_ROW) {
-      limit = designs_limit[k]*designs_most(now, k + 1);
-      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
+    } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
+      for (i = 0; i + 1 < now->n; ++i) bad |= !(row[i + 1] - row[i] <= DESIGNS_LEAP && row[i] - row[i + 1] <= DESIGNS_LEAP);
     }
   }
   if (!bad) return DESIGNS_OK;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES
 from ..base.vocabulary import Precision
+from ..summits.panels import Listed
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed, statements
 from .designs import CALL, DESIGNS, Reduction
@@ -76,11 +77,7 @@ class Library:
             cut = slice(start, start + size)
             self._call(self.entry, out, t=t[..., cut], p=p, guess=None, z=z[:, cut], out=out[:, cut], status=status[cut])
 
-        pool = ThreadPoolExecutor(shares)
-        try:
-            list(pool.map(run, range(0, n, size)))
-        finally:
-            pool.shutdown(cancel_futures=True)
+        _share(run, range(0, n, size), shares)
 
     @property
     def _stretch(self) -> int:
@@ -128,6 +125,7 @@ class DesignsLibrary:
         p: npt.NDArray[np.float64],
         results: Mapping[str, npt.NDArray[Any] | None],
         threads: int = 1,
+        listed: Listed | None = None,
     ) -> None:
         """Fill ``results`` for designs ``p``, as :meth:`bound` does. The bytes of a row do not depend on ``threads``."""
         n = p.shape[0]
@@ -137,18 +135,9 @@ class DesignsLibrary:
         def run(start: int) -> None:
             cut = slice(start, start + size)
             rows = {name: None if array is None else array[cut] for name, array in results.items()}
-            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows)()
+            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows, listed)()
 
-        starts = range(0, n, size)
-        if shares == 1:
-            for start in starts:
-                run(start)
-            return
-        pool = ThreadPoolExecutor(shares)
-        try:
-            list(pool.map(run, starts))
-        finally:
-            pool.shutdown(cancel_futures=True)
+        _share(run, range(0, n, size), shares)
 
     def bound(
         self,
@@ -156,13 +145,14 @@ class DesignsLibrary:
         bent: npt.NDArray[np.bool_],
         p: npt.NDArray[np.float64],
         results: Mapping[str, npt.NDArray[Any] | None],
+        listed: Listed | None = None,
     ) -> Callable[[], None]:
         """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps
         between them the motion bends more than they show; one row of either serves all designs. ``history`` may be None; or all
-        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. The bytes of a row
-        do not depend on other rows.
+        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
+        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on other rows.
         """
         stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
         hidden = np.zeros((len(bent), stride), np.int8)
@@ -170,8 +160,8 @@ class DesignsLibrary:
         room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, DTYPES[self.search.precision])
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room, **results}
-        arrays |= {"statuses": status, "hiding": hiding}
+        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room}
+        arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
         search, within = self.search.call(self.tables, _CUT)
         call = CALL.made(
             search=ctypes.addressof(search),
@@ -181,10 +171,25 @@ class DesignsLibrary:
             stride=stride,
             t_apart=self.count if len(t) > 1 else 0,
             bent_apart=stride if len(bent) > 1 else 0,
+            way=listed.way if listed else 0,
+            share=listed.share if listed else 0.0,
             **{name: None if array is None else array.ctypes.data for name, array in arrays.items()},
         )
         # The arrays live as long as what reads and writes them.
         return functools.partial(_enter, self.entry, call, (arrays, search, within))
+
+
+def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> None:
+    """Run what begins at each of the starts, by so many threads."""
+    if threads == 1:
+        for start in starts:
+            run(start)
+        return
+    pool = ThreadPoolExecutor(threads)
+    try:
+        list(pool.map(run, starts))
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def _enter(entry: Any, call: Any, arrays: object) -> None:

@@ -127,7 +127,7 @@ static int search_rounded(const search_now* now, int curve) {
 /* Leave a step open in which a curve may rise, unless that is rounding; anywhere, if what was found there was not what was expected. */
 static void search_open(search_now* now, const search_panel* panel, search_list* list, int curve, long long step, int anywhere) {
   search_entry* entry = list->entries + list->open;
-  const search_real limit = now->peaks[now->quantity[curve]].limit, noise = search_noise(now, panel, curve, step);
+  const search_real limit = search_level(now, panel, curve, step), noise = search_noise(now, panel, curve, step);
   entry->curve = curve;
   entry->step = step;
   entry->bound = search_furthest(search_row(panel, curve), step, panel->n);
@@ -172,7 +172,7 @@ static void search_aim(const search_now* now, const search_panel* panel, search_
     summit->kinked = 0;
     if (first == summit->at - 3) search_kink(search_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
     summit->closed = summit->curve_there < 0 && summit->rough <= -SEARCH_ROUGH*summit->curve_there &&
-                     summit->size + summit->rough < peak->best - peak->rounding;
+                     summit->size + summit->rough < peak->least;
   }
 }
 

@@ -7,11 +7,12 @@
 enum { SEARCH_AT_BASE = -1, SEARCH_AT_TIP = -2 };
 
 /* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
-   its sign, its time and its ratio xi/l. going is its size where it grows on and no end of that is found. What is open is not
-   searched, and untold what would take too many panels. */
+   its sign, its time and its ratio xi/l. least is what a summit must reach that matters. going is its size where it grows on and no
+   end of that is found. base is what values are counted from. What is open is not searched, and untold what would take too many
+   panels. */
 typedef struct {
   double t;
-  search_real best, rounding, limit, sampled, size, place, sign, going;
+  search_real best, rounding, least, limit, sampled, size, place, sign, going, base;
   int open, untold;
 } search_peak;
 
@@ -64,9 +65,18 @@ static double search_spacing(const search_panel* panel) {
 /* How many rows there are: of curves, of their places, of what is watched. */
 static int search_rows(const search_now* now) { return now->curves->curves + now->curves->places + now->curves->watches; }
 
+/* Count so many values of a curve from the base of its quantity, which of sizes is zero. */
+static void search_count(const search_now* now, int curve, search_real* row, long long many) {
+  const search_real base = now->peaks[now->quantity[curve]].base, way = (search_real) now->call->way;
+  long long i;
+  for (i = 0; i < many; ++i) row[i] = way*row[i] - base;
+}
+
 /* Evaluate at up to as many times as go together, into rows that are so far apart. need tells links by bits. */
 static void search_evaluate(search_now* now, const double* t, int many, unsigned long long need, search_real* rows, long long apart) {
+  int k;
   if (now->stopped || now->call->at(now->call->of, many, t, need, rows, apart)) now->stopped = 1;
+  for (k = 0; now->call->way && k < now->curves->curves; ++k) search_count(now, k, rows + k*apart, many);
 }
 
 static search_real search_found(const search_now* now, int k, int j) { return now->found[k*now->call->together + j]; }
@@ -85,13 +95,24 @@ static search_real search_ratio_in(const search_now* now, const search_panel* pa
   return search_ratio(now, curve, search_row(panel, now->curves->curves) + i, panel->stride);
 }
 
-/* A quantity's largest size becomes this; what is nothing beside others of its unit has no limit that a curve could rise above. */
+/* A quantity's largest size becomes this; what is nothing beside others of its unit has no limit that a curve could rise above. Where
+   local peaks are listed, these matter down to their share of it. */
 static void search_grow(const search_now* now, int q, search_real best) {
   search_peak* peak = now->peaks + q;
   const search_real scale = now->scale[now->curves->unit[q]];
   peak->best = best;
   peak->rounding = SEARCH_ROUNDING*(best + SEARCH_BESIDE*scale);
-  peak->limit = best > SEARCH_NOTHING*scale && !peak->open ? best + peak->rounding : (search_real) INFINITY;
+  peak->least = now->call->tops ? (search_real) now->call->share*best : best - peak->rounding;
+  peak->limit = !(best > SEARCH_NOTHING*scale) || peak->open ? (search_real) INFINITY
+                : now->call->tops ? peak->least : best + peak->rounding;
+}
+
+/* What a curve must rise above in a step to matter: where local peaks are listed, above both ends too. */
+static search_real search_level(const search_now* now, const search_panel* panel, int curve, long long step) {
+  const search_peak* peak = now->peaks + now->quantity[curve];
+  const search_real* row = search_row(panel, curve) + step;
+  const search_real end = search_upper(search_magnitude(row[0]), search_magnitude(row[1]));
+  return search_upper(peak->limit, end + peak->rounding);
 }
 
 /* Where friction at rest leaves a curve open at an instant, its row holds a zero with a minus sign, which no other value of it has. */
@@ -111,11 +132,35 @@ static int search_lacks(const search_now* now, int curve, double t) {
   return search_rests(now, curve, i < now->n - 2 ? i : now->n - 2);
 }
 
+/* List what a curve is at a time: the largest of what is less than a step apart, and the largest of these where there are many. */
+static void search_list_top(search_now* now, int curve, search_real value, double t, search_real place) {
+  const int q = now->quantity[curve];
+  double *rows = now->call->tops + 4*SEARCH_TOPS*q, *row, *into = rows;
+  const double size = (double) search_magnitude(value);
+  int j;
+  if (!(size >= (double) now->peaks[q].least)) return;
+  for (j = 0; j < SEARCH_TOPS; ++j) {
+    row = rows + 4*j;
+    if (row[0] == curve && t - row[1] <= 2*now->half && row[1] - t <= 2*now->half) {
+      into = row;
+      break;
+    }
+    if (row[0] != row[0] || fabs(row[3]) < fabs(into[3])) into = row;
+    if (row[0] != row[0]) break;
+  }
+  if (into[0] == into[0] && fabs(into[3]) >= size) return;
+  into[0] = curve;
+  into[1] = t;
+  into[2] = (double) place;
+  into[3] = (double) value;
+}
+
 /* Take in what a curve is at a time; what is nothing has its peak at an instant. */
 static void search_note(search_now* now, int curve, search_real value, double t, search_real place) {
   search_peak* peak = now->peaks + now->quantity[curve];
   const search_real size = search_magnitude(value);
   if (!(size - size == 0) || search_lacks(now, curve, t)) return;
+  if (now->call->tops) search_list_top(now, curve, value, t, place);
   if (size > peak->best) {
     search_grow(now, now->quantity[curve], size);
     if (peak->size >= size - peak->rounding && peak->t < t - now->half) return;

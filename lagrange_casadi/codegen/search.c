@@ -48,7 +48,7 @@ static void search_enter(search_now* now, const search_panel* panel, int curve, 
   if (depth == SEARCH_DEEPEST || search_width(panel) <= search_spacing(panel)) {
     panel->hiding[step] |= SEARCH_DONE;
     for (k = 0; panel->n >= SEARCH_FIT && k < now->curves->curves; ++k) {
-      if (!(search_furthest(search_row(panel, k), step, panel->n) > now->peaks[now->quantity[k]].limit)) continue;
+      if (!(search_furthest(search_row(panel, k), step, panel->n) > search_level(now, panel, k, step))) continue;
       search_end(now, panel, k, step, depth == SEARCH_DEEPEST);
     }
   } else if (now->left > 0) {
@@ -147,18 +147,16 @@ static void search_list_steps(search_now* now, const search_panel* panel, int cu
                                search_list* list, int depth) {
   const search_real* row = search_row(panel, curve);
   const long long n = panel->n;
-  search_real limit = now->peaks[now->quantity[curve]].limit;
   long long i, step;
   int j;
   for (j = 0; j < LANES && first + j < n; ++j) {
     if (!(where >> j & 1)) continue;
     i = first + j;
     for (step = i > 0 && !(j > 0 && where >> (j - 1) & 1) ? i - 1 : i; step <= i && step < n - 1; ++step) {
-      if (!(search_furthest(row, step, n) > limit)) continue;
+      if (!(search_furthest(row, step, n) > search_level(now, panel, curve, step))) continue;
       search_list_step(now, panel, curve, step, list);
       if (list->looks < SEARCH_SUMMITS - 1 && list->ends < SEARCH_SUMMITS && list->open < SEARCH_SUMMITS) continue;
       search_flush(now, panel, list, depth);
-      limit = now->peaks[now->quantity[curve]].limit;
     }
   }
 }
@@ -256,11 +254,39 @@ static void search_leave_out(search_now* now) {
   }
 }
 
+/* Count values from so far below the least at the instants that only what is largest goes far: sizes are values then. */
+static void search_one_way(search_now* now) {
+  const long long padded = (now->n + LANES - 1)/LANES*LANES;
+  search_real low, high, x, *row;
+  long long i;
+  int k, q;
+  for (q = 0; q < now->curves->quantities; ++q) {
+    low = SEARCH_LARGEST;
+    high = -SEARCH_LARGEST;
+    for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
+      for (row = search_row(&now->all, k), i = 0; i < now->n; ++i) {
+        x = (search_real) now->call->way*row[i];
+        if (x < low) low = x;
+        if (x > high) high = x;
+      }
+    }
+    now->peaks[q].base = low <= high ? 2*low - high : 0;
+    for (k = now->curves->first[q]; k < now->curves->first[q + 1]; ++k) {
+      row = search_row(&now->all, k);
+      search_count(now, k, row, padded);
+      now->call->most[k] = 0;
+      for (i = 0; i < now->n; ++i) if (search_magnitude(row[i]) > now->call->most[k]) now->call->most[k] = search_magnitude(row[i]);
+    }
+  }
+}
+
 /* The largest size of every quantity over the instants, and of every unit. */
 static void search_largest(search_now* now) {
   const lagrange_casadi_curves* curves = now->curves;
   int j, k, q;
   memset(now->none, 0, (size_t) curves->curves);
+  for (q = 0; q < curves->quantities; ++q) now->peaks[q].base = 0;
+  if (now->call->way) search_one_way(now);
   if (now->call->rests) search_leave_out(now);
   for (k = 0; k < curves->units; ++k) now->scale[k] = now->call->scales ? now->call->scales[k] : 0;
   memset(now->zigzags, -1, (size_t) curves->curves);
@@ -321,6 +347,62 @@ static void search_sampled(search_now* now, int q) {
   peak->sign = search_row(all, curve)[first] < 0 ? -1 : 1;
 }
 
+/* Whether an instant is one that a curve has a local peak at: SEARCH_FLAT where it is level on both sides but for rounding. */
+enum { SEARCH_NO_TOP, SEARCH_FLAT, SEARCH_TOP };
+static int search_top_at(const search_now* now, int curve, long long i) {
+  const search_peak* peak = now->peaks + now->quantity[curve];
+  const search_real* row = search_row(&now->all, curve) + i;
+  const search_real size = search_magnitude(row[0]), rounding = peak->rounding;
+  const search_real before = i > 0 ? search_magnitude(row[-1]) : -1, after = i + 1 < now->n ? search_magnitude(row[1]) : -1;
+  if (!(size >= peak->least && size >= before - rounding && size >= after - rounding)) return SEARCH_NO_TOP;
+  if (now->call->rests && search_nothing(row[0])) return SEARCH_NO_TOP;
+  return size - before > rounding || size - after > rounding ? SEARCH_TOP : SEARCH_FLAT;
+}
+
+/* List the local peaks at instants too, of what is level some, and leave of all what is a step's largest and far from larger ones. */
+static void search_tops(search_now* now) {
+  const search_panel* all = &now->all;
+  const double way = now->call->way, step = 2*now->half;
+  const search_peak* peak;
+  const search_real* row;
+  search_real size;
+  double *rows, *one, *other;
+  long long i, flat, every;
+  int j, k, q, top;
+  for (k = 0; k < now->curves->curves; ++k) {
+    peak = now->peaks + now->quantity[k];
+    if (peak->open) continue;
+    for (flat = i = 0; i < now->n; ++i) flat += search_top_at(now, k, i) == SEARCH_FLAT;
+    every = peak->limit <= SEARCH_LARGEST ? 1 + 2*flat/SEARCH_TOPS : now->n;
+    for (flat = i = 0; i < now->n; ++i) {
+      top = search_top_at(now, k, i);
+      if (top == SEARCH_NO_TOP || (top == SEARCH_FLAT && flat++ % every)) continue;
+      search_list_top(now, k, search_row(all, k)[i], all->t[i], search_ratio_in(now, all, k, i));
+    }
+  }
+  for (q = 0; q < now->curves->quantities; ++q) {
+    peak = now->peaks + q;
+    rows = now->call->tops + 4*SEARCH_TOPS*q;
+    for (one = rows; one < rows + 4*SEARCH_TOPS; one += 4) {
+      if (one[0] != one[0]) continue;
+      row = search_row(all, (int) one[0]);
+      i = (long long) ((one[1] - all->t[0])/step);
+      i = i < 0 || now->n < 2 ? 0 : i < now->n - 2 ? i : now->n - 2;
+      size = (search_real) fabs(one[3]) + peak->rounding;
+      if (peak->open || !(size >= peak->least && size >= search_magnitude(row[i]) && (now->n < 2 || size >= search_magnitude(row[i + 1]))) ||
+          (way != 0 && one[3] < 0)) one[0] = NAN;
+      for (j = 0; j < SEARCH_TOPS; ++j) {
+        other = rows + 4*j;
+        if (other != one && other[0] == one[0] && fabs(other[1] - one[1]) <= step && fabs(other[3]) >= fabs(one[3])) one[0] = NAN;
+      }
+    }
+    for (one = rows; one < rows + 4*SEARCH_TOPS; one += 4) {
+      one[0] -= now->curves->first[q];
+      if (way != 0) one[3] = way*(one[3] + (double) peak->base);
+    }
+  }
+}
+
 static char* search_take(char** room, long long count, size_t size) {
   char* here = *room;
   *room += ((size_t) count*size + 63)/64*64;
@@ -349,8 +431,10 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search_room(lagrange_casadi_search_c
 }
 
 /* The peak of every quantity of n instants t in equal steps: its value, its time and its place, NaN for what is open, and whether it is
-   told. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most are the largest sizes of
-   curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
+   told. Where way is 1 or -1, the peak of a quantity is the largest of its values times that, else of its size. tops, unless it is NULL,
+   becomes for each quantity SEARCH_TOPS local peaks down to a share of the largest: the number of the curve among the quantity's own,
+   which is NAN where there are no more, time, ratio and value. rows are those of curves, of their places and, at watched, of what is watched, stride values apart; most
+   are the largest sizes of curves at the instants. What rests is NaN in rows. scales, unless it is NULL, tells how large others are of each unit, hiding in which
    steps something is known to hide; it has twice stride values. at evaluates up to so many times together, and may
    write as many values of each row of its out; what it returns ends the search unless it is 0. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* call) {
@@ -376,6 +460,7 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
   now.all.watched = call->watched;
   now.all.hiding = call->hiding;
   now.all.kinks = call->hiding + call->stride;
+  for (q = 0; call->tops && q < 4*SEARCH_TOPS*curves->quantities; ++q) call->tops[q] = NAN;
   search_largest(&now);
   if (call->n > 1) search_panel_of(&now, &now.all, 0);
   for (q = 0; q < curves->quantities; ++q) {
@@ -390,8 +475,9 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_search(lagrange_casadi_search_call* 
       call->told[q] = (signed char) told;
       search_sampled(&now, q);
     }
-    call->value[q] = peak->sign*peak->best;
+    call->value[q] = call->way ? call->way*(peak->sign*peak->best + peak->base) : peak->sign*peak->best;
     call->peak_t[q] = peak->t;
     call->xi[q] = peak->place;
   }
+  if (call->tops) search_tops(&now);
 }

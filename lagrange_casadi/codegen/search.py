@@ -24,7 +24,7 @@ from ..base.vocabulary import Precision
 from ..summits import between, panels
 from ..summits import search as reference
 from ..summits.between import Flags
-from ..summits.panels import Curves, CurveSource, Peaks, Samples
+from ..summits.panels import TOPS, Curves, CurveSource, Listed, Peaks, Samples
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed
@@ -75,6 +75,9 @@ CALL = Call(
         "open": "const signed char*",
         "rests": "int",
         "together": "int",
+        "way": "int",
+        "share": "double",
+        "tops": "double*",
         "hiding": "signed char*",
         "at": "lagrange_casadi_at*",
         "of": "void*",
@@ -176,6 +179,7 @@ def _macros(precision: Precision) -> dict[str, object]:
         "DEEPEST": _DEEPEST[precision],
         "FINEST": _FINEST[precision],
         "BESIDE_REST": reference.BESIDE_REST,
+        "TOPS": TOPS,
         "PANELS": reference.PANELS,
         **{f"IS_{kind.name}": int(kind) for kind in Kind},
     }
@@ -238,7 +242,7 @@ class Search:
         """Where compiled code finds it."""
         return ctypes.cast(self.entry, ctypes.c_void_p).value
 
-    def call(self, tables: Tables, together: int, **members: int | None) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
+    def call(self, tables: Tables, together: int, **members: float | None) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
         """A call for some curves, of which ``together`` times are evaluated at once, and its room; other members are left out."""
         given = dict.fromkeys(CALL.members, 0) | {"curves": ctypes.addressof(tables.struct), "together": together} | members
         made = CALL.made(**{name: value or (None if CALL.members[name].endswith("*") else 0) for name, value in given.items()})
@@ -247,7 +251,9 @@ class Search:
         made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
         return made, room
 
-    def peaks(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
+    def peaks(
+        self, source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags, listed: Listed | None = None
+    ) -> Peaks:
         """The same as :func:`..summits.search.peaks`; what ``source`` raises is raised."""
         values, places, watched = samples
         t = np.ascontiguousarray(t, float)
@@ -271,6 +277,7 @@ class Search:
         hidden[0, : n - 1] = hiding
         asked = _Asked(source, along)
         found, told, begin = np.empty((3, quantities)), np.zeros(quantities, np.int8), rows.ctypes.data + _LINE * rows.itemsize
+        tops = np.empty((quantities, TOPS, 4)) if listed else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
             tables,
@@ -283,6 +290,9 @@ class Search:
             most=most.ctypes.data,
             scales=scales.ctypes.data,
             rests=int(np.isnan(values).any()),
+            way=listed.way if listed else 0,
+            share=listed.share if listed else 0.0,
+            tops=None if tops is None else tops.ctypes.data,
             hiding=hidden.ctypes.data,
             at=ctypes.cast(asked.entry, ctypes.c_void_p).value,
             value=found[0].ctypes.data,
@@ -294,7 +304,7 @@ class Search:
         del room  # until here the call has used it
         if asked.error is not None:
             raise asked.error
-        return Peaks(found[0], found[1], found[2], told.astype(bool))
+        return Peaks(found[0], found[1], found[2], told.astype(bool), tops)
 
 
 _FUNCTION_OF_TIMES = ctypes.CFUNCTYPE(

@@ -137,6 +137,11 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any
     return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
 
 
+def stages_for(graph: Program, precision: Precision, t: Array, p: Array) -> Stages:
+    """Those for instants and parameters: in pairs where numbers are single, and where angles count many turns."""
+    return compensated(graph, precision) if precision == "single" or turns_many(graph, t, p) else plain(graph)
+
+
 def turns_many(graph: Program, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
     functions = (graph.instant, graph.laws.motion, *([graph.newton.step] if graph.newton else []))

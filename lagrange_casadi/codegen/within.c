@@ -32,7 +32,7 @@ static void search_part(search_now* now, double start, double stop, const search
   double t[SEARCH_WITHIN];
   signed char hiding[SEARCH_WITHIN], kinks[SEARCH_WITHIN];
   search_panel within;
-  search_real *row, best;
+  search_real *row, known;
   int i, j, k, many, beyond;
   for (k = 0; now->call->rests && depth >= SEARCH_BESIDE_REST && k < curves; ++k) {
     if (search_lacks(now, k, (start + stop)/2)) return;
@@ -51,12 +51,12 @@ static void search_part(search_now* now, double start, double stop, const search
     search_evaluate(now, t + i, many, ~0ull, within.rows + i, SEARCH_STRIDE);
     for (k = 0; k < curves; ++k) {
       row = search_row(&within, k);
-      best = now->peaks[now->quantity[k]].best;
+      known = now->call->tops ? now->peaks[now->quantity[k]].least : now->peaks[now->quantity[k]].best;
       beyond = 0;
-      for (j = i; j < i + many; ++j) beyond |= !(search_magnitude(row[j]) <= best);
+      for (j = i; j < i + many; ++j) beyond |= !(search_magnitude(row[j]) <= known);
       if (!beyond || search_lacks(now, k, (start + stop)/2)) continue;
       for (j = i; j < i + many; ++j) {
-        if (search_magnitude(row[j]) > now->peaks[now->quantity[k]].best) search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
+        if (search_magnitude(row[j]) > known) search_note(now, k, row[j], t[j], search_ratio_in(now, &within, k, j));
         /* What has no value is nothing, and hides what is beside it. */
         if (row[j] - row[j] == 0) continue;
         hiding[j - 1] = hiding[j] = SEARCH_HIDES;

@@ -124,8 +124,8 @@ def coordinates_of(description: Description) -> dict[str, str]:
 
 
 def kinds_of_described(description: Description) -> Kinds:
-    """The kinds of coordinates and of frictions of a described mechanism, and the units of the user's outputs."""
-    coordinates = coordinates_of(description)
+    """The kinds of coordinates, those of guides too, and of frictions of a described mechanism, and the units of its outputs."""
+    coordinates = coordinates_of(description) | motions_of(description)
     rubbing = {name: load["friction"]["coordinate"] for name, load in description["loads"].items() if "friction" in load}
     frictions = {name: coordinates[coordinate] for name, coordinate in rubbing.items()}
     return Kinds(coordinates, frictions, description.get("outputs", {}))
@@ -150,6 +150,21 @@ def drives_of(description: Description) -> list[str]:
         return [name for name in _driven(description) if name not in description["rows"].values()]
     known = coordinates_of(description)
     return [name for name in drives if name in known]
+
+
+def values_of(description: Description) -> dict[str, float]:
+    """Return the values of all parameters."""
+    return {name: parameter["value"] for name, parameter in description["parameters"].items()}
+
+
+def beams_of(description: Description) -> list[str]:
+    """Return the links that have sections and a beam."""
+    return [name for name, body in description["bodies"].items() if "beam" in body]
+
+
+def fitted_of(description: Description) -> list[str]:
+    """Return the joints that have a pin or a bearing."""
+    return [name for name, joint in description["joints"].items() if "fitted" in joint]
 
 
 def parts_of(description: Description) -> list[str]:

@@ -80,3 +80,11 @@ def are_even(values: Array) -> bool:
     gaps = np.abs(values - np.linspace(values[0], values[-1], values.size))
     step = abs(values[-1] - values[0]) / (values.size - 1)
     return bool(gaps.max() <= _UNEVEN * step + 4.0 * np.spacing(np.abs(values).max()))
+
+
+def checked_ratios(even: EvenPoints) -> EvenPoints:
+    """Even section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
+    start, stop, count = checked("xi", even)
+    if start < 0.0 or stop > 1.0:
+        raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {start:g} to {stop:g}")
+    return start, stop, count

@@ -8,8 +8,8 @@ found to the last bit, and value and slopes on both sides of it are compared.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -21,7 +21,7 @@ import numpy.typing as npt
 from ..arithmetic.interpret import followable, operations
 from ..base.arrays import Array
 from ..base.symbolic import symbolic_property
-from ..errors import DeclarationError
+from .broken_curves import Isolated, Kink
 from .clearance import Clearance
 from .limits_beside import Flags, Side, between, vanishes
 from .marks import marks_of
@@ -42,50 +42,13 @@ _DIP, _TOUCH = 0.3, 1e-12
 _APART = (-1.0, -(2.0**-10), -(2.0**-20), 2.0**-20, 2.0**-10, 1.0)
 """How many steps from an instant it is first compared with what is beside it."""
 
+_STRETCHES = 0.25 ** np.arange(20, -1, -1)
+"""How many steps rounding may spread a place over."""
+
 _ROUNDING = 16 * np.finfo(float).eps
 
 _AT_ONCE = 1 << 17
 """Numbers of each operation that are looked at together."""
-
-
-@dataclass(frozen=True)
-class Kink:
-    """A place, by symbol, at which a value or a slope jumps; by what part of it, infinite where it has no limit."""
-
-    what: str
-    jump: float
-    at: Mapping[str, float]
-
-    def __str__(self) -> str:
-        does = f"jumps by {100.0 * self.jump:.3g} %" if math.isfinite(self.jump) else "has no limit"
-        return f"its {self.what} {does} where {_place(self.at)}"
-
-    def refused(self, what: str) -> DeclarationError:
-        """The error for ``what`` has the kink."""
-        return DeclarationError(
-            f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a curve "
-            "whose slope does not jump, of CasADi's functions: in place of a table, a curve(x, y), a "
-            "polynomial or a Fourier sum"
-        )
-
-
-@dataclass(frozen=True)
-class Isolated:
-    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides of it."""
-
-    what: str
-    at: Mapping[str, float]
-
-    def __str__(self) -> str:
-        return f"its {self.what} where {_place(self.at)} is not that on either side"
-
-    def refused(self, what: str) -> DeclarationError:
-        """The error for ``what`` is isolated at an instant."""
-        return DeclarationError(
-            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a curve without "
-            "if_else, fabs, sign, floor and the like that touch a place there: in place of if_else(x == 0, 1, sin(x)/x) "
-            "a series where x is small"
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +185,8 @@ class Smooth:
                 steps = Steps.joined([steps, *ends])
             # It is no place alone where a mark stays as it is.
             exact, *beside = (self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART))
-            steps = steps.some((exact & ~np.all(beside, axis=0)).any(axis=0).nonzero()[0])
+            alone = exact & ~np.all(beside, axis=0)
+            steps, alone = steps.some(alone.any(axis=0).nonzero()[0]), alone[:, alone.any(axis=0)]
             if not steps.owner.size:
                 return
             here = called(self._bends, steps.at(steps.low), steps.p, steps.way)
@@ -231,16 +195,19 @@ class Smooth:
             some = np.isfinite(here).all(axis=0) & ~np.all([row == here for row in others], axis=(0, 1))
             if not some.any():
                 return
-            steps, here = steps.some(np.flatnonzero(some)), here[:, some]
+            steps, here, alone = steps.some(np.flatnonzero(some)), here[:, some], alone[:, some]
             rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(-1, count, n)
             usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[:, steps.owner]
             kinds = np.array([0, *[1] * symbols, 2])
+            # A curvature goes on to change over what a place is spread.
+            faint = _FAINT * usual
+            faint[2] = np.maximum(_FAINT, self._stretch(steps, alone)) * usual[2]
             sides = [Side(side.value - here[:, None], side.off, side.there) for side in sides_of(self._bends, steps, steps.low)]
             same, signs = [], []
             for side in sides:
                 sizes = np.abs(side.value) + np.abs(here)[:, None]
                 sizes = np.array([sizes[kinds == kind].max(axis=0) for kind in range(3)])
-                least = _SLACK * (_SAME * sizes + _FAINT * usual[:, None])
+                least = _SLACK * (_SAME * sizes + faint[:, None])
                 same.append(vanishes(side, sizes[kinds], least[kinds])[0])
                 signs.append(side.nearest_signs)
         other = ~(same[0] | same[1] | (signs[0] * signs[1] < 0.0))
@@ -248,6 +215,17 @@ class Smooth:
         for k in np.flatnonzero(other.any(axis=0)):
             what = ("value", "slope", "curvature")[kinds[other[:, k].argmax()]]
             yield int(steps.owner[k]), what, places[:, k]
+
+    def _stretch(self, steps: Steps, alone: Flags) -> Array:
+        """How many steps a place is spread over: the least for which a mark that is ``alone`` there, (marks, m), stays as it is.
+
+        Two curves that touch in a third power are the same number for so long.
+        """
+        found = np.where(alone, _STRETCHES[0], np.inf)
+        for far, beyond in itertools.pairwise(_STRETCHES):
+            ends = [self._exact(self._marks(steps, steps.low + way * far)) for way in (-1.0, 1.0)]
+            found[alone & np.any(ends, axis=0)] = beyond
+        return np.asarray(found.min(axis=0))
 
     def _exact(self, marks: Array) -> Flags:
         """Which marks (marks, m) are zero, or a whole number, to the last bit."""
@@ -352,10 +330,6 @@ class Smooth:
         # What is large elsewhere may be so for it has no limit here.
         limits = np.array([vanishing(side.steps, side.sizes, 0.0 * faint)[0] for side in sides]).all(axis=0)
         yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
-
-
-def _place(at: Mapping[str, float]) -> str:
-    return ", ".join(f"{name} = {value:.6g}" for name, value in at.items())
 
 
 def _usual(slopes: Array, paths: Array) -> Array:

@@ -276,7 +276,7 @@ POSITIVE = ("radius", "length", "stribeck", "smooth")
 class Friction:
     """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol`` stands for it until it is found.
 
-    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple along the coordinate is
+    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple along the coordinate is::
 
         -sigma mu radius |R| - viscous v                    in a pin that bears the force R,
         -sigma mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its line and the moment M.

@@ -87,6 +87,8 @@ def read_samples(
         Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values, and takes ``stretch`` times as
         long.
 
+    Notes
+    -----
     Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a line that is no row of numbers,
     times that do not rise, and ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
     """

@@ -2,60 +2,39 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NoReturn
 
 from ..arguments import Outputs, fitting, public, texts
 from ..base.symbolic import Graphs, symbolic, symbolic_property
-from ..base.tables import ANGLE, LENGTH
-from ..base.units import number, within
+from ..base.units import within
 from ..base.vocabulary import Precision
-from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
+from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError, shown
 from ..methods import method
 from .density import Density
 from .drives import weighed
-from .even_points import EvenPoints, checked
+from .even_points import EvenPoints, checked_ratios
 from .giving import Elastic, giving
 from .guiding import guided, laws_of
 from .laws import Laws
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
-from .parts import Expression, Friction
+from .parts import Expression, Friction, Parameter
 from .possible import Demands, demands
+from .posture import rough_posture
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
-from .times import TURNS, Over, Times, Timing, span_of
-from .wanted_slopes import SENSITIVITY, others, sensitivities
+from .times import Over, Times, Timing, span_of
+from .wanted_names import SENSITIVITY, among, others
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
 """What is told of links that have a beam: it follows from their sections, which are wanted with it."""
-
-
-def _rough(name: str, value: object, turns: bool) -> float:
-    """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
-    try:
-        found = number(value, ANGLE if turns else LENGTH)
-    except NumberError as error:
-        raise DeclarationError(f"posture of '{name}': {error}") from None
-    if turns and abs(found) > TURNS:
-        degrees = f"{math.degrees(found):.6g} deg, more than two turns"
-        told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
-        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
-    return found
-
-
-def checked_ratios(even: EvenPoints) -> EvenPoints:
-    """Even section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
-    start, stop, count = checked("xi", even)
-    if start < 0.0 or stop > 1.0:
-        raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {start:g} to {stop:g}")
-    return start, stop, count
 
 
 @dataclass(frozen=True)
@@ -87,7 +66,7 @@ class Wanted:
         with it. ``sensitivity`` and ``sensitivity:PARAMETER`` are of the other outputs that are wanted, and ``all`` is without.
         """
         every = outputs(mechanism)
-        choices = [*every, *kinds(mechanism)]
+        choices = [*every, *kinds(every)]
         if (told := texts(names)) is None:
             raise DeclarationError(f"wanted: expected a list of output names, got {shown(names)}; valid: {', '.join(choices)}")
         names = told
@@ -101,8 +80,9 @@ class Wanted:
         chosen = set(every if "all" in names else names)
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
-        chosen |= {f"section:{link}" for kind in STRENGTH for link in strength_of(mechanism, kind, names)}
-        if fitted := fitted_of(mechanism, names):
+        beams = _made_of_something(mechanism)
+        chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
+        if fitted := among("safety", mechanism.fitted, names):
             chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
         loads = (name for name, load in mechanism.loads.items() if isinstance(load, Friction))
         chosen |= {f"friction:{name}" for name in loads if chosen & {"load", f"load:{name}"}}
@@ -114,7 +94,7 @@ class Wanted:
             return tuple(name.partition(":")[2] for name in own)
 
         named = [name for name in names if name != "all"]
-        strength = (tuple(strength_of(mechanism, kind, named)) for kind in ("stress", "safety", "deflection"))
+        strength = (tuple(among(kind, beams, named)) for kind in ("stress", "safety", "deflection"))
         return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS), *strength)
 
     @property
@@ -133,32 +113,9 @@ def outputs(mechanism: Mechanism) -> list[str]:
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *sensitivities(mechanism)]
+    slopes = [f"{SENSITIVITY}:{name}" for name in mechanism.parameters]
+    named = [*reactions, *multipliers, *loads, *frictions, *sections, *own, *strength, *slopes]
     return ["all", "effort", "motion", *named]
-
-
-def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:
-    """The links of which a kind of strength is among wanted names."""
-    return [link for link in _made_of_something(mechanism) if {"all", kind, f"{kind}:{link}"} & set(names)]
-
-
-def fitted_of(mechanism: Mechanism, names: Sequence[str]) -> list[str]:
-    """The joints of whose pins and bearings the safety is among wanted names."""
-    return [joint for joint in mechanism.fitted if {"all", "safety", f"safety:{joint}"} & set(names)]
-
-
-def without_fitted(mechanism: Mechanism, names: Sequence[str], what: str) -> None:
-    """Raise :class:`.DeclarationError` where the safety of a joint's pin or bearing is among wanted names."""
-    for joint in mechanism.fitted:
-        if f"safety:{joint}" in (texts(names) or ()):
-            raise DeclarationError(f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}")
-
-
-def without_life(names: Sequence[str], what: str) -> None:
-    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
-    for name in texts(names) or ():
-        if name.partition(":")[0] == "life":
-            raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
 
 
 def _check_material(mechanism: Mechanism, name: str) -> None:
@@ -177,9 +134,9 @@ def _made_of_something(mechanism: Mechanism) -> list[str]:
     return [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
 
 
-def kinds(mechanism: Mechanism) -> list[str]:
-    """The kinds of output of which a mechanism has any beside the efforts and the motion: each can be wanted as a whole."""
-    return [kind for kind in (*_KINDS, *STRENGTH, SENSITIVITY) if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
+def kinds(names: Sequence[str]) -> list[str]:
+    """Choose the kinds of output of which there are any among names, beside the efforts and the motion; each can be wanted."""
+    return [kind for kind in (*_KINDS, *STRENGTH, SENSITIVITY) if any(name.startswith(f"{kind}:") for name in names)]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
@@ -234,6 +191,8 @@ class Scene(Graphs):
     rounding
         How far axes [rad] and places [of its size] in space may be off where loops do not close as declared, 0 to 1e-3.
 
+    Notes
+    -----
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
     """
@@ -262,14 +221,7 @@ class Scene(Graphs):
             raise DeclarationError(
                 f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints that make it by drives=[...]"
             )
-        coordinates = self.mechanism.coordinates
-        places = [*(() if self.mechanism.space else self.mechanism.links), *coordinates]
-        for name in self.posture:
-            if name not in places:
-                raise UnknownNameError("link or joint in posture", name, places)
-        slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
-        rough = {name: _rough(name, value, name not in slides) for name, value in self.posture.items()}
-        object.__setattr__(self, "posture", MappingProxyType(rough))
+        object.__setattr__(self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture)))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
@@ -346,6 +298,34 @@ class Scene(Graphs):
         """
         method("Scene.report")(self, path, parameters, wanted, live)
 
+    @property
+    def name(self) -> str:
+        """The name of its mechanism."""
+        return self.mechanism.name
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The parameters of its mechanism."""
+        return self.mechanism.parameters
+
+    @property
+    def outputs(self) -> list[str]:
+        """The names of all outputs that can be wanted."""
+        return outputs(self.mechanism)
+
+    def wants(self, names: Sequence[str] | None = None) -> Wanted:
+        """Read names of outputs, its own wanted ones or others. Raises what :meth:`.Wanted.of` does."""
+        return Wanted.of(self.mechanism, self.wanted if names is None else names)
+
+    def values(self, parameters: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Return the values of all parameters, the defaults but for those given: see :meth:`.Mechanism.values`."""
+        return self.mechanism.values(parameters)
+
+    def giving(self, elastic: Elastic | None) -> Scene:
+        """Return the scene with what is said of elasticity; None is what it says itself."""
+        gives = self.elastic if elastic is None else giving(self.mechanism, elastic)
+        return self if gives == self.elastic else _giving(self, gives)
+
     @fitting
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
@@ -379,7 +359,7 @@ class Scene(Graphs):
         """
         if name not in self.laws:
             raise UnknownNameError("driven joint", name, self.laws)
-        law, values = self.laws[name], self.mechanism.values(parameters)
+        law, values = self.laws[name], self.values(parameters)
         if not law.stretches:
             raise DeclarationError(f"the motion of joint '{name}' is not made of moves, so it has no timetable")
         self.checked(values)
@@ -397,3 +377,8 @@ class Scene(Graphs):
         return self
 
     __copy__ = __deepcopy__
+
+
+@lru_cache(maxsize=32)
+def _giving(scene: Scene, elastic: Elastic) -> Scene:
+    return replace(scene, elastic=elastic)

@@ -126,7 +126,7 @@ class SpatialMechanism(Mechanism):
         """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its base, the ground for its
         origin.
         """
-        return self._spatial(name, "revolute", parent, child, axis, None, at, turned)
+        return self._spatial(name, "revolute", (parent, child), (axis, None), at, turned)
 
     def prismatic(  # type: ignore[override]
         self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
@@ -134,13 +134,13 @@ class SpatialMechanism(Mechanism):
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning; as in a plane ``axis`` does
         not turn the child, ``turned`` does.
         """
-        return self._spatial(name, "prismatic", parent, child, axis, None, at, turned)
+        return self._spatial(name, "prismatic", (parent, child), (axis, None), at, turned)
 
     def cylindrical(
         self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
     ) -> Joint:
         """Let ``child`` slide along ``axis`` and turn about it: coordinates ``slide`` and ``turn``."""
-        return self._spatial(name, "cylindrical", parent, child, axis, None, at, turned)
+        return self._spatial(name, "cylindrical", (parent, child), (axis, None), at, turned)
 
     def universal(
         self,
@@ -155,7 +155,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which it carries itself, at right
         angles to the first: coordinates ``turn_1`` and ``turn_2``. Both directions are told where the coordinates are zero."""
-        return self._spatial(name, "universal", parent, child, axis, second, at, turned)
+        return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
     def spherical(
         self,
@@ -173,7 +173,7 @@ class SpatialMechanism(Mechanism):
         They are turns about ``axis``, about ``second``, and about the direction at right angles to both, as those before carry it:
         by default x, y and z. Where the joint closes a loop it has no coordinates.
         """
-        return self._spatial(name, "spherical", parent, child, axis, second, at, turned)
+        return self._spatial(name, "spherical", (parent, child), (axis, second), at, turned)
 
     def screw(
         self,
@@ -188,7 +188,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its coordinate is the angle."""
         pitch = self.own.expression(f"joint '{name}': lead", lead, "m") / math.tau
-        return self._spatial(name, "screw", parent, child, axis, None, at, turned, pitch)
+        return self._spatial(name, "screw", (parent, child), (axis, None), at, turned, pitch)
 
     def planar(
         self,
@@ -203,7 +203,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``: coordinates ``slide_1`` along
         ``second``, ``slide_2`` at right angles to both, and ``turn`` about ``axis``."""
-        return self._spatial(name, "planar", parent, child, axis, second, at, turned)
+        return self._spatial(name, "planar", (parent, child), (axis, second), at, turned)
 
     def slot(  # type: ignore[override]
         self,
@@ -217,13 +217,13 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and ``child`` turn freely: coordinates
         ``slide``, and as of a spherical joint. Where the joint closes a loop it has the slide alone."""
-        return self._spatial(name, "slot", parent, child, axis, None, at, turned)
+        return self._spatial(name, "slot", (parent, child), (axis, None), at, turned)
 
     def weld(  # type: ignore[override]
         self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()
     ) -> Joint:
         """Fix ``child`` to ``parent``."""
-        return self._spatial(name, "weld", parent, child, None, None, at, turned)
+        return self._spatial(name, "weld", (parent, child), (None, None), at, turned)
 
     def free(
         self,
@@ -241,7 +241,7 @@ class SpatialMechanism(Mechanism):
         Coordinates ``slide_1`` to ``slide_3`` are the place of the child's point along ``axis``, ``second`` and the direction at
         right angles to both, by default the parent's x, y and z; ``turn_1`` to ``turn_3`` are turns as of a spherical joint.
         """
-        return self._spatial(name, "free", parent, child, axis, second, at, turned)
+        return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
 
     def force(
         self,
@@ -321,17 +321,15 @@ class SpatialMechanism(Mechanism):
         self,
         name: str,
         kind: JointKind,
-        parent: Body | Point,
-        child: Body | Point,
-        axis: Vector | None,
-        second: Vector | None,
+        bodies: tuple[Body | Point, Body | Point],
+        axes: tuple[Vector | None, Vector | None],
         at: Any,
         turned: Turns,
         pitch: Expression = 0.0,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
-        what = f"joint '{name}'"
-        directions: Triad = triad_of(what, axis, second, self.own)
+        what, (parent, child) = f"joint '{name}'", bodies
+        directions: Triad = triad_of(what, *axes, self.own)
         placed = at is not None
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)

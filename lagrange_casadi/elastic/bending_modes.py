@@ -42,8 +42,8 @@ _PARTS, _POINTS = 32, 5
 @dataclass(frozen=True, eq=False)
 class Mode:
     """The first bending mode of a beam: bounds of its angular frequency, ``upper`` and ``lower`` [rad/s], the latter None where the
-    beam can move as a whole. At ratios ``u`` with ``weights`` [m], which sum polynomials, ``curvature`` is that of the mode of unit
-    modal mass.
+    beam can move as a whole; infinite without mass. At ratios ``u`` with ``weights`` [m], which sum polynomials, ``curvature`` is
+    that of the mode of unit modal mass.
     """
 
     upper: float
@@ -82,22 +82,27 @@ def first_mode(
     gone = {"pinned": (0,), "clamped": (0, 1), "free": (), "guided": (1,)}
     fixed = [*gone[ends[0]], *(size - 2 + k for k in gone[ends[1]])]
     kept = [i for i in range(size) if i not in fixed]
-    lower = np.linalg.cholesky(m[np.ix_(kept, kept)])
-    half = np.linalg.solve(lower, k[np.ix_(kept, kept)])
-    squares, vectors = np.linalg.eigh(np.linalg.solve(lower, half.T))
     # Of a + b x what the ends let be.
     lines = {"pinned": [[1, 0]], "clamped": [[1, 0], [0, 1]], "free": [], "guided": [[0, 1]]}
     tip = [[1, 1] if row == [1, 0] else row for row in lines[ends[1]]]
     rigid = 2 - int(np.linalg.matrix_rank(np.array([[0, 0], *lines[ends[0]], *tip])))
+    whole = np.sum(weights * mass(u))
+    if whole == 0.0:
+        return Mode(np.inf, None if rigid else np.inf, u.ravel(), weights.ravel(), np.zeros(u.size))
+    # By flexibilities, for parts may be without mass; what can move as a whole is held by so much of its mass.
+    held = np.pi**4 / length**4 * np.sum(weights * stiffness(u)) / whole if rigid else 0.0
+    stiff, heavy = (matrix[np.ix_(kept, kept)] for matrix in (k, m))
+    lower = np.linalg.cholesky(stiff + held * heavy)
+    half = np.linalg.solve(lower, heavy)
+    flexible, vectors = (found[..., ::-1] for found in np.linalg.eigh(np.linalg.solve(lower, half.T)))
     mode = np.zeros(size)
-    mode[kept] = np.linalg.solve(lower.T, vectors[:, rigid])
+    mode[kept] = np.linalg.solve(lower.T, vectors[:, rigid]) / np.sqrt(flexible[rigid])
     curvature = np.einsum("pi,ipn->pn", mode[at], curved)
     # Rayleigh's quotient of any shape is above; the square of the matrices is off by what the highest modes are rounded by.
     most = np.sum(weights * stiffness(u) * curvature**2) / np.sum(weights * mass(u) * np.einsum("pi,ipn->pn", mode[at], moved) ** 2)
     bound = None
     if not rigid:
-        flexible = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends))
-        rest = flexible - np.sum(1.0 / squares[1:])
+        rest = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends)) - np.sum(flexible[1:])
         bound = float(min(1.0 / np.sqrt(rest), np.sqrt(most)))
     return Mode(float(np.sqrt(most)), bound, u.ravel(), weights.ravel(), curvature.ravel())
 

@@ -38,7 +38,8 @@ class Vibration:
     """The first bending frequency of a link [Hz], and what it means for forces that were computed with rigid links.
 
     The frequency is between ``lower``, None where a link can move as a whole, and ``frequency``; for a link with such ``ends``, at
-    base and tip, alone: what hangs on it lowers the frequency. ``cycle`` is how often a second the span of time is repeated.
+    base and tip, alone: what hangs on it lowers the frequency. Both are infinite for a link without mass.
+    ``cycle`` is how often a second the span of time is repeated.
     ``excess`` is the largest difference that swinging makes to bending, over the largest bending; ``harmonic`` the multiple of the
     cycle that makes most of it. These are None where the span is no cycle, and ``untold`` says why. ``harmonics`` are the
     amplitudes of bending in the first mode, the mean first, over the largest bending: in space in the plane that swings most.
@@ -62,6 +63,8 @@ class Vibration:
     @property
     def words(self) -> str:
         """The same in a sentence."""
+        if math.isinf(self.frequency):
+            return "no bending frequency of its own, for it has no mass"
         told = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
         if self.cycle is None or self.harmonic is None or self.excess is None:
             return f"{told}; {self.untold}"

@@ -106,6 +106,8 @@ def disc_cam(
     width, elastic
         The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's ratio of both bodies.
 
+    Notes
+    -----
     Raises :class:`.DeclarationError` for joints that are others, a lift that is no function, and a profile that is
     undercut with the default parameters.
     """

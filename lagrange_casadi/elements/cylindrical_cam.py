@@ -117,6 +117,8 @@ def cylindrical_cam(
         The radius of the roller and the width of its contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's
         ratio of both bodies. The flank is that of the middle of the groove's depth: a curve beside the path of the centre.
 
+    Notes
+    -----
     Of a follower that slides the roller turns about the line from the drum's axis to its centre; of one that swings, about an axis
     along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
     for the groove's bends, and a lift that is not the same after a turn.

@@ -95,6 +95,8 @@ def gears(
     offset
         The way that the first pitch circle is ahead where both coordinates are zero [m].
 
+    Notes
+    -----
     The multiplier is the force along the pitch circle on the first gear, positive where it turns this forward. The flank that
     touches follows from its sign, and both flanks press the gears apart. Outputs are NAME_tangential, NAME_radial toward the axis
     of the first gear, or off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without friction's

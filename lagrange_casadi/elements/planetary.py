@@ -66,6 +66,8 @@ def planetary(
     pressure_angle, efficiency
         As of :func:`.gears`; the efficiency is that of each mesh.
 
+    Notes
+    -----
     The planets share the load evenly. The mesh with the sun is NAME_sun, those with the ring NAME_ring_1 and so on, with the
     outputs of :func:`.gears`, all of one planet.
 

@@ -21,7 +21,8 @@ from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import END, told_parameters
 from ..declare.parts import Link
 from ..declare.results import Asked
-from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
+from ..declare.scene import STRENGTH, Scene, Wanted
+from ..declare.wanted_names import among
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from .bars import bars_of, unaimed
 from .checks import Check, Column
@@ -53,7 +54,12 @@ _STEPS = 50
 
 @public
 @symbolic
-def compile_scene(scene: Scene, wanted: Outputs | None = None) -> Program:
+def compile_scene(
+    scene: Scene,
+    wanted: Outputs | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+) -> Program:
     """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
     What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
@@ -64,13 +70,19 @@ def compile_scene(scene: Scene, wanted: Outputs | None = None) -> Program:
         The scene.
     wanted
         Output names, as in :class:`.Scene`; by default the scene's own.
+    parameters
+        Values with which loops are assembled where they cannot be with the scene's own.
 
+    Notes
+    -----
     A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
     declaration.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
     names = scene.wanted if wanted is None else wanted
+    if parameters is not None:
+        scene = assembled(scene, scene.values(parameters), names)
     want = Wanted.of(scene.mechanism, names)
     _check_aimed(scene, names)
     try:
@@ -88,8 +100,9 @@ derive = compile_scene
 
 
 @symbolic
-def as_derived(scene: Scene, wanted: Outputs) -> Scene:
-    """Return the scene that :func:`compile_scene` makes a graph of: itself, or one whose rounded axes are corrected."""
+def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -> Scene:
+    """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded axes corrected."""
+    scene = assembled(scene, scene.values(parameters), wanted)
     compile_scene(scene, wanted)
     found = _kept(scene, Wanted.of(scene.mechanism, wanted))
     assert isinstance(found, _Derived)
@@ -259,9 +272,9 @@ def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> 
 def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
     """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has no direction for it."""
     named = [name for name in names if name != "all"]
-    asked = {link for kind in STRENGTH for link in strength_of(scene.mechanism, kind, named)} if scene.mechanism.space else ()
-    for bar in bars_of(scene.guided, scene.laws) if asked else ():
-        if bar.link.name in asked and not bar.aimed and bar.link.beam is not None and not bar.link.beam.round:
+    for bar in bars_of(scene.guided, scene.laws) if named else ():
+        asked = any(among(kind, [bar.link.name], named) for kind in STRENGTH)
+        if asked and not bar.aimed and bar.link.beam is not None and not bar.link.beam.round:
             raise DeclarationError(unaimed(bar.link.name))
 
 

@@ -183,12 +183,13 @@ def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
     does, and has no ``sign`` given for that.
     """
     v, acceleration = one.rate, one.acceleration
-    moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(acceleration) > one.slowest[1]
+    slow, quiet = one.slowest
+    # A size has a kink wherever a change of rate is nothing but rounding; comparisons with a limit have none.
+    moves, turns = ca.fabs(v) > slow, ca.logic_or(acceleration > quiet, acceleration < -quiet)
     if one.beside:
         other, change = one.beside
-        least, most = (lever * limit for limit in one.slowest)
-        moves = ca.logic_or(moves, ca.fabs(other) > least)
-        turns = ca.logic_or(turns, ca.fabs(change) > most)
+        moves = ca.logic_or(moves, ca.fabs(other) > lever * slow)
+        turns = ca.logic_or(turns, ca.logic_or(change > lever * quiet, change < -lever * quiet))
     if one.beside:
         way = ca.if_else(moves, lever * v, lever * acceleration)
         across = ca.if_else(moves, other, change)

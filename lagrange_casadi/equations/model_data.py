@@ -16,19 +16,18 @@ from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
-from ..beams.beam import beam_of
+from ..beams.beam import Beam, beam_of
 from ..beams.material import Material
 from ..declare.corners import Corners
-from ..declare.declared import Declared, EquationGraph, equations_of
+from ..declare.declared import Declared
 from ..declare.density import Density
-from ..declare.description import Description, Template, template_of
-from ..declare.kinds import kinds_of
+from ..declare.description import Description, Template, beams_of, in_space, kinds_of_described, template_of
 from ..declare.laws import Laws
 from ..declare.masses import ALL, masses_of
-from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Parameter
 from ..declare.possible import Margins
 from ..declare.scene import Scene
+from ..declare.stated import Stated
 from ..declare.times import Timing
 from ..errors import UnknownNameError
 from .checks import Column
@@ -37,27 +36,50 @@ from .section_function import Section
 from .tree import span
 
 
+def materials_of(description: Description) -> dict[str, Material]:
+    """Return what links with a beam are made of."""
+    return {name: Material(**description["bodies"][name]["beam"]["material"]) for name in beams_of(description)}
+
+
+@symbolic
+def beam_at(described: Template, link: str, p: Any) -> Beam:
+    """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers where these are numbers."""
+    return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
+
+
+@symbolic
+@functools.lru_cache(maxsize=32)
+def template(scene: Scene) -> Template:
+    """The description of a scene's mechanism but for its numbers.
+
+    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be none, and the coordinates that are
+    ``unmeasured``.
+    """
+    mechanism = scene.mechanism
+    found = template_of(mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights))
+    if not mechanism.space:
+        return found
+    tree = span(scene.guided, scene.laws)
+    unmeasured = [name for name, (joint, axis) in mechanism.coordinates.items() if not tree.measures(joint, axis)]
+    return replace(found, content=found.content | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured})
+
+
 @dataclass(frozen=True, eq=False)
 class ModelData(Graphs):
     """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
 
-    ``kinds`` are the kinds of its coordinates, those of guides too, of its frictions and outputs. ``closings`` are the words for
-    what closes loops: "joint", "path", "bar"; any other is a constraint. ``laws`` are the motions of the driven coordinates.
+    ``laws`` are the motions of the driven coordinates.
     ``timing`` is how the scene's own instants are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes
     were corrected for loops to close, or zero.
 
     ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all together [kg]. ``margins`` are what a
     precision demands of the parameters; motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a
-    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``equations`` are the constraints and rows as
-    they were declared, for certificates, and ``template`` is the description but for the numbers.
+    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints, rows, motions
+    and laws of loads as they were declared, for certificates, and ``template`` is the description but for the numbers.
     """
 
-    name: str
-    space: bool
     rounding: float
     parameters: Mapping[str, Parameter]
-    kinds: Kinds
-    closings: Mapping[str, str]
     laws: Laws
     timing: Timing
     span: tuple[float, float]
@@ -67,7 +89,7 @@ class ModelData(Graphs):
     masses: Any
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
-    equations: tuple[EquationGraph, ...]
+    stated: Stated
     template: Template
 
     @classmethod
@@ -75,12 +97,8 @@ class ModelData(Graphs):
         """Return the data of a scene whose motions are ``laws``."""
         mechanism, symbols = scene.mechanism, scene.mechanism.symbols
         return cls(
-            name=mechanism.name,
-            space=mechanism.space,
             rounding=_rounding(scene),
             parameters=mechanism.parameters,
-            kinds=kinds_of(scene.guided),
-            closings=_closings(mechanism),
             laws=laws,
             timing=scene.timing(),
             span=scene.span,
@@ -90,13 +108,28 @@ class ModelData(Graphs):
             masses=ca.Function("masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}),
             partial=tuple(name for name, load in mechanism.loads.items() if isinstance(load, LineLoad) and not load.whole),
             jumps={name: _jumps(link.mass) for name, link in mechanism.links.items() if isinstance(link.mass, Density)},
-            equations=equations_of(mechanism),
+            stated=Stated.of(mechanism, scene.laws),
             template=template(scene),
         )
 
     def asked_by(self, scene: Scene) -> ModelData:
         """The same, with how a scene of the same name asks for instants and lets axes be rounded."""
         return replace(self, timing=scene.timing(), rounding=_rounding(scene))
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        return str(self.template.content["name"])
+
+    @property
+    def space(self) -> bool:
+        """Whether it lies in space."""
+        return in_space(self.template.content)
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        """The kinds of coordinates, those of guides too, and of frictions, and the units of the user's outputs."""
+        return kinds_of_described(self.template.content)
 
     @cached_property
     def defaults(self) -> Array:
@@ -113,8 +146,7 @@ class ModelData(Graphs):
 
     def declared(self, p: Sequence[float] | Array) -> Declared:
         """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is derived."""
-        known = tuple(map(float, p))
-        return Declared.of(self.at(known), tuple(equation.at(known) for equation in self.equations))
+        return Declared.of(self.at(p), self.stated, p)
 
     @property
     @symbolic
@@ -133,8 +165,7 @@ class ModelData(Graphs):
     @cached_property
     def materials(self) -> dict[str, Material]:
         """What links with a beam are made of."""
-        bodies = self.template.content["bodies"].items()
-        return {name: Material(**body["beam"]["material"]) for name, body in bodies if "beam" in body}
+        return materials_of(self.template.content)
 
     @symbolic
     def matter(self, link: str, p: Any) -> tuple[Any, Density]:
@@ -146,8 +177,7 @@ class ModelData(Graphs):
     @symbolic
     def link(self, name: str, p: Any) -> Link:
         """A link that has sections and a beam, its numbers as expressions of parameters ``p``."""
-        body = self.template.placed(self.template.content["bodies"][name], p)
-        return Link(name, *self.matter(name, p), beam_of(body["beam"]))
+        return Link(name, *self.matter(name, p), beam_at(self.template, name, p))
 
     def section(self, link: str, columns: Mapping[Column, Any], p: Any) -> Section:
         """The section forces of a link, of columns and parameters ``p`` that are expressions."""
@@ -155,7 +185,9 @@ class ModelData(Graphs):
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""
-        return f"{self.closings.get(part, 'constraint')} '{part}'"
+        content = self.template.content
+        kinds = (("joint", content["joints"]), ("path", content.get("paths", ())), ("bar", content["bodies"]))
+        return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
 
     def words(self) -> dict[str, Any]:
         """The data for JSON; functions as the text in which CasADi writes them."""
@@ -178,11 +210,10 @@ def _parameters(words: Mapping[str, Any]) -> dict[str, Parameter]:
 
 _FUNCTION = ca.Function.serialize, ca.Function.deserialize
 _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
-    **dict.fromkeys(("name", "space", "rounding", "closings"), (_as_it_is, _as_it_is)),
+    "rounding": (_as_it_is, _as_it_is),
     **dict.fromkeys(("span", "partial"), (_as_it_is, tuple)),
     **dict.fromkeys(("extent", "masses"), _FUNCTION),
     "parameters": (lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()}, _parameters),
-    "kinds": (asdict, lambda words: Kinds(**words)),
     "laws": (Laws.words, Laws.loads),
     "timing": (asdict, lambda words: Timing(**words)),
     "margins": (
@@ -191,10 +222,7 @@ _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     ),
     "corners": (Corners.words, Corners.loads),
     "jumps": (_as_it_is, lambda words: {name: tuple(jumps) for name, jumps in words.items()}),
-    "equations": (
-        lambda own: [equation.words() for equation in own],
-        lambda words: tuple(EquationGraph.loads(equation) for equation in words),
-    ),
+    "stated": (Stated.words, Stated.loads),
     "template": (Template.dumps, Template.loads),
 }
 """How each field is written for JSON, and read."""
@@ -206,31 +234,3 @@ def _rounding(scene: Scene) -> float:
 
 def _jumps(density: Density) -> tuple[float, ...]:
     return tuple(sorted({*density.jumps, *(density.slices.breaks[1:-1] if density.slices else ())}))
-
-
-def _closings(mechanism: Mechanism) -> dict[str, str]:
-    kinds = (("bar", mechanism.links), ("path", mechanism.paths), ("joint", mechanism.joints))
-    return {name: kind for kind, names in kinds for name in names}
-
-
-@symbolic
-def described(scene: Scene, values: Mapping[str, float]) -> Description:
-    """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
-    return template(scene).filled(values)
-
-
-@symbolic
-@functools.lru_cache(maxsize=32)
-def template(scene: Scene) -> Template:
-    """The description of a scene's mechanism but for its numbers.
-
-    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be none, and the coordinates that are
-    ``unmeasured``.
-    """
-    mechanism = scene.mechanism
-    found = template_of(mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights))
-    if not mechanism.space:
-        return found
-    tree = span(scene.guided, scene.laws)
-    unmeasured = [name for name, (joint, axis) in mechanism.coordinates.items() if not tree.measures(joint, axis)]
-    return replace(found, content=found.content | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured})

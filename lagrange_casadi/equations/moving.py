@@ -11,8 +11,8 @@ import casadi as ca
 
 from ..base.quantities import Output, force_members
 from ..base.tables import ANGLE
+from ..declare.description import kinds_of_described
 from ..declare.ends import beyond_ends
-from ..declare.kinds import kinds_of
 from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene, Wanted
@@ -25,6 +25,7 @@ from .checks import Check, Column
 from .drives import pushed
 from .kinematics import Start
 from .mobility import needed_reactions
+from .model_data import template
 from .multibody import Coordinate, Multibody, column, own_coordinate
 from .tree import span
 from .turns import count_turns
@@ -103,7 +104,8 @@ class Moving:
     def _motions(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
         """Motions and poses; and of angles that loops set, how often each coordinate's turns go into them."""
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
-        motions, kinds = _motion_columns(mechanism, body, solved, self.laws.joints), kinds_of(mechanism)
+        motions = _motion_columns(mechanism, body, solved, self.laws.joints)
+        kinds = kinds_of_described(template(self.scene).content)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}

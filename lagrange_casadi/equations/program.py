@@ -22,6 +22,7 @@ from .iteration import NewtonLoop
 from .least_energy import Completion
 from .mobility import stations_of
 from .model_data import ModelData
+from .status import Bound, Rule, bounds_of, rules_of, status_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,21 @@ class Program(Graphs):
     def checks(self, kind: Kind) -> dict[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""
         return {str(c.part): k for k, c in enumerate(self.columns) if isinstance(c, Check) and c.kind == kind}
+
+    @property
+    def bounds(self) -> tuple[Bound, ...]:
+        """What columns must keep to."""
+        return bounds_of(self)
+
+    @property
+    def rules(self) -> tuple[Rule, ...]:
+        """The rules of an instant, in the order in which they are told."""
+        return rules_of(self)
+
+    @property
+    def status(self) -> Any:
+        """The function ``status(checks, limits, beside, iterated)``: the number of the first of :attr:`rules` that is broken."""
+        return status_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (..., columns, t)."""

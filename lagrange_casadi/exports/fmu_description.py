@@ -62,7 +62,7 @@ class Description:
     def guid(self) -> str:
         """Of the scene and of all that is said of it."""
         text = _text(self._root(""))
-        return f"{{{uuid.UUID(hashlib.sha256((self.source.scene + self.source.code + text).encode()).hexdigest()[:32])}}}"
+        return f"{{{uuid.UUID(hashlib.sha256((self.source.identity + self.source.code + text).encode()).hexdigest()[:32])}}}"
 
     @property
     def xml(self) -> str:
@@ -192,7 +192,7 @@ def page(description: Description) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(c.name)}</title></head>\n<body>\n'
         f"<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n<p>{escape(c.table.conventions)}.</p>\n{rest}"
-        f"<p>Written by lagrange_casadi {__version__} from the scene {description.source.scene}.</p>\n</body>\n</html>\n"
+        f"<p>Written by lagrange_casadi {__version__} from the scene {description.source.identity}.</p>\n</body>\n</html>\n"
     )
 
 

@@ -14,9 +14,8 @@ from ..arguments import LATER, Outputs, public
 from ..base.manifest import Manifest
 from ..base.publish import check_writable
 from ..base.vocabulary import Precision
-from ..declare.expressions import check_line
 from ..declare.scene import Scene
-from ..errors import DeclarationError, PathError
+from ..errors import PathError
 from ..instants.rung import Rung
 from ..portable.contract import Contract
 from ..portable.data import LARGEST
@@ -79,23 +78,20 @@ def export(
     wasm
         Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and ``README.wasm.md``. Needs ziglang.
 
+    Notes
+    -----
     Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
     folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
     what :func:`.evaluate` raises.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
-    check_line("name", name or scene.mechanism.name)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)
     if fmu:
         check_tools()
     if wasm:
         check_zig("WebAssembly")
-    source = sourced(
-        scene, name or scene.mechanism.name, parameters, wanted, rung, LARGEST[precision] if largest is None else largest
-    )
+    source = sourced(scene, name or "", parameters, wanted, rung, LARGEST[precision] if largest is None else largest)
     agreed = source.contract
     texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
     texts |= companions(source)
@@ -131,7 +127,7 @@ def _told(source: Source) -> dict[str, Any]:
         "options": source.rung,
         "error": {"largest": float(f"{source.golden.worst[0]:.0e}"), "output": source.golden.worst[1]},
         "fixed": dict(source.fixed),
-        "scene": source.scene,
+        "scene": source.identity,
         "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
         "inputs": rows(agreed.inputs),
         "outputs": rows(agreed.outputs),

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import BinaryIO
 
+from ..declare.description import coordinates_of
 from ..declare.scene import Scene
 from ..errors import AssemblyError, PostureError
 from ..instants.solution import Solution
@@ -26,7 +27,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
     """
     from matplotlib.figure import Figure
 
-    found = list(assemblies(scene)) if len(scene.mechanism.moving) <= _LARGE else []
+    found = list(assemblies(scene))
     if not found:
         return 0
     columns = min(len(found), 2)
@@ -38,7 +39,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
         axes.set_title(f"posture={{{posture}}}", fontsize=9)
     for axes in panels[len(found) :]:
         axes.set_axis_off()
-    figure.suptitle(f"{scene.mechanism.name} at t = {scene.t[0]:g} s", fontsize=11)
+    figure.suptitle(f"{found[0][1].case} at t = {scene.t[0]:g} s", fontsize=11)
     save(figure, file, dpi=110)
     return len(found)
 
@@ -58,10 +59,12 @@ def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
             continue
         except AssemblyError:
             continue
+        if len(solution.description["bodies"]) > _LARGE:
+            return
         many += 1
-        yield ", ".join(_entry(scene, name, value) for name, value in posture.items()), solution
+        slides = {name for name, kind in coordinates_of(solution.description).items() if kind == "slide"}
+        yield ", ".join(_entry(name, value, slides=name in slides) for name, value in posture.items()), solution
 
 
-def _entry(scene: Scene, name: str, value: float) -> str:
-    joint = scene.mechanism.joints.get(name)
-    return f"'{name}': {value:.6g}" if joint and joint.slides else f"'{name}': '{round(math.degrees(value), 4) + 0.0:.6g} deg'"
+def _entry(name: str, value: float, *, slides: bool) -> str:
+    return f"'{name}': {value:.6g}" if slides else f"'{name}': '{round(math.degrees(value), 4) + 0.0:.6g} deg'"

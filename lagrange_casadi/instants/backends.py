@@ -18,9 +18,10 @@ from .. import codegen
 from ..arithmetic.compensated import DTYPES
 from ..base.arrays import Array
 from ..base.room import cores
+from ..base.status import Status
 from ..base.vocabulary import Backend
-from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
-from ..codegen.stages import Stages, compensated, plain, turns_many
+from ..codegen.emit import NEWTON_STEPS, newton_rule
+from ..codegen.stages import Stages, plain, stages_for
 from ..equations.program import Program
 from ..errors import CompilerError, warn
 from ..version import __version__
@@ -72,8 +73,7 @@ def run(
     where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
-    many = rung.precision == "single" or turns_many(graph, t, p)
-    stages = compensated(graph, rung.precision) if many else plain(graph)
+    stages = stages_for(graph, rung.precision, t, p)
     found = _compiled(graph, stages, rung)
     evaluated = into or unevaluated(graph, stages, t.size)
     begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
@@ -111,7 +111,7 @@ def _begin(graph: Program, counted: bool, t: float, p: tuple[float, ...]) -> tup
     wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf
     steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
     z, status = follow(graph, np.linspace(start, t, steps + 1)[1:], np.array(p))
-    return tuple(z[:, -1]) if counted or status[-1] != NOT_CONVERGED else graph.newton.guess
+    return tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else graph.newton.guess
 
 
 def _paired(values: Array, out: Array) -> Array:
@@ -168,7 +168,7 @@ def unevaluated(graph: Program, stages: Stages, size: int) -> Evaluated:
     """What is to be filled."""
     dtype = DTYPES[stages.precision]
     out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
-    return Evaluated(out, np.full(size, OK, dtype=np.int32), iterated, stages)
+    return Evaluated(out, np.full(size, Status.OK, dtype=np.int32), iterated, stages)
 
 
 def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
@@ -201,8 +201,8 @@ def _interpret(graph: Program, t: Array, p: Array, evaluated: Evaluated, begin: 
         block = slice(start, min(start + _VM_BLOCK, t.size))
         counted, rate, acceleration = stages.drive(t[None, block], p)
         evaluated.out[:, block] = stages.instant(counted, rate, acceleration, evaluated.iterated[:, block], p).full()
-    unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == OK)
-    evaluated.status[unclean] = NOT_FINITE
+    unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == Status.OK)
+    evaluated.status[unclean] = Status.NOT_FINITE
 
 
 def follow(
@@ -214,15 +214,15 @@ def follow(
     """
     stages = stages or plain(graph)
     if graph.newton is None or stages.loops is None:
-        return np.zeros((0, t.size)), np.full(t.size, OK, dtype=np.int32)
+        return np.zeros((0, t.size)), np.full(t.size, Status.OK, dtype=np.int32)
     last, rule = np.array(graph.newton.guess) if guess is None else guess, newton_rule("double", newton)
-    z, status = rows(last.size, t.size), np.full(t.size, OK, dtype=np.int32)
+    z, status = rows(last.size, t.size), np.full(t.size, Status.OK, dtype=np.int32)
     fixed = ca.DM(p)  # converted once, not at each step
     for start in range(0, t.size, _VM_BLOCK):
         counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
         for i, now in enumerate(counted.T, start):
             z[:, i], status[i] = _iterate(graph, stages.loops, last, ca.DM(now), fixed, rule)
-            last = last if status[i] == NOT_CONVERGED else z[:, i]
+            last = last if status[i] == Status.NOT_CONVERGED else z[:, i]
     return z, status
 
 
@@ -239,7 +239,7 @@ def _iterate(
             break
         z = z + correction
     if not size < rule["lost"]:
-        return guess, NOT_CONVERGED
+        return guess, Status.NOT_CONVERGED
     turns = np.where(graph.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
     slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
-    return z - math.tau * turns, SLOW if slow else OK
+    return z - math.tau * turns, Status.SLOW if slow else Status.OK

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output, quotient
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
 from ..errors import UnknownNameError
 
 if TYPE_CHECKING:

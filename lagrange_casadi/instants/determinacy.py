@@ -16,8 +16,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.status import Status
 from ..base.tables import MOMENT
-from ..codegen.emit import OK
 from ..equations.checks import Check, Column
 from ..equations.program import Program
 from .backends import Evaluated, run
@@ -53,7 +53,7 @@ def _beyond(graph: Program, changes: Mapping[Output, Array], p: Array, rung: Run
     """The outputs that change at any of some instants by more than what is none."""
     if not changes:
         return ()
-    extent, limit = graph.extent(p), max(open_limit(rung.precision, rung.newton), graph.data.rounding)
+    extent, limit = graph.extent(p), open_limit(graph, rung.precision, rung.newton)
     units = {output: extent if output.unit(graph.data.kinds) == MOMENT else 1.0 for output in changes}
     return tuple(output for output, sizes in changes.items() if np.any(sizes > limit * units[output]))
 
@@ -66,7 +66,7 @@ def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) ->
     if not graph.doubtful:
         return graph, ()
     table, _ = run(graph, t, p, Rung("vm"))
-    left_open = undetermined(graph, table.out[:, table.status == OK], p, Rung())
+    left_open = undetermined(graph, table.out[:, table.status == Status.OK], p, Rung())
     others = () if telling else tuple(output for output in graph.doubtful if output not in left_open)
     return _without(graph, (*left_open, *(Check("open", output) for output in (*left_open, *others)))), left_open
 

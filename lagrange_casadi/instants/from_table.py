@@ -12,8 +12,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.room import cores
+from ..base.status import Status
 from ..base.symbolic import symbolic
-from ..codegen.emit import NOT_FINITE, OK
 from ..equations.checks import Check
 from ..equations.program import Program
 from .backends import Evaluated, run, unevaluated
@@ -61,7 +61,7 @@ def columns(
         found.out[k] += cycle.drift[k] * (angle - phase)
     for output, place in still(graph, tuple(p.tolist())).items():
         found.out[graph.outputs[output]] = place
-    found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == OK)] = NOT_FINITE
+    found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == Status.OK)] = Status.NOT_FINITE
     return found, replace(provenance, rung=rung.options)
 
 

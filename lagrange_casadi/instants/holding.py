@@ -26,12 +26,12 @@ import numpy.typing as npt
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..declare.description import values_of
 from ..declare.scene import Scene
 from ..equations.checks import Check
-from ..equations.derive import as_derived, assembled, compile_scene
+from ..equations.derive import as_derived, compile_scene
 from ..equations.held_efforts import HeldEfforts, held_efforts
 from ..equations.program import Program
-from ..errors import check_kind
 from .backends import run
 from .held import Holding
 from .rules import OPEN, SLIP
@@ -50,16 +50,14 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
 
     Raises :class:`.DeclarationError` for what is no scene or no solution.
     """
-    check_kind("holding", scene, "a Scene", Scene)
-    check_kind("holding", solution, "a Solution", Solution)
     efforts = {output.part: values for output, values in solution.outputs.items() if output.group == "effort"}
     open_ = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
     at = np.flatnonzero(np.any([*open_.values()], axis=0)) if efforts else np.zeros(0, int)
     if not at.size:
         return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
-    values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    scene = assembled(scene, values, ["effort"])
-    graph, held = compile_scene(scene, ["effort"]), held_efforts(as_derived(scene, ["effort"]))
+    values = values_of(solution.description)
+    graph = compile_scene(scene, ["effort"], parameters=values)
+    held = held_efforts(as_derived(scene, ["effort"], values))
     tried, why = _tried(held, _inputs(graph, solution.t, np.array([*values.values()]), at))
     ranges = {}
     for name, effort in efforts.items():

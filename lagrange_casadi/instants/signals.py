@@ -5,22 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..base.status import Status
 from ..base.tables import table_of
-from ..codegen.emit import NOT_CONVERGED
 from ..codegen.search import Search
 from ..codegen.stages import Stages
 from ..declare.density import NumericDensity
 from ..declare.description import Description, density_of, in_space
 from ..equations.program import Program
 from ..summits.between import Flags
-from ..summits.panels import Curves, Peaks, Samples
+from ..summits.panels import Curves, Listed, Peaks, Samples
 from ..summits.search import peaks
 from ..summits.sharpness import Sharpness, bent
 from .backends import follow
@@ -75,7 +75,7 @@ class Signals:
     """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with iterated coordinates ``z`` there.
 
     ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set, its values at the instants, which
-    tell its turns.
+    tell its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
     """
 
     graph: Program
@@ -87,12 +87,19 @@ class Signals:
     z: Array
     newton: int | None = None
     turned: Mapping[int, Array] = field(default_factory=dict)
+    rounding: Array | float = 0.0
 
-    def peaks(self, units: Sequence[int], scales: Sequence[float] = (), search: Search | None = None) -> Peaks:
+    def peaks(
+        self,
+        units: Sequence[int],
+        scales: Sequence[float] = (),
+        search: Search | None = None,
+        listed: Listed | None = None,
+    ) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it. ``search`` is the
-        compiled search; without it the reference serves.
+        compiled search; without it the reference serves. ``listed`` says which local peaks are told too.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
@@ -102,7 +109,7 @@ class Signals:
         curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
         with np.errstate(all="ignore"):
             find = peaks if search is None else search.peaks
-            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p))
+            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p), listed)
 
     def at(self, t: Array) -> Samples:
         """All curves at times; NaN where iterated loops do not close."""
@@ -122,7 +129,7 @@ class Signals:
         failed = np.zeros(t.size, dtype=bool)
         for k in range(t.size if self.graph.newton else 0):
             at, status = follow(self.graph, t[k : k + 1], self.p, self.z[:, near[k]], stages=self.stages, newton=self.newton)
-            z[:, k], failed[k] = at[:, 0], status[0] == NOT_CONVERGED
+            z[:, k], failed[k] = at[:, 0], status[0] == Status.NOT_CONVERGED
         return z, failed
 
     def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
@@ -133,10 +140,15 @@ class Signals:
 
     def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
         columns = self.columns(t, z)
-        watched = self.sharpness.watched(t[None], *self.graph.motion(t[None], self.p), z, self.p).full()
+        watched = self.sharpness.watched(*self.inputs(t, z)).full()
+        watched[np.abs(watched) <= self.rounding] = 0.0
         with np.errstate(all="ignore"):
             places, values = (np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True))
         return Samples(values, places, watched)
+
+    def inputs(self, t: Array, z: Array) -> tuple[Any, ...]:
+        """What the graph's columns are made of at times."""
+        return t[None], *self.graph.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), where the iterated coordinates are told."""

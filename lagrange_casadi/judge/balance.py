@@ -1,7 +1,6 @@
-"""Newton-Euler for every body, the power of all that does work, and sections at the bases of links, from reported forces.
+"""Newton-Euler for every body, laws of loads, the power of all that does work, and sections at the bases of links.
 
-What acts along a joint's coordinate does no work along the others: along a slide a force at the joint's point on the child, about
-one of several axes a couple at right angles to the other axes. Multipliers act along what stands in their equation.
+All are from reported forces. Multipliers act along what stands in their equation.
 """
 
 from __future__ import annotations
@@ -12,11 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import AxisNumbers, Equation
+from ..declare.stated import Equation
 from .closure import Gaps
 from .digits import Digits
+from .loads import off_laws
 from .placing import Motion, Placed
 from .touching import actions, sense
 from .unplaced import stacked
@@ -106,6 +105,7 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Gaps]]:
     turned, fastest, _ = placed.rates
     # Reported digits leave open places, which give arms, and the joints' rates, of which the rates of bodies are sums.
     largest = sums.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
+    worst = np.maximum(worst, off_laws(placed, digits, float(np.max(largest))))
     flow = sums.flow + digits.least * fastest + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
     found = {
         "balance": [(worst, max(float(np.max(largest)), digits.least))],
@@ -124,7 +124,7 @@ def _acting(placed: Placed) -> Iterator[Action]:
         force, couple, driven = NIL, NIL, False
         for axis in joint.axes:
             if (effort := reported.outputs.get(Output("effort", axis.coordinate))) is not None:
-                along, driven = _along(placed, name, axis, effort), True
+                along, driven = placed.along(name, axis, effort), True
                 force, couple = force + along[0], couple + along[1]
         if driven:
             yield Action(child, at, force, couple, parent)
@@ -137,26 +137,6 @@ def _acting(placed: Placed) -> Iterator[Action]:
             yield Action(point.body, at, sign * force, sign * couple)
     for equation in declared.equations:
         yield from _held(placed, equation)
-
-
-def _along(placed: Placed, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
-    """The force and the couple of an effort along an axis of a joint, on its child at the joint's point."""
-    near = placed.ends(joint)[0]
-    if axis.kind == "slide":
-        return effort * near.axes.turn(Vector(*axis.direction)), NIL
-    about = placed.relatives[joint].about
-    turns = [near.axes.turn(direction) for direction in about.values()]
-    return NIL, effort * _reciprocal(turns, [*about].index(axis.coordinate))
-
-
-def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
-    """The couple that does a unit of work for a turn about one of axes, and none for turns about the others."""
-    if len(axes) < 3:
-        return axes[number]
-    first, second, third = (axes[(number + k) % 3] for k in range(3))
-    across = second.cross(third)
-    with np.errstate(all="ignore"):
-        return (1.0 / np.asarray(first.dot(across))) * across
 
 
 def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
@@ -175,7 +155,7 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
         if entry.kind == "coordinate":
             name, axis = axes[entry.part]
             joint = declared.joints[name]
-            yield Action(joint.child.body, placed.pins[name][0], *_along(placed, name, axis, force), joint.parent.body)
+            yield Action(joint.child.body, placed.pins[name][0], *placed.along(name, axis, force), joint.parent.body)
         elif entry.kind == "direction":
             yield Action(entry.part, placed.bodies[entry.part].at, NIL, Vector(0.0, 0.0, force))
         else:

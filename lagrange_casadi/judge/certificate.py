@@ -25,7 +25,7 @@ from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE
 from .digits import Digits
 from .digits import blur as blur
-from .friction import law_gaps
+from .friction import friction_gaps
 from .placing import place
 from .reported import Reported
 from .unplaced import place_all
@@ -130,6 +130,6 @@ def _residuals(declared: Declared, reported: Reported, digits: Digits) -> dict[s
     if len(placed.bodies) < len(declared.bodies) + 1:
         return {}
     found = {"closure": closure(placed, digits)}
-    if (rubbed := law_gaps(placed)) is not None:
+    if (rubbed := friction_gaps(placed, digits)) is not None:
         found["friction"] = [(rubbed, 1.0)]
     return found | (balance(placed, digits) if forces_reported(placed) else {})

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import Equation
-from .digits import ROUNDINGS, Digits
+from ..declare.stated import Equation
+from .digits import NEARBY, ROUNDINGS, Digits
 from .placing import Placed
 from .touching import idle
 from .unplaced import gaps_of, stacked
@@ -25,7 +25,10 @@ def closure(placed: Placed, digits: Digits) -> list[Gaps]:
     for gaps in (_of_joints, _of_angles, _of_poses, _of_equations):
         for gap in gaps(placed, digits):
             worst = np.maximum(worst, gap)
-    return [(worst, placed.declared.size), *_of_rates(placed)]
+    motions = list(_of_motions(placed, digits))
+    for turns, (gap, _, _) in motions:
+        worst = np.maximum(worst, gap * placed.declared.size if turns else gap)
+    return [(worst, placed.declared.size), *_of_rates(placed, motions)]
 
 
 def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
@@ -38,14 +41,42 @@ def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
             yield near.axes.under(far.axes).off(motion.turned) * placed.declared.size
 
 
-def _of_rates(placed: Placed) -> list[Gaps]:
-    """What joints leave of velocities, angular velocities, and the changes of both."""
+def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Gaps]:
+    """What joints and motions leave of velocities, angular velocities, and the changes of both."""
     size = placed.declared.size
     _, fastest, changes = placed.rates
     gaps = [gaps_of(placed, name, placed.pins[name]) for name in placed.declared.joints]
     largest = (fastest, fastest / size, changes, changes / size)
-    nothing = np.zeros_like(placed.reported.t)
-    return [(nothing + most(each[k].size for each in gaps), float(np.max(one))) for k, one in enumerate(largest)]
+    found: list[Gaps] = []
+    for k, one in enumerate(largest):
+        moved = (off[1 + k // 2] for turns, off in motions if turns == bool(k % 2))
+        off = most([*(each[k].size for each in gaps), *moved])
+        found.append((np.zeros_like(placed.reported.t) + off, float(np.max(one))))
+    return found
+
+
+def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
+    """How far what is driven is from its law, with its rate and acceleration, (3, t); and whether it is an angle.
+
+    Where a law jumps, rounding decides on which side of that an instant is.
+    """
+    t, size, (_, *fastest) = placed.reported.t, placed.declared.size, placed.rates
+    for motion in placed.declared.motions:
+        (entry,) = motion.entries
+        if entry.part in placed.reported.unmeasured:
+            continue
+        moving, turns = stacked(placed, motion), placed.turns(entry)
+        found = motion.at(*moving, t)
+        off = np.abs(found)
+        if entry.kind == "direction":
+            off[0] = np.abs(2.0 * np.sin(found[0] / 2.0))
+        off[0] = np.maximum(off[0] - ROUNDINGS * digits.rounding * np.abs(moving[0][0]), 0.0)
+        largest = [size, *(float(np.max(one)) for one in fastest)]
+        if any(np.max(gap) * (size if turns else 1.0) > digits.doubted * one for gap, one in zip(off, largest, strict=True)):
+            blur = NEARBY * digits.rounding * np.max(np.abs(t))
+            open_ = np.nansum([np.abs(motion.at(*moving, t + way) - found) for way in (-blur, blur)], axis=0)
+            off = np.maximum(off - open_, 0.0)
+        yield turns, off
 
 
 def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:

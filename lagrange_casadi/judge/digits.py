@@ -13,6 +13,9 @@ from ..declare.description import coordinates_of
 from ..instants.solution import Solution
 
 ROUNDINGS = 4.0
+NEARBY = 32.0
+"""So many roundings may be between what is reported, and what a law has seen of it."""
+
 TOLERANCE, LOOSE = 1e-9, 1e-3
 """A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
 
@@ -30,12 +33,22 @@ class Digits:
     """What a precision leaves open.
 
     ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which what underflows is as small as a
-    rounding, and ``coarseness`` what a rounding is of the least residual that fails.
+    rounding, and ``tolerance`` the least residual that fails.
     """
 
     rounding: float
     least: float
-    coarseness: float
+    tolerance: float
+
+    @property
+    def doubted(self) -> float:
+        """What a residual may be without a closer look."""
+        return self.tolerance / 10.0
+
+    @property
+    def coarseness(self) -> float:
+        """A rounding as a share of the least residual that fails."""
+        return ROUNDINGS * self.rounding / self.tolerance
 
     @classmethod
     def of(cls, solution: Solution) -> Digits:
@@ -44,4 +57,4 @@ class Digits:
         precision: Precision = "single" if single else "double"
         rounding = ROUNDING[precision]
         least = float(np.finfo(DTYPES[precision]).tiny) / rounding
-        return cls(rounding, least, ROUNDINGS * rounding / (LOOSE if single else TOLERANCE))
+        return cls(rounding, least, LOOSE if single else TOLERANCE)

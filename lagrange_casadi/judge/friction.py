@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..declare.declared import JointNumbers
+from .digits import Digits
 from .placing import Placed
 from .reported import Reported
 from .vectors import Axes, Scalar, Vector
@@ -22,11 +23,49 @@ Pressing = Callable[[Array], Scalar]
 """What mu is multiplied by, for signs of the rate."""
 
 
-def law_gaps(placed: Placed) -> Array | None:
-    """How far frictions are from what their laws say (t,), over what they would be under the largest reaction of the cycle.
+def friction_gaps(placed: Placed, digits: Digits) -> Array | None:
+    """How far frictions are from what their laws say, and the power that they take from what they do (t,).
 
     None where there is no friction, or what it takes is not among the outputs. What is open at rest is no gap.
     """
+    found = [*_of_losses(placed, digits)]
+    if (off := _of_laws(placed)) is not None:
+        found.append(off)
+    return np.fmax.reduce(found) if found else None
+
+
+def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
+    """How far the power that each friction takes is from its force times its rate, over the largest of that."""
+    outputs, (turned, fastest, _) = placed.reported.outputs, placed.rates
+    for name, rate, turns in _rubbing(placed):
+        value, lost = (outputs.get(Output("friction", name, member)) for member in ("along", "loss"))
+        if value is None or lost is None:
+            continue
+        blur = digits.coarseness * np.max(turned if turns else fastest)
+        scale = _largest(value) * (_largest(rate) + float(blur))
+        yield np.abs(lost + value * rate) / (scale or 1.0)
+
+
+def _rubbing(placed: Placed) -> Iterator[tuple[str, Array, bool]]:
+    """Each friction with the rate that it follows, and whether that is of an angle."""
+    reported, declared = placed.reported, placed.declared
+    for name, load in declared.loads.items():
+        if load.friction is None:
+            continue
+        holder = load.coordinate.partition(":")[0]
+        if declared.joints[holder].kind == "spherical":
+            near, far = placed.ends(holder)
+            yield name, np.broadcast_to((far.rate - near.rate).size, reported.t.shape), True
+        elif Output("motion", load.coordinate, "rate") in reported.outputs:
+            yield name, reported.rate(load.coordinate), declared.kinds[load.coordinate] == "angle"
+
+
+def _largest(values: Array) -> float:
+    return float(np.fmax.reduce(np.abs(values), initial=0.0))
+
+
+def _of_laws(placed: Placed) -> Array | None:
+    """How far frictions of joints are from what their laws say, over what they would be under the largest reaction of the cycle."""
     declared, outputs = placed.declared, placed.reported.outputs
     worst: Array | None = None
     for name, load in declared.loads.items():

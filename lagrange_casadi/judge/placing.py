@@ -6,12 +6,16 @@ What no joint of a known motion holds, as a bar, is taken where it is reported (
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import Declared, Entry, JointNumbers, Triple
+from ..declare.declared import AxisNumbers, Declared, JointNumbers
+from ..declare.stated import Entry, Triple
 from .reported import Reported
 from .vectors import GROUND, NIL, Axes, Scalar, Vector, most
 
@@ -118,6 +122,23 @@ class Placed:
         turned, gained = most([*turning, *map(reported.rate, angles)]), most([*gains, *map(reported.acceleration, angles)])
         return turned, most(speeds) + turned * declared.extent, most(changes) + (gained + turned**2) * declared.extent
 
+    def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
+        """The force and the couple of an effort along an axis of a joint, on its child at the joint's point.
+
+        It does no work along other coordinates: along a slide it is a force, about one of several axes a couple at right angles
+        to the other axes.
+        """
+        near = self.ends(joint)[0]
+        if axis.kind == "slide":
+            return effort * near.axes.turn(Vector(*axis.direction)), NIL
+        about = self.relatives[joint].about
+        turns = [near.axes.turn(direction) for direction in about.values()]
+        return NIL, effort * _reciprocal(turns, [*about].index(axis.coordinate))
+
+    def turns(self, entry: Entry) -> bool:
+        """Whether an entry of an equation is an angle."""
+        return entry.kind == "direction" or (entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle")
+
     def measured(self, entry: Entry) -> tuple[Scalar, Scalar, Scalar]:
         """An entry of an equation, its rate and its acceleration."""
         reported = self.reported
@@ -172,6 +193,16 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
     known = not joint.free and not {axis.coordinate for axis in joint.axes} & reported.unmeasured
     whole = known and declared.oriented(joint.parent.body) and declared.oriented(joint.child.body)
     return Relative((slide, speed, change), turned.carry(Axes.of(joint.turned)), rate, acceleration, about, whole)
+
+
+def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
+    """The couple that does a unit of work for a turn about one of axes, and none for turns about the others."""
+    if len(axes) < 3:
+        return axes[number]
+    first, second, third = (axes[(number + k) % 3] for k in range(3))
+    across = second.cross(third)
+    with np.errstate(all="ignore"):
+        return (1.0 / np.asarray(first.dot(across))) * across
 
 
 def _outward(declared: Declared, joint: JointNumbers, motion: Relative, base: Moving) -> Moving | None:

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.declared import Declared, Touch
+from ..declare.declared import Declared
+from ..declare.stated import Touch
 from .placing import Moving
 from .reported import Reported
 from .vectors import Scalar, Vector, most

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from ..base.arrays import Array
-from ..declare.declared import Equation
+from ..declare.stated import Equation, LoadLaw
 from .placing import Motion, Moving, Placed
 from .reported import Reported
 from .vectors import NIL, Scalar, Vector
@@ -46,8 +46,8 @@ def gaps_of(placed: Placed, joint: str, pin: Motion) -> tuple[Vector, Vector, Ve
     return speed - near.axes.turn(motion.slide[1]), about[0], change, about[1]
 
 
-def stacked(placed: Placed, equation: Equation) -> tuple[Array, Array, Array]:
-    """Places, rates and accelerations of what an equation measures, each (entries, t)."""
+def stacked(placed: Placed, equation: Equation | LoadLaw) -> tuple[Array, Array, Array]:
+    """Places, rates and accelerations of what an equation or a law measures, each (entries, t)."""
     shape = (len(equation.entries), placed.reported.t.size)
     motions = [placed.measured(entry) for entry in equation.entries]
     found = []

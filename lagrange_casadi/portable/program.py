@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,7 @@ from ..equations.checks import Check, Column
 from ..equations.program import Program
 from ..equations.section_function import SectionInputs, section
 from ..instants.cycle_table import CycleTable
+from ..instants.rules import limits
 from ..instants.tabulate import still
 
 
@@ -83,6 +85,8 @@ def program(
     if ends is not None:
         functions["beyond"] = _fixed(ends, p) if fixed else ends
     functions["instant"] = instant
+    if graph.rules:
+        functions["status"] = _status(graph, columns, precision, newton, gapped, p if fixed else None)
     if stages.loops is not None:
         functions["loops"] = stages.loops
     sizes = {
@@ -104,6 +108,24 @@ def program(
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
     return ExportedProgram(graph, precision, filled, columns, sizes, newton, cycle, places, sections)
+
+
+def _status(
+    graph: Program, columns: Sequence[Column], precision: Precision, newton: int | None, gapped: bool, p: Array | None
+) -> Any:
+    """``status(y, matter, iterated)``, with the limits as numbers, of all columns; the extent is the first of matter if ``gapped``.
+
+    What is read from a table has gaps between its nodes, which say nothing.
+    """
+    y, matter, iterated = ca.SX.sym("y", len(columns)), ca.SX.sym("matter", int(gapped)), ca.SX.sym("iterated")
+    extent = matter[0] if gapped else graph.extent(p) if p is not None else 0.0
+    most = limits(graph, precision, newton, extent)
+    most = [math.inf if bound.kind == "GAP" and p is not None else limit for bound, limit in zip(graph.bounds, most, strict=True)]
+    where = {column: k for k, column in enumerate(columns)}
+    given = [y[where[graph.columns[bound.column]]] for bound in graph.bounds]
+    sizes = [y[where[graph.columns[bound.size]]] if bound.kind == "ROW" else 0.0 for bound in graph.bounds]
+    rule = graph.status(*(ca.vertcat(ca.SX(0, 1), *each) for each in (given, most, sizes)), iterated)
+    return ca.Function("status", [y, matter, iterated], [ca.densify(rule)], {"cse": True})
 
 
 def _fixed(function: Any, p: Array) -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output, quotient
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
 from ..equations.program import Program
 from ..errors import DeclarationError
 from ..instants.rung import Rung

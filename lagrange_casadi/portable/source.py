@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 
 from ..base.quantities import Output
+from ..base.status import Status
 from ..codegen.emit import newton_rule
 from ..codegen.printer import Format, function_name, literal
 from ..declare.ends import BEYOND
-from ..instants.rules import rules
 from ..version import __version__
 from .contract import REST, Contract
 from .data import table_call, table_text
@@ -22,7 +22,7 @@ from .program import ExportedProgram
 from .sections import functions
 from .slopes import ExportedSlopes
 from .slopes import code as sensitivity
-from .statuses import STATUSES
+from .statuses import ANSWERS, STATUSES
 from .text import comment, indented, printed, template
 
 
@@ -30,14 +30,14 @@ from .text import comment, indented, printed, template
 class Source:
     """What header and source are written from.
 
-    ``scene`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
+    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
     ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute, ``slopes``
     the derivatives of its outputs, where they are wanted.
     """
 
     contract: Contract
     program: ExportedProgram
-    scene: str
+    identity: str
     guess: Sequence[float]
     rung: str
     values: Mapping[str, float]
@@ -56,7 +56,7 @@ class Source:
             **self.words,
             includes="\n#include <string.h>" if self.program.cycle is not None else "",
             graph=self.program.text,
-            seal=f"0x{self.scene[:8]}u",
+            seal=f"0x{self.identity[:8]}u",
             helpers=self._helpers(),
             put="\n".join(f"  outputs->{m.name} = {self._value(m.source)};" for m in self.contract.outputs),
             defaults=self._defaults(),
@@ -84,7 +84,7 @@ class Source:
             "P": self._upper,
             "version": __version__,
             "casadi": ca.CasadiMeta.version(),
-            "scene": self.scene,
+            "scene": self.identity,
         }
 
     @property
@@ -156,7 +156,19 @@ class Source:
                 rounding=rule["rounding"],
                 p_values="model->parameters" if self.program.sizes["p"] else "0",
             )
+        if "status" in self.program.functions:
+            names = ", ".join(f"{self._upper}_{name}" for name in self._answers())
+            kind = f"static const {self.contract.prefix}_status"
+            found += f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
         return found + table_text(self.program)
+
+    def _answers(self) -> Iterator[str]:
+        """What is answered for each rule that may be broken, by its number."""
+        graph = self.program.graph
+        yield "OK"
+        for rule in graph.rules:
+            open_ = rule.bound is not None and graph.bounds[rule.bound].kind.startswith("OPEN")
+            yield "UNDETERMINED" if open_ else ANSWERS.get(rule.status, "OK")
 
     def _defaults(self) -> str:
         c, p = self.contract, self.contract.prefix
@@ -279,6 +291,8 @@ class Source:
             yield f"casadi_real drive[{sizes['evaluated']}];"
         yield "const casadi_real* arg[5];"
         yield "casadi_real* res[1];"
+        if "status" in self.program.functions:
+            yield "casadi_real iterated = 0, rule;"
         if self.iterated:
             yield f"{c.prefix}_status closed;"
         yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
@@ -322,43 +336,17 @@ class Source:
             yield "model->closed = 1;"
         yield f"closed = close_loops(model, counted, {most}, {done}, {lost});"
         yield f"if (closed == {P}_NOT_CONVERGED) return closed;"
-        if self.program.newton is not None:
-            yield f"closed = {P}_OK;"
+        if self.program.newton is None:
+            yield f"if (closed == {P}_SLOW) iterated = {number(float(Status.SLOW))};"
 
     def _verdict(self) -> Iterable[str]:
-        P, number, closed = self._upper, self._number, self.iterated
-        fabs, graph = function_name("fabs", self.contract.precision), self.program.graph
-        for rule in rules(graph, self.contract.precision, self.program.newton):
-            k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
-            beside = f"{limit}*model->matter[0]"
-            if rule.kind == "BEYOND":
-                yield f"if (y[{k}] > {limit}) return {P}_BEYOND_ENDS;"
-                continue
-            if closed and rule.kind not in ("CLOSURE", "BRANCH"):
-                yield f"if (closed != {P}_OK) return closed;"
-                closed = False
-            if rule.kind in ("CLOSURE", "BRANCH"):
-                lost = "JUMPED" if rule.kind == "BRANCH" else "NOT_ASSEMBLED"
-                yield f"if (y[{k}] < -{limit}) return {P}_{lost};"
-                yield f"if (!(y[{k}] > {limit})) return {P}_DEAD_CENTRE;"
-            elif rule.kind == "GAP" and self.program.sizes["gapped"]:
-                yield f"if ({fabs}(y[{k}]) > {beside}) return {P}_NOT_CLOSED;"
-            elif rule.kind in ("OPEN", "OPEN_MOMENT"):
-                yield f"if (!(y[{k}] <= {beside if rule.kind == 'OPEN_MOMENT' else limit})) return {P}_UNDETERMINED;"
-            elif rule.kind == "JAM":
-                yield f"if (!(y[{k}] > {limit})) return {P}_JAMS;"
-            elif rule.kind == "SLIP":
-                yield f"if (y[{k}] > {limit}) return {P}_JAMS;"
-            elif rule.kind == "REST":
-                yield f"if (y[{k}] > {limit}) return {P}_AT_REST;"
-            elif rule.kind == "TURNED":
-                yield f"if (!({fabs}(y[{k}]) <= {limit})) return {P}_TURNED;"
-            elif rule.kind == "MISFIT":
-                yield f"if (y[{k}] > {limit}) return {P}_INCONSISTENT;"
-            elif rule.kind == "ROW":
-                size = self.program.columns.index(graph.columns[rule.beside])
-                yield f"if (!({fabs}(y[{k}]) <= {limit}*y[{size}])) return {P}_INCONSISTENT;"
-        if closed:
-            yield f"if (closed != {P}_OK) return closed;"
-        rows = len(self.program.columns)
-        yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"
+        """What a broken rule of the scene's status says, and a value that is not finite."""
+        P, sizes = self._upper, self.program.sizes
+        if "status" in self.program.functions:
+            yield "arg[0] = y;"
+            yield f"arg[1] = {'model->matter' if sizes['gapped'] else '0'};"
+            yield "arg[2] = &iterated;"
+            yield "res[0] = &rule;"
+            yield "status(arg, res);"
+            yield "if (rule > 0) return broken[(int) rule];"
+        yield f"if (!all_finite(y, {len(self.program.columns)})) return {P}_NOT_FINITE;"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..instants.refusal import Status
+from ..base.status import Status
 
 SHARED = {
     "NOT_ASSEMBLED": (Status.OUT_OF_REACH,),
@@ -19,6 +19,9 @@ SHARED = {
     "AT_REST": (Status.AT_REST,),
 }
 """What is said in the words of :class:`.Status`."""
+
+ANSWERS = {status: name for name, statuses in SHARED.items() for status in statuses}
+"""What is answered for a status of an instant; the neighbours of an instant are not seen, so some never are."""
 
 _OWN = {
     "OK": "everything is well",

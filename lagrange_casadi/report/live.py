@@ -8,6 +8,7 @@ and are evaluated in the module too.
 from __future__ import annotations
 
 import base64
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,14 +19,15 @@ import numpy.typing as npt
 
 from ..base.quantities import Output
 from ..codegen.printer import print_functions
-from ..declare.corners import Corners
 from ..declare.description import Description
 from ..declare.scene import Scene
 from ..declare.times import Timing
+from ..equations.derive import compile_scene
 from ..errors import DeclarationError
 from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..portable.data import LARGEST
+from ..portable.source import Source
 from ..portable.sourced import sourced
 from ..portable.wasm import check_zig, layout, module, places
 from .arrays import Arrays
@@ -47,29 +49,41 @@ void live_numbers(const double* p, double* numbers) {{
 """
 
 
+def run_of(case: str) -> str:
+    """Begin the command line that evaluates a case."""
+    return f"lagrange-casadi run {shlex.quote(case)}"
+
+
 @dataclass(frozen=True, eq=False)
 class Live:
-    """What a page comes alive with: the scene of its solution, how its instants were asked for, and what was wanted.
+    """What a page comes alive with: the ``source`` of its solution's program, and how its instants were asked for.
 
-    ``command`` is how a command line begins that evaluates the same. Raises :class:`.DeclarationError` where a scene has no
-    parameter, and :class:`.LagrangeCasadiError` where ziglang is missing.
+    ``command`` is how a command line begins that evaluates the same.
     """
 
-    scene: Scene
+    source: Source
     timing: Timing
-    wanted: Sequence[str] | None
     command: str
 
-    def __post_init__(self) -> None:
-        mechanism = self.scene.mechanism
-        if not mechanism.parameters:
-            raise DeclarationError(f"live: mechanism '{mechanism.name}' has no parameter to change; declare one, or leave live out")
+    @classmethod
+    def of(
+        cls, scene: Scene, timing: Timing, wanted: Sequence[str] | None, command: str, parameters: Mapping[str, float] | None = None
+    ) -> Live:
+        """Compile a scene, for outputs that are ``wanted``; ``parameters`` are those of the solution.
+
+        Raises :class:`.DeclarationError` where a scene has no parameter, :class:`.LagrangeCasadiError` where ziglang is missing,
+        and what :func:`.export` does.
+        """
+        data = compile_scene(scene, wanted, parameters=parameters).data
+        if not data.parameters:
+            raise DeclarationError(f"live: mechanism '{data.name}' has no parameter to change; declare one, or leave live out")
         check_zig("a live report")
+        return cls(sourced(scene, "", parameters, wanted, Rung("auto", "double"), LARGEST["double"]), timing, command)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What whoever changes parameters in the page must know."""
-        corners = Corners.of(self.scene)
+        corners = self.source.program.graph.data.corners
         return (_CORNERS,) if corners.laws or corners.constraints else ()
 
     def entry(self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
@@ -81,9 +95,7 @@ class Live:
 
 
 def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
-    scene, timing = live.scene, live.timing
-    values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    source = sourced(scene, solution.case, values, live.wanted, Rung("auto", "double"), LARGEST["double"])
+    source, timing = live.source, live.timing
     data = source.program.graph.data
     described, asked = data.template.content, data.template.numbers(data.symbols)
     start, stop = timing.ends(data.symbols)

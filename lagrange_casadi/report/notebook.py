@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 from ..declare.scene import Scene
-from ..declare.times import span_of
+from ..equations.model_data import template
 from ..errors import DeclarationError, LagrangeCasadiError
 from ..instants.ordering import told
 from ..instants.solution import Solution
@@ -47,20 +47,20 @@ def view(solution: Solution, height: int = 760) -> View:
 
 def scene_summary(scene: Scene) -> str:
     """A drawing of a scene at its first instant, where it can be assembled, and its parts: as HTML."""
-    mechanism, drawing = scene.mechanism, ""
+    drawing = ""
     with suppress(LagrangeCasadiError):
-        start, _ = span_of(scene.prescribed, scene.timing(), mechanism.values(scene.assembly))
+        start, _ = scene.span
         first = evaluate(scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False)
         drawing = still(first)
-    asked = scene.timing()
+    asked, content = scene.timing(), template(scene).filled(scene.values())
     over = f"over {escape(asked.joint)}" if asked.joint else "over time"
-    lines = [f"<b>{escape(mechanism.name)}</b>: {asked.count} instants {over}"]
+    lines = [f"<b>{escape(content['name'])}</b>: {asked.count} instants {over}"]
     parts = {
-        "bodies": [body.name for body in mechanism.moving],
-        "joints": [f"{name} ({joint.kind})" for name, joint in mechanism.joints.items()],
-        "loads": list(mechanism.loads),
+        "bodies": list(content["bodies"]),
+        "joints": [f"{name} ({joint['kind']})" for name, joint in content["joints"].items()],
+        "loads": list(content["loads"]),
         "motion of": list(scene.motion),
-        "parameters": [f"{name} = {parameter.default:g} {parameter.unit}" for name, parameter in mechanism.parameters.items()],
+        "parameters": [f"{name} = {one['value']:g} {one['unit']}" for name, one in content["parameters"].items()],
         "wanted": list(scene.wanted),
     }
     lines += [f"{word}: {escape(', '.join(names))}" for word, names in parts.items() if names]

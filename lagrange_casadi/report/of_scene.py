@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Mapping, Sequence
 
-from ..declare.scene import Scene, Wanted
+from ..declare.scene import Scene
 from ..studies.evaluate import evaluate
-from .live import Live
+from .live import Live, run_of
 from .page import write_report
 
 
@@ -16,11 +15,9 @@ def scene_report(
     scene: Scene, path: str | os.PathLike[str], parameters: Mapping[str, float] | None, wanted: Sequence[str] | None, live: bool
 ) -> None:
     """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
-    if wanted is not None:
-        Wanted.of(scene.mechanism, wanted)
+    scene.wants(wanted)
     asked = with_motion(scene.wanted if wanted is None else wanted)
-    command = f"lagrange-casadi run {shlex.quote(scene.mechanism.name)}"
-    engine = Live(scene, scene.timing(), asked, command) if live else None
+    engine = Live.of(scene, scene.timing(), asked, run_of(scene.name), parameters) if live else None
     write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None), path, engine)
 
 

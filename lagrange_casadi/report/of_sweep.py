@@ -8,17 +8,18 @@ from __future__ import annotations
 import json
 import math
 import os
-import shlex
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..declare.description import values_of
 from ..declare.scene import Scene, Wanted
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
+from ..equations.derive import compile_scene
 from ..equations.fingerprint import fingerprint, sources
-from ..equations.model_data import described
+from ..equations.model_data import template
 from ..errors import DeclarationError, shown
 from ..studies.evaluate import evaluate
 from ..studies.sweep.axes import DESIGN
@@ -28,6 +29,7 @@ from ..studies.sweep.meanings import STATUS
 from ..studies.sweep.reading import Sweep
 from . import Live, assembled, live_digest, page, with_motion, write_page
 from .arrays import Arrays
+from .live import run_of
 from .page import SWEEP_SCRIPTS, script
 
 MOST = 300_000
@@ -54,8 +56,8 @@ def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene 
 def is_of(sweep: Sweep, scene: Scene) -> bool:
     """Whether a sweep is of a scene: its parts are those that were swept, and where the same code says so its expressions too."""
     swept = sweep.identity["mechanism"]
-    values = {name: parameter["value"] for name, parameter in swept["parameters"].items()}
-    if values.keys() != scene.mechanism.parameters.keys() or json.loads(json.dumps(described(scene, values))) != swept:
+    values = values_of(swept)
+    if values.keys() != scene.parameters.keys() or json.loads(json.dumps(template(scene).filled(values))) != swept:
         return False
     told: dict[str, Any] = {}
     for name, value in sweep.identity["wanted"].items():
@@ -86,7 +88,7 @@ def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
             if count
         ],
         "statuses": {str(number): words for number, (_, words) in sweep.statuses.items()},
-        "command": command or f"lagrange-casadi run {shlex.quote(sweep.case)}",
+        "command": command or run_of(sweep.case),
         "note": _NO_SCENE,
         "frame": None if scene is None else _frame(sweep, scene, front, command),
     }
@@ -130,18 +132,18 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     first = front[0] if front else next((int(n) for numbers, v in sweep.blocks([STATUS]) for n in numbers[v[STATUS] == 0]), None)
     if first is None:
         raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
-    asked = sweep.identity["t"]
-    timing = scene.timing()
-    if json.loads(json.dumps(timing.words(scene.mechanism.symbols))) != asked:
+    asked, design = sweep.identity["t"], sweep.design(first)
+    wanted = with_motion(_names(sweep.identity["wanted"]))
+    timing, data = scene.timing(), compile_scene(scene, wanted, parameters=design).data
+    if json.loads(json.dumps(timing.words(data.symbols))) != asked:
         if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
             raise DeclarationError(f"{sweep.path}: its instants are not those of the scene: {asked}")
         timing = scene.timing(over=(asked[3], *asked[:3])) if len(asked) > 3 else scene.timing(t=tuple(asked))
-    wanted = with_motion(_names(sweep.identity["wanted"]))
     words: dict[str, Any] = {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
     if any(isinstance(bound, str) for bound in asked[:2]):
         words = {}
-    solution = evaluate(scene, parameters=sweep.design(first), wanted=wanted, elastic=False, **words)
-    return page(solution, Live(scene, timing, wanted, command))
+    solution = evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words)
+    return page(solution, Live.of(scene, timing, wanted, command, design))
 
 
 def _bounds(asked: list[Any]) -> tuple[Any, ...]:

@@ -26,10 +26,10 @@ from ..base.publish import PatientFile, check_writable, is_hdf5, replacing, sett
 from ..base.quantities import Output
 from ..base.seal import kind_of, seal
 from ..base.tables import SPACE
-from ..declare.description import check_places, shape_of
+from ..declare.description import check_places, shape_of, values_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
 from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs
@@ -207,7 +207,7 @@ def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
         if not np.isfinite(values).all():
             yield f"{axis}: holds values that are not finite"
         yield from unlike(file[axis], *_AXES[axis])
-    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    told = values_of(solution.description)
     if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or solution.case != solution.description["name"]:
         yield "case or parameters: differ from those of the mechanism"
 
@@ -276,7 +276,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["case"] = solution.case
     file.attrs.update(conventions(solution.table))
     file.attrs["mechanism"] = json.dumps(solution.description)
-    file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
+    file.attrs["parameters"] = json.dumps(values_of(solution.description))
     file.attrs["certified"] = solution.certified
     file.attrs["certificate_tolerance"] = solution.tolerance
     file.attrs["outputs"] = json.dumps(list(solution.series))

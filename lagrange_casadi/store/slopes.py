@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..declare.wanted_slopes import SENSITIVITY
+from ..declare.wanted_names import SENSITIVITY
 from ..instants.derivatives import Derivatives, derivatives
 from ..instants.solution import Solution
 from .scales import Scales

@@ -18,6 +18,7 @@ import numpy as np
 from ..arguments import NotNegative, Numeric, Positive, public
 from ..base.arrays import Array
 from ..base.quantities import Output
+from ..declare.description import fitted_of
 from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
 from ..errors import DeclarationError
 from ..instants.solution import Solution
@@ -65,7 +66,7 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     """
     told = solution.description["joints"].get(joint, {}).get("fitted", {})
     if not told:
-        having = ", ".join(name for name, other in solution.description["joints"].items() if "fitted" in other)
+        having = ", ".join(fitted_of(solution.description))
         raise DeclarationError(f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing: {having or 'none'}")
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:

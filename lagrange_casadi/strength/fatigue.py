@@ -59,12 +59,14 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
 
     Raises :class:`.DeclarationError` for numbers that the material has not.
     """
-    name, what = criterion_of(criterion).strength, f"fatigue by {criterion}"
-    (endurance,) = material.needs(what, "endurance")
-    if name == "fatigue_strength" and material.fatigue_strength is None:
-        (ultimate,) = material.needs(what, "ultimate")
-        return endurance, ultimate + 345e6
-    return endurance, material.needs(what, name)[0]
+    endurance, strength = material.needs(f"fatigue by {criterion}", *_needed(material, criterion))
+    by_ultimate = criterion_of(criterion).strength == "fatigue_strength" and material.fatigue_strength is None
+    return endurance, strength + 345e6 if by_ultimate else strength
+
+
+def _needed(material: Material, criterion: str) -> tuple[str, str]:
+    name = criterion_of(criterion).strength
+    return "endurance", "ultimate" if name == "fatigue_strength" and material.fatigue_strength is None else name
 
 
 @public
@@ -85,9 +87,11 @@ def used(amplitude: Any, mean: Any, material: Material, criterion: str = "goodma
     return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion_of(criterion).square else a + m
 
 
-def tires(material: Material) -> bool:
-    """Whether fatigue of a material can be told by Goodman."""
-    return material.endurance is not None and material.ultimate is not None
+def lacking(material: Material, criterion: str = "goodman") -> str:
+    """Say why fatigue of a material is open by a criterion, or on Findley's planes: which numbers it has not; empty if none."""
+    needed = _needed(material, criterion) if criterion in CRITERIA else ("endurance",)
+    missing = [name for name in needed if getattr(material, name) is None]
+    return f"fatigue: material '{material.name}' has no {' and no '.join(missing)}" if missing else ""
 
 
 @public

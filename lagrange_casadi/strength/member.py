@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.arrays import Array
 from ..beams.beam import Beam, beam_told
-from ..declare.description import in_space
+from ..declare.description import beams_of, in_space
 from ..equations.bars import unaimed
 from ..equations.stress import FORCES, CrossSections
 from ..errors import DeclarationError, check_kind
@@ -72,7 +72,7 @@ class Member:
         check_kind("strength", solution, "a Solution", Solution)
         law, body = solution.section(link).law, solution.description["bodies"][link]
         if "beam" not in body:
-            having = ", ".join(name for name, other in solution.description["bodies"].items() if "beam" in other)
+            having = ", ".join(beams_of(solution.description))
             raise DeclarationError(f"link '{link}' has no beam, which says what it is made of; links with one: {having or 'none'}")
         space = in_space(solution.description)
         if open_ := [force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ..arguments import public
+from ..declare.description import beams_of, fitted_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from .bearings import joint_safety
@@ -41,9 +42,8 @@ def untold(solution: Solution) -> dict[str, str]:
 
 def _parts(solution: Solution) -> tuple[list[str], list[str]]:
     """The links that have a beam and sections, and the joints that have something fitted."""
-    bodies, joints = solution.description["bodies"], solution.description["joints"]
-    links = [link for link in solution.links_with_sections if "beam" in bodies[link]]
-    return links, [name for name, joint in joints.items() if "fitted" in joint]
+    beams = beams_of(solution.description)
+    return [link for link in solution.links_with_sections if link in beams], fitted_of(solution.description)
 
 
 def part_safety(solution: Solution, part: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
@@ -55,7 +55,7 @@ def part_safety(solution: Solution, part: str, *, criterion: str = "goodman", yi
 
 def fitted_in(solution: Solution) -> tuple[str, ...]:
     """The joints that have pins or bearings whose reactions are told."""
-    fitted = (name for name, joint in solution.description["joints"].items() if "fitted" in joint)
+    fitted = fitted_of(solution.description)
     forces = {name: [o for o in solution.outputs if o.group == "reaction" and o.part == name] for name in fitted}
     return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
 

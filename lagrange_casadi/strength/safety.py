@@ -16,7 +16,7 @@ from ..equations.buckling import Column
 from ..errors import UnknownNameError
 from ..instants.solution import Solution
 from .critical_plane import FINDLEY, plane_factor, worst_plane
-from .fatigue import CRITERIA, damage_score, factor, factor_score
+from .fatigue import CRITERIA, damage_score, factor, factor_score, lacking
 from .member import Member
 from .stress import Stress, StressPeak
 from .worst import worst
@@ -87,7 +87,8 @@ def safety(solution: Solution, link: str, *, criterion: str = "goodman", yieldin
     """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
 
     Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches, and counts swings by a ``criterion`` of
-    :data:`.CRITERIA`, or looks for the critical plane by ``findley``. It is open where the material has no endurance limit.
+    :data:`.CRITERIA`, or looks for the critical plane by ``findley``. It is open where the material has no endurance limit,
+    or lacks the strength that the criterion needs.
 
     Raises :class:`.DeclarationError` where the material lacks any other number that is needed, and :class:`.UnknownNameError` for a
     ``criterion`` or a kind of stress that is none.
@@ -109,8 +110,8 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
     verdicts.append(buckling(member, of))
     if verdicts[1].factor < enough:
         return Safety(link, tuple(verdicts))
-    if material.endurance is None:
-        return Safety(link, tuple(verdicts), (f"fatigue: material '{material.name}' has no endurance",))
+    if is_open := lacking(material, criterion):
+        return Safety(link, tuple(verdicts), (is_open,))
     verdicts.append(tired(found, material, criterion))
     return Safety(link, tuple(verdicts))
 

@@ -11,7 +11,6 @@ from ..declare.even_points import EvenPoints
 from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
-from ..errors import DeclarationError
 from ..instants.rung import Rung
 
 if TYPE_CHECKING:
@@ -60,6 +59,8 @@ def evaluate(
     elastic
         Whether least strain energy tells what equilibrium leaves open: see :class:`.Scene`.
 
+    Notes
+    -----
     Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.base.tables` lists
     units and signs. A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and
     :class:`CertificateWarning` is given. The method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for
@@ -69,8 +70,6 @@ def evaluate(
     fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
     :class:`DeclarationError`.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
     rung = Rung(backend, precision, newton, table, flags)
     from .solving import solve
 

@@ -20,11 +20,12 @@ from ..base.arrays import Array
 from ..base.quantities import Output, compared
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
-from ..codegen.stages import Stages, compensated, plain, turns_many
+from ..codegen.stages import Stages, stages_for
+from ..declare.description import values_of
 from ..declare.even_points import EvenPoints, are_even
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, span_of
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
 from ..errors import DeclarationError
@@ -33,7 +34,7 @@ from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..summits.panels import Peaks
+from ..summits.panels import TOPS, Listed, Peaks
 from ..summits.sharpness import Sharpness
 from .evaluate import evaluate
 
@@ -65,9 +66,7 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     instants than on both sides of it; :class:`UnknownNameError` for a name that is none.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
-    found = ContinuousSolution.of(scene, solution.by_equilibrium)
-    peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
-    return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
+    return ContinuousSolution.of(scene, solution.by_equilibrium).refined(sampled)[0]
 
 
 @dataclass(frozen=True)
@@ -103,7 +102,7 @@ def shortfall(
     and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
-    start, stop = span_of(scene.prescribed, timing, scene.mechanism.values(parameters))
+    start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
     if not counts:
         raise DeclarationError("shortfall: expected at least one number of instants")
     solutions = [
@@ -189,11 +188,14 @@ class ContinuousSolution:
 
         Raises :class:`.DeclarationError` where it is not one of this scene.
         """
-        told = scene.mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
+        other = DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{scene.name}'")
+        if scene.name != solution.case or scene.parameters.keys() != solution.description["parameters"].keys():
+            raise other
+        told = scene.values(values_of(solution.description))
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-        graph = compile_scene(assembled(scene, told, wanted), wanted)
+        graph = compile_scene(scene, wanted, parameters=told)
         p = np.array(list(told.values()))
-        stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
+        stages = stages_for(graph, "double", solution.t, p)
         z, _ = follow(graph, solution.t, p, stages=stages)
         searched = backend or solution.provenance.backend
 
@@ -203,7 +205,7 @@ class ContinuousSolution:
 
         found = cls(graph, stages, solution, p, z, graph.outputs, again, searched)
         if not found.agrees():
-            raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{graph.data.name}'")
+            raise other
         return found
 
     def agrees(self) -> bool:
@@ -231,6 +233,15 @@ class ContinuousSolution:
         names = list(wanted) or list(dict.fromkeys(map(wanted_for, self.solution.outputs)))
         return self.again((float(t[0]), float(t[-1]), t.size), names)
 
+    def refined(self, sampled: Sequence[Peak], listed: Listed | None = None) -> tuple[list[Peak], Array]:
+        """The peaks over all times, with the coordinate of the drive, of quantities whose peaks at the instants are known.
+
+        And of each quantity the local peaks that are ``listed``, (q, :data:`.TOPS`, 4): see :class:`.Peaks`.
+        """
+        over = self.solution.over
+        peaks, tops = (self if are_even(self.solution.t) else self.in_equal_steps()).searched(sampled, listed)
+        return (peaks if over is None else [self.at_the_drive(peak, over.joint) for peak in peaks]), tops
+
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""
         d = self.graph.motion(peak.t, self.p)[0]
@@ -238,16 +249,24 @@ class ContinuousSolution:
 
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
-        solution = self.solution
+        return self.searched(sampled)[0]
+
+    def searched(self, sampled: Sequence[Peak], listed: Listed | None = None) -> tuple[list[Peak], Array]:
+        """The same, and local peaks of each: see :meth:`refined`."""
+        solution, nothing = self.solution, np.full((TOPS, 4), np.nan)
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
-        if not sought or solution.t.size == 1:
-            return list(sampled)
+        if not sought or (solution.t.size == 1 and listed is None):
+            return list(sampled), np.array([nothing for _ in sampled])
         self._refuse_isolated()
         turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
-        searched = signals.peaks(units, scales, searching(self.backend))
+        searched = signals.peaks(units, scales, searching(self.backend), listed)
+        there = {} if searched.tops is None else dict(zip(sought, searched.tops, strict=True))
+        tops = np.array([there.get(Output.of(peak.name), nothing) for peak in sampled])
+        if solution.t.size == 1:
+            return list(sampled), tops
         value, t, xi = self.timed(signals, sought, searched)
         for k, output in enumerate(sought):
             peak = found[output]
@@ -257,7 +276,7 @@ class ContinuousSolution:
                 found[output] = Peak(peak.name, math.nan, peak.unit, float(t[k]), along, least)
             elif abs(value[k]) > abs(peak.value):
                 found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
-        return [found[Output.of(peak.name)] for peak in sampled]
+        return [found[Output.of(peak.name)] for peak in sampled], tops
 
     def _refuse_isolated(self) -> None:
         """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between instants than on both sides."""
@@ -271,7 +290,8 @@ class ContinuousSolution:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+        signals = Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+        return replace(signals, rounding=sharpness.rounding(*signals.inputs(signals.t, signals.z)))
 
     def quantity(self, output: Output) -> Quantity:
         """Where a quantity is among the columns."""

@@ -14,7 +14,6 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic_property
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
-from ..equations.derive import assembled, compile_scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.rung import Rung
 from ..instants.solution import Solution
@@ -22,13 +21,11 @@ from ..instants.statistics import shares
 from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakKind, peak_slopes
 from ..sensitivity.slopes import Numbers, Slopes
-from ..sensitivity.ties import Curve, ties
+from ..sensitivity.ties import AS_LARGE, ties
+from ..summits.panels import Listed
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
-from .peaks import refine, resultants, wanted_for
-
-_SAME = 1e-6
-"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+from .peaks import ContinuousSolution, resultants
 
 _BLOCK = 1 << 16
 
@@ -50,18 +47,18 @@ class Changes:
 @public
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """The derivatives of a ``solution`` by the parameters of its ``scene``, each made when it is asked for.
+    """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked for.
 
     They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
     :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
     equilibrium leaves open.
     """
 
-    scene: Scene
     solution: Solution
     slopes: Slopes
     p: Array
     rung: Rung
+    continuous: ContinuousSolution
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -114,25 +111,17 @@ class Sensitivities:
     def peaks(self, names: Sequence[str]) -> list[Changes]:
         """How the peaks of several quantities change."""
         outputs = [self._known(name) for name in names]
-        found = refine(self.scene, self.solution, names)
+        sampled = [self.solution.peak(name) for name in names]
+        found, others = self.continuous.refined(sampled, Listed(1.0 - AS_LARGE["double"]))
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
         nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
         ends = np.zeros((2, self.p.size))
         changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
-        tied = ties(
-            self.slopes, self.solution.t, self.p, chosen, values, changes, ends, nothing, lambda k: self._curves(outputs[k])
-        )
+        tied = ties(self.slopes, self.solution.t, self.p, chosen, values, changes, ends, others) & ~nothing
         every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
         return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
-
-    def _curves(self, output: Output) -> Sequence[Curve]:
-        """A quantity over the instants; a section force where it may be largest along the link."""
-        if output.group != "section":
-            return [(np.full(self.solution.t.size, np.nan), self.solution.array(output))]
-        places, values = self.solution.section(output.part).law.curves(output.member)
-        return list(zip(places.T, values.T, strict=True))
 
     def _largest(self, unit: str) -> float:
         """The largest size over the instants among the series of a unit."""
@@ -203,50 +192,12 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
 
     Raises :class:`.DeclarationError` where the solution is not one of this scene.
     """
-    if not isinstance(scene, Scene) or not isinstance(solution, Solution):
-        raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
-    mechanism, solution = scene.mechanism, solution.by_equilibrium
-    if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
-        raise _other(mechanism.name, solution)
-    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
-    wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
-    values = mechanism.values(told)
-    graph = compile_scene(assembled(scene, values, wanted), wanted)
+    solution = solution.by_equilibrium
+    continuous = ContinuousSolution.of(scene, solution)
+    program = continuous.graph
     quantities = [o for o in solution.quantities() if solution.determined(o)]
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
-    if not made <= graph.outputs.keys():
-        raise _other(mechanism.name, solution)
-    columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
-    slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), rung := Rung(backend))
-    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())), rung)
-    _refuse_other(found, quantities)
-    return found
-
-
-def _refuse_other(found: Sensitivities, quantities: Sequence[Output]) -> None:
-    """Raise :class:`.DeclarationError` where a solution has other values than its scene, at one of three instants."""
-    solution = found.solution
-    plain = [o for o in quantities if o.group != "section" and o not in found.slopes.graph.loop_angles]
-    sizes: dict[str, float] = {}
-    for output in plain:
-        unit = solution.unit(output)
-        sizes[unit] = max(sizes.get(unit, 0.0), float(np.fmax.reduce(np.abs(solution.array(output)), initial=0.0)))
-    # Where a friction rests there are no numbers.
-    moving = np.flatnonzero(~solution.resting)
-    if not moving.size:
-        return
-    some = moving[[0, moving.size // 2, -1]]
-    z = found.slopes.iterated(solution.t, found.p, solution.t[some])
-    agrees = np.ones(some.size, bool)
-    for output in plain:
-        chosen = np.full(some.size, found.slopes.numbers[output], np.intc)
-        there = found.slopes.at(solution.t[some], z, found.p, chosen, np.full(some.size, np.nan)).value
-        limit = _SAME * sizes[solution.unit(output)] + NOTHING * max(sizes.values())
-        agrees &= np.abs(there - solution.array(output)[some]) <= limit
-    if plain and not agrees.any():
-        raise _other(found.slopes.graph.data.name, solution)
-
-
-def _other(name: str, solution: Solution) -> DeclarationError:
-    return DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{name}'")
+    columns = sorted({program.outputs[part] for part in made} | {k for o, k in program.outputs.items() if o.along})
+    slopes = Slopes.of(program, quantities, Sharpness.of(program, columns), rung := Rung(backend))
+    return Sensitivities(solution, slopes, continuous.p, rung, continuous)

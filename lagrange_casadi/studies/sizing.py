@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import casadi as ca
 
 from ..arguments import Positive, public
+from ..beams.beam import Beam
 from ..beams.profiles import Profile
-from ..declare.density import Density
+from ..declare.description import Template, beams_of, values_of
 from ..declare.held import ends_of
-from ..declare.parts import Link
+from ..declare.parts import Parameter
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance
 from ..elastic.deflection import Against, Deflection
-from ..equations.bars import bars_of, unaimed
+from ..equations.bars import unaimed
+from ..equations.model_data import beam_at, template
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..instants.solution import Solution
 from ..strength.member import Member
@@ -120,9 +123,8 @@ def size(
 
 @dataclass(frozen=True)
 class _Slot:
-    """A link whose dimensions profiles may set: the parameter of each dimension, and the profiles, lightest first."""
+    """What profiles may set of a link: the parameter of each dimension, and the profiles, lightest first."""
 
-    link: Link
     parameters: Mapping[str, str]
     profiles: tuple[Profile, ...]
 
@@ -133,12 +135,14 @@ class _Slot:
 
 @dataclass(eq=False)
 class _Search:
-    scene: Scene
+    evaluated: Callable[..., Solution]
+    template: Template
     slots: dict[str, _Slot]
     fixed: dict[str, float]
     wanted: float
     left: Mapping[str, str]
-    asked: dict[str, Any]
+    outputs: Sequence[str]
+    sections: Sequence[str]
     judging: dict[str, Any]
     bent: float | None = None
     evaluations: int = 0
@@ -159,20 +163,19 @@ class _Search:
     ) -> _Search:
         if not profiles:
             raise DeclarationError("size: expected at least one profile")
-        mechanism = scene.mechanism
-        having = {name: link for name, link in mechanism.links.items() if link.beam and isinstance(link.mass, Density)}
+        described = template(scene)
+        content, having = described.content, beams_of(described.content)
         if unknown := [name for name in links or () if name not in having]:
             raise UnknownNameError("link with a beam", unknown, having)
         slots: dict[str, _Slot] = {}
         left: dict[str, str] = {}
-        spinning = [bar.link.name for bar in bars_of(scene.guided, scene.laws) if not bar.aimed]
-        for name, link in having.items():
-            if links is not None and name not in links:
-                continue
+        defaults = scene.values(parameters)
+        spinning = [name for name in content.get("bars", ()) if name not in content.get("beside", ())]
+        for name in having if links is None else [name for name in having if name in links]:
             try:
-                if name in spinning and link.beam and not link.beam.round:
+                if name in spinning and not beam_at(described, name, list(defaults.values())).round:
                     raise _UnfitError(unaimed(name).replace(f"link '{name}'", "it", 1))
-                slots[name] = _slot(scene, link, profiles, parameters)
+                slots[name] = _slot(described, name, profiles, scene.parameters, defaults)
             except _UnfitError as error:
                 if links is not None:
                     raise DeclarationError(f"link '{name}': {error}") from None
@@ -185,14 +188,14 @@ class _Search:
             for parameter in dict.fromkeys(slot.parameters.values()):
                 if (other := taken.setdefault(parameter, name)) != name:
                     raise DeclarationError(f"size: links '{other}' and '{name}' share parameter '{parameter}'; give each its own")
-        wants = [f"section:{name}" for name in having]
-        asked: dict[str, Any] = {"t": t, "over": over, "wanted": wants, "certificate": False}
-        return cls(scene, slots, dict(parameters), wanted, left, asked, {"criterion": criterion, "yielding": yielding}, bent)
+        evaluated, judging = partial(evaluate, scene, t=t, over=over), {"criterion": criterion, "yielding": yielding}
+        sections = [f"section:{name}" for name in having]
+        return cls(evaluated, described, slots, dict(parameters), wanted, left, scene.wanted, sections, judging, bent)
 
     def solve(self, choice: Mapping[str, int]) -> Solution:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
-        return evaluate(self.scene, parameters=self.values(choice), **self.asked)
+        return self.evaluated(parameters=self.values(choice), wanted=self.sections, certificate=False)
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -203,12 +206,9 @@ class _Search:
     def judge(self, solution: Solution, name: str, k: int, *, whole: bool = False) -> Safety:
         """How safe a link is with a profile, under the loads of a solution; ``whole`` against all, else until it is not safe."""
         member = Member.of(solution, name)
-        slot, mechanism = self.slots[name], self.scene.mechanism
-        values = mechanism.values({n: p["value"] for n, p in solution.description["parameters"].items()})
+        slot, values = self.slots[name], values_of(solution.description)
         values |= slot.values(slot.profiles[k])
-        assert slot.link.beam is not None
-        numeric = slot.link.beam.mapped(lambda _, x: mechanism.number(x, values))
-        other = replace(member, beam=numeric)
+        other = replace(member, beam=beam_at(self.template, name, list(values.values())))
         enough = 0.0 if whole else self.wanted
         found = judged(other, as_column(solution.description, other), **self.judging, enough=enough)
         if self.bent is None or found.factor < enough:
@@ -265,8 +265,7 @@ class _Search:
 
     def told(self, choice: Mapping[str, int]) -> Sizing:
         """What was chosen, evaluated anew with its certificate."""
-        asked = {**self.asked, "wanted": [*self.scene.wanted, *self.asked["wanted"]], "certificate": True}
-        solution = evaluate(self.scene, parameters=self.values(choice), **asked)
+        solution = self.evaluated(parameters=self.values(choice), wanted=[*self.outputs, *self.sections])
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description["bodies"][name]["mass"]
@@ -278,11 +277,9 @@ class _Search:
         return Sizing(tuple(links), chosen, self.evaluations, self.left, solution)
 
 
-def _area(scene: Scene, link: Link, values: Mapping[str, float]) -> float:
-    """What profiles are put in order by: the mean area of the cross-sections of a link."""
-    assert link.beam is not None
-    shapes = link.beam.mapped(lambda _, x: scene.mechanism.number(x, values)).course.shapes()
-    areas = [float(shape.area) for shape in shapes]
+def _area(beam: Beam) -> float:
+    """Average the areas of the cross-sections of a link, by which profiles are put in order."""
+    areas = [float(shape.area) for shape in beam.course.shapes()]
     return sum(areas) / len(areas)
 
 
@@ -290,13 +287,17 @@ class _UnfitError(LagrangeCasadiError):
     """Profiles do not fit a link."""
 
 
-def _slot(scene: Scene, link: Link, profiles: Sequence[Profile], parameters: Mapping[str, float]) -> _Slot:
-    """A link with the profiles that may be its own. Raises :class:`_UnfitError`."""
-    assert link.beam is not None
-    mechanism = scene.mechanism
+def _slot(
+    described: Template,
+    link: str,
+    profiles: Sequence[Profile],
+    parameters: Mapping[str, Parameter],
+    defaults: Mapping[str, float],
+) -> _Slot:
+    """Find the profiles that may be a link's own. Raises :class:`_UnfitError`."""
     own: dict[str, str] = {}
+    shapes = list(beam_at(described, link, ca.vertcat(ca.SX(0, 1), *(one.symbol for one in parameters.values()))).course.shapes())
     for name in profiles[0].dimensions:
-        shapes = list(link.beam.course.shapes())
         if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:
             raise _UnfitError(f"{name} is no dimension of its {lacking[0]}")
         symbols = [shape.dimensions[name] for shape in shapes]
@@ -304,16 +305,15 @@ def _slot(scene: Scene, link: Link, profiles: Sequence[Profile], parameters: Map
         if len(found) != 1:
             raise _UnfitError(f"its {name} is no parameter, so no profile can set it")
         own[name] = found.pop()
-    slot = _Slot(link, own, ())
-    defaults = mechanism.values(dict(parameters))
+    slot = _Slot(own, ())
     weights = []
     for profile in profiles:
         values = slot.values(profile)
         for name, value in profile.dimensions.items():
             if values[own[name]] != value:
                 raise _UnfitError(f"profile '{profile.name}' gives parameter '{own[name]}' two values")
-            if fault := mechanism.parameters[own[name]].fault(value):
+            if fault := parameters[own[name]].fault(value):
                 raise _UnfitError(f"profile '{profile.name}': {fault}")
-        weights.append(_area(scene, link, defaults | values))
+        weights.append(_area(beam_at(described, link, list((dict(defaults) | values).values()))))
     order = sorted(range(len(profiles)), key=lambda k: weights[k])
-    return _Slot(link, own, tuple(profiles[k] for k in order))
+    return _Slot(own, tuple(profiles[k] for k in order))

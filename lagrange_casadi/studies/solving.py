@@ -13,16 +13,16 @@ from ..arguments import Outputs, ThreadCount
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import cores, in_words, require
-from ..declare.corners import Corners
 from ..declare.ends import BEYOND
-from ..declare.even_points import EvenPoints, points
-from ..declare.giving import Elastic, giving
+from ..declare.even_points import EvenPoints, checked_ratios, points
+from ..declare.giving import Elastic
 from ..declare.laws import Laws
-from ..declare.scene import Scene, checked_ratios
+from ..declare.scene import Scene
 from ..declare.times import Over, Times, Timing, instants_of, span_of
-from ..declare.wanted_slopes import by_parameters
+from ..declare.wanted_names import by_parameters
 from ..equations.checks import Check
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
+from ..equations.model_data import ModelData
 from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
@@ -61,25 +61,24 @@ def solve(
     elastic: Elastic | None,
 ) -> Solution:
     """Evaluate a scene by one method: see :func:`.evaluate`."""
-    values = scene.mechanism.values(parameters)
+    values = scene.values(parameters)
     timing = scene.timing(t, over)
     scene.checked(values)
-    span = checked_span(scene.prescribed, timing, values)
-    checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
-    gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
-    scene = scene if gives == scene.elastic else _giving(scene, gives)
+    scene = scene.giving(elastic)
+    gives = scene.elastic
     if gives and rung.table is not None:
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
-    scene = assembled(scene, values, wanted)
-    graph = compile_scene(scene, wanted)
+    names = scene.wanted if wanted is None else wanted
+    graph = compile_scene(scene, names, parameters=values)
     rung.check(graph)
+    checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
     instants, places = instants_of(graph.laws, timing, values), points(ratios)
     times = instants.t
     p = np.array(list(values.values()))
-    Corners.of(scene).refuse_isolated_laws(times, p.tolist())
+    graph.data.corners.refuse_isolated_laws(times, p.tolist())
     left_open: tuple[Output, ...] = ()
     if rung.table is not None:
         graph, left_open = determinate(graph, times, p)
@@ -94,7 +93,7 @@ def solve(
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
     solution = Solution(graph.data.name, times, places, ordered, description, provenance, left_open, over=instants.over)
-    by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
+    by = by_parameters(graph.data.parameters, names)
     slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity)
     if solution.resting.any():
@@ -108,11 +107,6 @@ def solve(
         if solution.failed:
             warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
     return solution
-
-
-@functools.lru_cache(maxsize=32)
-def _giving(scene: Scene, elastic: Elastic) -> Scene:
-    return replace(scene, elastic=elastic)
 
 
 def _announce(graph: Program, count: int, rung: Rung, threads: int) -> None:
@@ -140,13 +134,13 @@ def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tup
 
 
 @functools.lru_cache(maxsize=64)
-def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
+def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...]) -> None:
     """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters.
 
     Also where it puts into a curve what is beyond the curve's ends.
     """
-    Corners.of(scene).refuse_laws(span, p)
-    laws = scene.prescribed
+    data.corners.refuse_laws(span, p)
+    laws = data.laws
     if laws.beyond is None:
         return
     t = np.linspace(*span, _LOOKED_AT)

@@ -23,7 +23,7 @@ from ..instants.solution import Solution
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, buckling, safety, yielded
 from ..strength.stress import Stress, StressPeak
-from .peaks import ContinuousSolution, refine
+from .peaks import ContinuousSolution
 
 
 @public
@@ -61,7 +61,7 @@ def refine_safety(
             peak = found.stress(yielding, Stress(found.member).peak(yielding))
             refined = None if math.isnan(peak.value) else yielded(found.member, peak)
         elif verdict.against == "buckling":
-            refined = found.buckled(scene, verdict, as_column(solution.description, found.member))
+            refined = found.buckled(verdict, as_column(solution.description, found.member))
         if refined is None:
             left.append(f"{verdict.against}: less than {verdict.factor:.4g}, that of the instants, may hide between them")
         else:
@@ -124,16 +124,13 @@ class _Searched:
         best = max(sampled, peak, key=lambda one: abs(one.value))
         return best if found.told[0] else replace(best, value=math.nan, least=abs(best.value))
 
-    def buckled(self, scene: Scene, sampled: Verdict, of: Column) -> Verdict | None:
+    def buckled(self, sampled: Verdict, of: Column) -> Verdict | None:
         """The factor against buckling, of which that at the instants is known; None where it cannot be told.
 
         It jumps where compression begins: the graph knows when that is.
         """
-        solution, name = (
-            self.over_time.in_equal_steps(f"safety:{self.member.link}").solution,
-            f"utilisation:{self.member.link}:buckling",
-        )
-        (peak,) = refine(scene, solution, [name])
+        used = self.over_time.in_equal_steps(f"safety:{self.member.link}")
+        ((peak,), _) = used.refined([used.solution.peak(f"utilisation:{self.member.link}:buckling")])
         if math.isnan(peak.value):
             return None
         factor = 1.0 / peak.value if peak.value else math.inf

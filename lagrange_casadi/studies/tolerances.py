@@ -11,19 +11,16 @@ import numpy as np
 from ..arguments import Outputs, public
 from ..base.arrays import Array
 from ..base.numerals import real
-from ..base.units import Within
+from ..base.status import Status
+from ..base.units import Within, number, typed
 from ..base.vocabulary import SAMPLES, Backend
-from ..declare.mechanism import Mechanism
+from ..declare.parts import Parameter
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.refusal import Status
 from .designs.prepared import prepare
 
 _LARGEST = 1_000_000
-_UNITS = {"mm": ("m", 1e-3), "um": ("m", 1e-6), "m": ("m", 1.0), "deg": ("rad", np.pi / 180.0), "rad": ("rad", 1.0)}
-_UNITS |= {"g": ("kg", 1e-3), "kg": ("kg", 1.0)}
-"""Units that a tolerance may be told in: of which unit they are, and how much of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +59,14 @@ class Spreads:
     peaks: Mapping[str, Spread]
 
 
-def read_tolerance(mechanism: Mechanism, name: str, value: float | str, nominal: float) -> float:
+def read_tolerance(parameters: Mapping[str, Parameter], name: str, value: float | str, nominal: float) -> float:
     """A tolerance in the parameter's unit: a number, or a text such as ``0.1mm``, ``0.5deg``, ``2g`` or ``1%``.
 
     Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is no tolerance of it.
     """
-    if name not in mechanism.parameters:
-        raise UnknownNameError("parameter", name, mechanism.parameters)
-    unit = mechanism.parameters[name].unit
+    if name not in parameters:
+        raise UnknownNameError("parameter", name, parameters)
+    unit = parameters[name].unit
     try:
         found = _number(value, unit, nominal)
     except ValueError:
@@ -81,20 +78,12 @@ def read_tolerance(mechanism: Mechanism, name: str, value: float | str, nominal:
 
 
 def _number(value: float | str, unit: str, nominal: float) -> float:
-    if isinstance(value, str):
-        text = value.strip()
-        if text.endswith("%"):
-            found = real(text[:-1]) / 100.0 * abs(nominal)
-        else:
-            digits = text.rstrip("adegmkru")
-            of, scale = _UNITS.get(text[len(digits) :].strip(), (unit, 1.0))
-            if of != unit or (text[len(digits) :] and text[len(digits) :] not in _UNITS):
-                raise ValueError
-            found = real(digits) * scale
-    elif isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError
+    if isinstance(value, str) and value.strip().endswith("%"):
+        found = real(value.strip()[:-1]) / 100.0 * abs(nominal)
+    elif isinstance(value, str) and not typed(value)[1]:
+        found = real(value)
     else:
-        found = float(value)
+        found = number(value, unit)
     if not 0.0 < found < np.inf:
         raise ValueError
     return found
@@ -120,16 +109,13 @@ def tolerances(
     ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises what that does, and
     :class:`DeclarationError` for what is no tolerance.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"tolerances: expected a Scene, got {scene!r}")
     if not isinstance(within, Mapping) or not within:
         raise DeclarationError(f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}")
-    mechanism = scene.mechanism
-    values = mechanism.values(parameters)
-    sizes = {name: read_tolerance(mechanism, name, value, values.get(name, 0.0)) for name, value in within.items()}
+    values = scene.values(parameters)
+    sizes = {name: read_tolerance(scene.parameters, name, value, values.get(name, 0.0)) for name, value in within.items()}
     for name, size in sizes.items():
         for end in (values[name] - size, values[name] + size):
-            mechanism.parameters[name].check(end)
+            scene.parameters[name].check(end)
     f = prepare(scene, wanted=wanted, t=t, over=over, backend=backend)
     gradient = f.gradient(values)
     places = [f.parameters.index(name) for name in sizes]
@@ -143,7 +129,7 @@ def tolerances(
     for k, quantity in enumerate(f.quantities):
         found[quantity] = _spread(quantity, f.units[k], float(gradient.value[k]), moves[k], tuple(sizes), drawn.value[ok, k])
     ranked = sorted(found, key=lambda name: -_relative(found[name]))
-    return Spreads(mechanism.name, sizes, samples, int(np.count_nonzero(~ok)), {name: found[name] for name in ranked})
+    return Spreads(scene.name, sizes, samples, int(np.count_nonzero(~ok)), {name: found[name] for name in ranked})
 
 
 def _spread(quantity: str, unit: str, nominal: float, moves: Array, names: Sequence[str], values: Array) -> Spread:

@@ -7,29 +7,25 @@ latter are the difference of two evaluations, with a force as large as the machi
 
 from __future__ import annotations
 
-import copy
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, cast
+from dataclasses import dataclass
+from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ..arguments import public
 from ..base.arrays import Array
-from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Force, Link, Parameter, Point, PointMass
+from ..declare.description import beams_of
+from ..declare.parts import Body, Point
+from ..declare.pushed import with_push
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance, nodes
+from ..equations.model_data import template
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.member import Member
 from .evaluate import evaluate
-
-_LOAD = "tool deflection"
-_PUSHES = tuple(f"{_LOAD} {axis}" for axis in "xyz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,19 +71,11 @@ def tool_deflection(
     Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces of a link that gives way stay
     open, or the point is on the ground or of another mechanism; and what :func:`.evaluate` does.
     """
-    mechanism = scene.mechanism
-    if not isinstance(point, (Point, Link, PointMass)):
-        raise DeclarationError(f"tool_deflection: expected a point of the mechanism, got {point!r}")
-    place = point if isinstance(point, Point) else Point(point, 0.0, 0.0)
-    if mechanism.bodies.get(place.body.name) is not place.body or place.body is mechanism.ground:
-        raise DeclarationError(
-            f"tool_deflection: the point is on '{place.body.name}', expected a moving body of '{mechanism.name}'"
-        )
-    links = [name for name, link in mechanism.links.items() if link.beam is not None]
+    pushed, pushes, body = with_push(scene, point)
+    links = beams_of(template(scene).content)
     if not links:
         raise DeclarationError("tool_deflection: no link has a beam, which says what it is made of; all are rigid")
 
-    pushed = replace(scene, mechanism=_pushed(mechanism, place), assembly=dict(scene.assembly))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": [f"section:{link}" for link in links], "elastic": links}
 
     def sections(forces: Mapping[str, float]) -> Solution:
@@ -95,12 +83,12 @@ def tool_deflection(
 
     plain = sections({})
     # A force elsewhere pulls a bar, and bends none.
-    members = {link: Member.of(plain, link, spun=link != place.body.name) for link in links}
+    members = {link: Member.of(plain, link, spun=link != body) for link in links}
     beams = {link: Compliance.of(member, f"tool_deflection: link '{link}'") for link, member in members.items()}
-    push, ways = _size(plain, links), _PUSHES[: 3 if mechanism.space else 2]
-    by_link = {link: np.zeros((plain.t.size, len(ways))) for link in links}
-    for k, way in enumerate(ways):
-        unit = sections({way: push})
+    push = _size(plain, links)
+    by_link = {link: np.zeros((plain.t.size, len(pushes))) for link in links}
+    for k, name in enumerate(pushes):
+        unit = sections({name: push})
         for link, beam in beams.items():
             at = nodes(beam.member)
             own = beam.member.at(at.u)
@@ -114,13 +102,3 @@ def _size(solution: Solution, links: list[str]) -> float:
     forces = ("axial", "shear")
     most = max(float(np.abs(solution.section(link).law.extreme(force)[1]).max()) for link in links for force in forces)
     return most or 1.0
-
-
-def _pushed(mechanism: Mechanism, place: Point) -> Mechanism:
-    """The mechanism with one force more, whose components are parameters."""
-    found: Any = copy.copy(mechanism)
-    pushes = {name: Parameter(name, 0.0, "N", -math.inf, math.inf, ca.SX.sym(name)) for name in _PUSHES}
-    found.parameters = dict(mechanism.parameters) | pushes
-    x, y, z = (parameter.symbol for parameter in pushes.values())
-    found.loads = dict(mechanism.loads) | {_LOAD: Force(_LOAD, place, x, y, False, z if mechanism.space else 0.0)}
-    return cast(Mechanism, found)

@@ -21,7 +21,7 @@ from ..base.vocabulary import PRECISIONS
 from ..codegen import find_compiler
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, instants_of
-from ..equations.derive import assembled, compile_scene
+from ..equations.derive import compile_scene
 from ..equations.program import Program
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Evaluated, run
@@ -136,30 +136,29 @@ def trade(
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
     their own, and what :func:`.evaluate` raises where the scene has no result.
     """
-    told = scene.mechanism.values(parameters)
+    told = scene.values(parameters)
     values = np.array(list(told.values()))
     times = instants_of(scene.prescribed, scene.timing(t, over), told).t
-    scene = assembled(scene, told, wanted)
-    graph = compile_scene(scene, wanted)
+    program = compile_scene(scene, wanted, parameters=told)
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
-    truth = _Truth(graph, times, compared, values)
+    truth = _Truth(program, times, compared, values)
     refused: dict[str, str] = {}
     works: dict[Rung, tuple[Callable[[], Any], int]] = {}
     found: dict[Rung, tuple[float, float, str, str]] = {}
     for rung in rungs:
         progress(rung)
-        if rung.newton is not None and graph.newton is None:
+        if rung.newton is not None and program.newton is None:
             continue
         try:
-            evaluated, _ = columns(graph, times, values, rung, 1)
-            if unfinished(graph, evaluated).any():
+            evaluated, _ = columns(program, times, values, rung, 1)
+            if unfinished(program, evaluated).any():
                 raise AssemblyError("some instants have no result")
-            works[rung] = _work(graph, times, values, rung)
+            works[rung] = _work(program, times, values, rung)
         except (AssemblyError, CompilerError, DeclarationError) as error:
             refused[rung.options] = str(error)
             continue
         nodes = "" if evaluated.cycle is None else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
-        found[rung] = (*truth.errors(graph, evaluated), nodes)
+        found[rung] = (*truth.errors(program, evaluated), nodes)
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
@@ -168,34 +167,34 @@ def trade(
         peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
     except (AssemblyError, DeclarationError):
         peaks = ()
-    return Trade(scene.mechanism.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
+    return Trade(program.data.name, INSTANTS, truth.compared.size, ordered, refused, peaks)
 
 
 class _Truth:
     """The reference at some instants, and how far an evaluation is from it."""
 
-    def __init__(self, graph: Program, t: Array, compared: Array, p: Array) -> None:
-        evaluated, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
-        moves = ~resting(graph, evaluated.out)  # at rest there is nothing to compare
+    def __init__(self, program: Program, t: Array, compared: Array, p: Array) -> None:
+        evaluated, _ = run(program, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        moves = ~resting(program, evaluated.out)  # at rest there is nothing to compare
         compared = compared[moves[compared]] if moves[compared].any() else compared
         self.compared = compared
-        rows = reference(graph, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
-        self.columns = {output: [row[k] for row in rows] for output, k in graph.outputs.items()}
-        self.angles = graph.loop_angles
+        rows = reference(program, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
+        self.columns = {output: [row[k] for row in rows] for output, k in program.outputs.items()}
+        self.angles = program.loop_angles
         peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
         largest: dict[str, float] = {}
         for name, peak in peaks.items():
             unit = name.quantity.unit
             largest[unit] = max(largest.get(unit, 0.0), peak)
-        for unit, size in _motions(graph, t, p).items():
+        for unit, size in _motions(program, t, p).items():
             largest[unit] = max(largest.get(unit, 0.0), size)
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
 
-    def errors(self, graph: Program, evaluated: Evaluated) -> tuple[float, float, str]:
+    def errors(self, program: Program, evaluated: Evaluated) -> tuple[float, float, str]:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
-        for name, k in graph.outputs.items():
+        for name, k in program.outputs.items():
             if name in self.columns:
                 gaps = [float(x - float(y)) for x, y in zip(self.columns[name], evaluated.out[k, self.compared], strict=True)]
                 if name in self.angles:
@@ -205,10 +204,10 @@ class _Truth:
         return worst[name], float(np.median(list(worst.values()))), str(name)
 
 
-def _motions(graph: Program, t: Array, p: Array) -> dict[str, float]:
+def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
     """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
-    extent, (_, rates, _) = graph.extent(p), (np.atleast_2d(part.full()) for part in graph.motion(t[None], p))
-    kinds = [graph.data.kinds.coordinates[name] for name in graph.driven]
+    extent, (_, rates, _) = program.extent(p), (np.atleast_2d(part.full()) for part in program.motion(t[None], p))
+    kinds = [program.data.kinds.coordinates[name] for name in program.driven]
     turning = [np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0) for row, kind in zip(rates, kinds, strict=True)]
     rate = float(max(turning, default=0.0))
     units = ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0))
@@ -217,12 +216,12 @@ def _motions(graph: Program, t: Array, p: Array) -> dict[str, float]:
     }
 
 
-def _work(graph: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
+def _work(program: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
     """What is timed, made ready, and its instants."""
     count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
-    evaluated, _ = columns(graph, dense, p, rung, 1)
-    return lambda: columns(graph, dense, p, rung, 1, into=evaluated), count
+    evaluated, _ = columns(program, dense, p, rung, 1)
+    return lambda: columns(program, dense, p, rung, 1, into=evaluated), count
 
 
 def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:

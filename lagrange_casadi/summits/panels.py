@@ -19,6 +19,9 @@ SIDE = 2e-13
 SPACING = 4 * float(np.finfo(float).eps)
 """Of the time: the shortest step."""
 
+TOPS = 24
+"""Local peaks of a quantity that are listed at most: the largest."""
+
 INNER = 8
 """Times inside a step that becomes a panel."""
 
@@ -45,13 +48,26 @@ class Curves:
 class Peaks:
     """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where it is, and whether it is told.
 
-    A peak that is not told is at least this, which was found.
+    A peak that is not told is at least this, which was found. ``tops``, where they are asked for, (q, :data:`TOPS`, 4), are local
+    peaks in no order: the number of the curve among its quantity's own, NaN where there are no more, time, ratio and value.
     """
 
     value: Array
     t: Array
     xi: Array
     told: Flags
+    tops: Array | None = None
+
+
+class Listed(NamedTuple):
+    """Which local peaks are listed: those down to a ``share`` of the largest.
+
+    Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted from so far below the least at
+    the instants that a share of little more than a half takes all there are between that and the largest.
+    """
+
+    share: float
+    way: int = 0
 
 
 class Samples(NamedTuple):

@@ -23,7 +23,8 @@ import numpy as np
 from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
-from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Panel, Peaks, Samples, Summit, joined, sides
+from .listing import Counted, Tops, base_of
+from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Listed, Panel, Peaks, Samples, Summit, joined, sides
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
@@ -72,29 +73,44 @@ ROUGH = 0.1
 """Of its curve: how large the sixth difference of a polynomial may be that is believed."""
 
 
-def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
+def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags, listed: Listed | None = None) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
 
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
     that are as large but for rounding the first is told, for else rounding would choose their sign. A quantity that is no number at
-    any instant, as friction at rest leaves it, has no peak.
+    any instant, as friction at rest leaves it, has no peak. ``listed`` says which local peaks are told too.
     """
+    base, way = np.zeros(len(curves.units)), listed.way if listed else 0
+    if way:
+        base = base_of(np.array(curves.quantities), way * samples.values, base.size)
+        source = Counted(source, way, base[list(curves.quantities), None])
+        samples = source.counted(samples)
     given, lacks = samples, np.isnan(samples.values)
     samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
-    search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
+    search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:], listed)
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
     found = search.found(t, given)
     none = np.full(found.value.size, np.nan)
     none[search.quantity[~lacks.all(axis=1)]] = 0.0
-    return Peaks(found.value + none, found.t + none, found.xi + none, found.told)
+    value, tops = found.value + none, None
+    if listed:
+        least, rounding = search.least[search.quantity], search.rounding[search.quantity]
+        tops = search.tops.listing(t, given, least, search.limit, rounding)
+    if tops is not None and way:
+        tops[tops[..., 3] < 0.0] = np.nan
+        value, tops[..., 3] = way * (value + base), way * (tops[..., 3] + base[:, None])
+    return Peaks(value, found.t + none, found.xi + none, found.told, tops)
 
 
 class _Search:
     """What is known so far of each quantity: its largest size, and where one as large was found first."""
 
-    def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags) -> None:
+    def __init__(
+        self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags, listed: Listed | None
+    ) -> None:
         self.lacking, self.begin = lacking, float(t[0])
+        self.share = listed.share if listed else None
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -108,6 +124,7 @@ class _Search:
         self.samples, self.hidden = samples.values, 0
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
         self.left = PANELS + 4 * t.size
+        self.tops = Tops(self.quantity, self.best.size, self.step)
 
     @property
     def rounding(self) -> Array:
@@ -115,10 +132,20 @@ class _Search:
         return ROUNDING * (self.best + BESIDE * self.scale)
 
     @property
+    def least(self) -> Array:
+        """What a summit of each quantity must reach to matter."""
+        return np.asarray(self.best - self.rounding if self.share is None else self.share * self.best)
+
+    @property
     def limit(self) -> Array:
         """What each curve must rise above to matter; one of what is nothing beside others of its unit never does."""
-        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding, np.inf)
+        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding if self.share is None else self.least, np.inf)
         return np.asarray(limit[self.quantity])
+
+    def ends(self, values: Array) -> Array:
+        """What each curve must rise above in each step: both its ends."""
+        sizes = np.abs(values)
+        return np.asarray(np.maximum(sizes[:, :-1], sizes[:, 1:]) + self.rounding[self.quantity, None])
 
     def note(self, curve: int, value: float, t: float, xi: float) -> None:
         """Take in what a curve is at a time; what is nothing has its peak at an instant."""
@@ -126,6 +153,8 @@ class _Search:
         rounding = float(self.rounding[q])
         if not math.isfinite(size) or self.lacks(t)[curve]:
             return
+        if self.share is not None and size >= self.least[q]:
+            self.tops.add(curve, value, t, xi)
         if size > self.best[q]:
             self.best[q] = size
             taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
@@ -161,6 +190,7 @@ class _Search:
             unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks, depth >= FINEST)
             hiding = hiding | unseen
             bound = np.fmax(highest(values), highest(-values))
+            bound[bound <= self.ends(values)] = -np.inf
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(panel, bound, hiding | kinked)
             self.settle(panel, bound)
@@ -214,7 +244,8 @@ class _Search:
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
         for curve in range(values.shape[0]):
-            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
+            known = (self.best if self.share is None else self.least)[self.quantity[curve]]
+            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > known) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
 
@@ -285,10 +316,10 @@ class _Search:
         n = panel.t.size
         for curve in np.flatnonzero((bound > self.limit[:, None]).any(axis=1)).tolist():
             row, limit = panel.samples.values[curve], self.limit[curve]
-            sizes = np.abs(row)
+            sizes, ends = np.abs(row), self.ends(panel.samples.values)[curve]
             bound[curve, self.told_before(panel.samples.values, curve)] = -np.inf
             for step in np.flatnonzero(bound[curve] > limit).tolist():
-                if bound[curve, step] <= limit + self.noise(curve, row, step):
+                if bound[curve, step] <= max(limit, ends[step]) + self.noise(curve, row, step):
                     bound[curve, step] = -np.inf
                     continue
                 for at in (step, step + 1):
@@ -310,7 +341,7 @@ class _Search:
             times = [(float(panel.t[at] + panel.step * place), tip) for place, tip in kink]
             t = float(start + panel.step * (x + fits.SEVEN // 2))
             summit = Summit(curve, at, signs[k], t, size, slope, bend, steep, rough, trust, times)
-            summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.best[q] - self.rounding[q]
+            summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.least[q]
             yield summit
 
     def told_before(self, values: Array, curve: int) -> Flags:

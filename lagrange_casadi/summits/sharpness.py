@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
+from ..arithmetic.running_errors import running_errors
 from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..base.tables import LARGEST
@@ -92,6 +93,18 @@ class Sharpness:
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
+    def rounding(self, *inputs: Any) -> Array:
+        """How far from zero rounding takes each of the watched that is nothing else at any of n places; zero for others (rows, 1).
+
+        Such a one changes its sign by chance, and would seem to have kinks everywhere. ``inputs`` are those of ``watched``, of n
+        columns or of one.
+        """
+        given = [ca.DM(rows).full() for rows in inputs]
+        count = max(rows.shape[1] for rows in given)
+        off = _ROUNDINGS * running_errors(self.watched, *(np.broadcast_to(rows, (len(rows), count)) for rows in given))
+        nothing = (np.abs(self.watched(*inputs).full()) <= off).all(axis=1) & np.isfinite(off).all(axis=1)
+        return np.asarray(np.where(nothing, off.max(axis=1), 0.0)[:, None])
+
 
 @symbolic
 def with_watched(graph: Program, sharpness: Sharpness) -> Program:
@@ -123,6 +136,9 @@ def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArra
 
 
 _ROUNDING = 1e-12
+_ROUNDINGS = 4.0
+"""How many times more than its own rounding may take what is watched from zero, for iterated coordinates are off too."""
+
 _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
 """Beyond which these are one, but for less than a rounding."""
 

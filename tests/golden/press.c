@@ -211,6 +211,34 @@ static void instant(const casadi_real** arg, casadi_real** res) {
   res[0][9] = a0;
 }
 
+static void status(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0, a1, a2, a3, a4, a5;
+  a0 = arg[0][0];
+  a1 = -7.1054273576010019e-15;
+  a1 = a0 < a1;
+  a2 = 1.0;
+  a2 = a1 != 0 ? a2 : 0;
+  a1 = a1 == 0;
+  a3 = 7.1054273576010019e-15;
+  a3 = a3 < a0;
+  a0 = a3 == 0;
+  a4 = 2.0;
+  a0 = a0 != 0 ? a4 : 0;
+  a4 = 1e-08;
+  a5 = arg[1][0];
+  a4 = a4 * a5;
+  a5 = arg[0][1];
+  a5 = fabs(a5);
+  a4 = a4 < a5;
+  a5 = 4.0;
+  a4 = a4 != 0 ? a5 : 0;
+  a3 = a3 != 0 ? a4 : 0;
+  a0 = a0 + a3;
+  a1 = a1 != 0 ? a0 : 0;
+  a2 = a2 + a1;
+  res[0][0] = a2;
+}
+
 static void section_of_0(const casadi_real** arg, casadi_real** res) {
   casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10;
   a0 = arg[0][0];
@@ -286,6 +314,9 @@ static int all_finite(const casadi_real* x, int many) {
   for (k = most; k < many; ++k) a = a + x[k];
   return is_finite((a + b) + (c + d));
 }
+
+/* What a broken rule says, by its number. */
+static const press_status broken[] = {PRESS_OK, PRESS_NOT_ASSEMBLED, PRESS_DEAD_CENTRE, PRESS_OK, PRESS_NOT_CLOSED};
 
 /* Within another function its values are read ahead of all that is written, and kept on the stack. */
 #ifdef __GNUC__
@@ -379,6 +410,7 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   casadi_real rate[1], acceleration[1];
   const casadi_real* arg[5];
   casadi_real* res[1];
+  casadi_real iterated = 0, rule;
   if (model->seal != SEAL) return PRESS_NOT_PREPARED;
   moment[0] = 0;
   moment[1] = inputs->O;
@@ -396,9 +428,12 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   arg[4] = model->constants;
   res[0] = y;
   instant(arg, res);
-  if (y[0] < -7.1054273576010019e-15) return PRESS_NOT_ASSEMBLED;
-  if (!(y[0] > 7.1054273576010019e-15)) return PRESS_DEAD_CENTRE;
-  if (fabs(y[1]) > 1e-08*model->matter[0]) return PRESS_NOT_CLOSED;
+  arg[0] = y;
+  arg[1] = model->matter;
+  arg[2] = &iterated;
+  res[0] = &rule;
+  status(arg, res);
+  if (rule > 0) return broken[(int) rule];
   if (!all_finite(y, 10)) return PRESS_NOT_FINITE;
   return PRESS_OK;
 }

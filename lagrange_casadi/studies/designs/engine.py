@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from ... import codegen
 from ...base.arrays import Array
 from ...base.quantities import Output, compared
 from ...base.room import cores, require
+from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...codegen.stages import Stages
 from ...declare.scene import Scene
@@ -29,16 +30,18 @@ from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status
 from ...instants.rung import Rung, seconds
 from ...instants.solution import Provenance
 from ...sensitivity.curvatures import Curvatures
 from ...sensitivity.peaks import PeakSlopes
 from ...sensitivity.slopes import Slopes
+from ...sensitivity.ties import AS_LARGE
+from ...summits.panels import TOPS, Listed
 from ...summits.sharpness import bent, with_watched
 from ..solving import checked_span, outputs_of
 from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
+from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
 from .watch import Watch
@@ -49,27 +52,6 @@ _PIECE = 1 << 22
 
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
-
-    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
-    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
-    are whole histories, where they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
-    ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
-    """
-
-    status: npt.NDArray[np.int8]
-    value: Array
-    t: Array
-    xi: Array
-    mean: Array
-    rms: Array
-    series: Array | None
-    over: Array | None = None
-    times: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +86,7 @@ class DesignEngine:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = compile_scene(scene, wanted)
         rung.check(graph)
-        scene.checked(scene.mechanism.values())
+        scene.checked(scene.values())
         return cls.compiled(graph, timing or scene.timing(t), rung)
 
     @classmethod
@@ -207,37 +189,44 @@ class DesignEngine:
         p = np.ascontiguousarray(p, float)
         if p.ndim != 2 or p.shape[1] != len(self.parameters):
             raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
-        n, q, e = p.shape[0], len(self.kept.quantities), len(self.efforts)
-        history, own = (n, len(self.graph.columns), self.count), histories and not self.shared
-        require("the peaks of the designs", (n, 3 * q + 2 * e))
+        n, history = len(p), (len(p), len(self.graph.columns), self.count)
+        require("the peaks of the designs", (n, 3 * len(self.kept.quantities) + 2 * len(self.efforts)))
         if histories:
             require("the histories of the designs", history)
-        columns, times = np.empty(history) if histories else None, np.empty((n, self.count)) if own else None
-        peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
-        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns, times=times)
+        columns = np.empty(history) if histories else None
+        found, times = self._room(n, columns), np.empty((n, self.count)) if histories and not self.shared else None
         # What all have in common is not cut: it is made once.
         many = len(self.graph.columns) if self.watch.columns else 1
         size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
-            self._fill(p[start : start + size], _rows(found, slice(start, start + size)), threads or cores())
+            some = slice(start, start + size)
+            self._fill(p[some], rows_of(found, some), threads or cores(), None if times is None else times[some])
+        outcome = outcome_of(found, times=times)
         if self.times.law is not None:
-            found = replace(found, over=self.times.at_drive(found.t, p))
+            outcome = replace(outcome, over=self.times.at_drive(outcome.t, p))
         if columns is None:
-            return found
+            return outcome
         for row, out in zip(p, columns, strict=True):
             self._withhold(out, row)
         with np.errstate(invalid="ignore"):
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
-        return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
+        return replace(outcome, series=np.stack([series[output] for output in self.outputs], axis=1))
 
-    def histories(self, p: Array) -> Outcome:
-        """Columns of designs (n, columns, t) at the instants that are asked for: no peaks are sought, so none can be untold."""
-        (_, asked), nothing = self.times.of(p), np.empty((len(p), 0))
-        series = np.empty((len(p), len(self.graph.columns), self.count))
-        found = Outcome(np.zeros(len(p), np.int8), nothing, nothing, nothing, nothing, nothing, series)
-        self._series(p, asked, found.status, series, 1)
-        self._refuse_motions(p, asked, found, series)
-        return found
+    def history(self, p: Array, listed: Listed | None = None) -> History:
+        """One design (parameters,) over the instants that are asked for, or, with local peaks, in equal steps of time.
+
+        Without, no peaks are sought, so none can be untold.
+        """
+        p, columns = p[None], np.empty((1, len(self.graph.columns), self.count))
+        t = self.times.of(p, asked=listed is None)[listed is None]
+        found = self._room(1, columns) | {"iterated": np.empty((1, self.graph.instant.size1_in("z"), self.count))}
+        tops = np.full((1, len(self.kept.quantities), TOPS, 4), np.nan)
+        if listed is None:
+            self._series(p, t, found, 1)
+        else:
+            self._evaluate(p, t, found | {"tops": tops}, 1, listed)
+        self._refuse_motions(p, t, found)
+        return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
     def told(self, out: Array, p: Array) -> dict[Output, Array]:
         """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
@@ -265,43 +254,55 @@ class DesignEngine:
         """Whether all designs have the same instants, asked for by times."""
         return self.times.timing.shared
 
-    def _fill(self, p: Array, found: Outcome, threads: int) -> None:
+    def _room(self, n: int, columns: Array | None) -> Results:
+        """Arrays for what is kept of n designs, and the columns that histories are made of."""
+        q, e = len(self.kept.quantities), len(self.efforts)
+        sizes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
+        kept = {name: np.empty((n, size)) for name, size in sizes.items()}
+        return {"status": np.zeros(n, np.int8), **kept, "history": columns}
+
+    def _fill(self, p: Array, found: Results, threads: int, times: Array | None) -> None:
         """Evaluate designs: peaks between instants in equal steps of time; histories at the instants that were asked for."""
-        even, asked = self.times.of(p, asked=found.series is not None)
-        if found.times is not None:
-            found.times[:] = asked
-        together = found.series is not None and asked is even
+        series = found["history"]
+        even, asked = self.times.of(p, asked=series is not None)
+        if times is not None:
+            times[:] = asked
+        together = series is not None and asked is even
         shape = (len(p), len(self.graph.columns), self.count)
-        columns = found.series if together else np.empty(shape) if self.watch.columns else None
-        self._evaluate(p, even, replace(found, series=columns), threads)
-        self._refuse_motions(p, even, found, columns)
-        if found.series is None or together:
+        columns = series if together else np.empty(shape) if self.watch.columns else None
+        own = found | {"history": columns}
+        self._evaluate(p, even, own, threads)
+        self._refuse_motions(p, even, own)
+        if series is None or together:
             return
-        others = np.zeros(len(p), np.int8)
-        self._series(p, asked, others, found.series, threads)
-        failed = (found.status == Status.OK) & (others != Status.OK)
-        found.status[failed] = others[failed]
-        for array in (found.value, found.t, found.xi, found.mean, found.rms):
-            array[failed] = np.nan
-        found.series[found.status != Status.OK] = np.nan
+        others: Results = {"status": np.zeros(len(p), np.int8), "history": series}
+        self._series(p, asked, others, threads)
+        failed = (found["status"] == Status.OK) & (others["status"] != Status.OK)
+        refuse(found, failed, others["status"])
+        series[found["status"] != Status.OK] = np.nan
 
-    def _evaluate(self, p: Array, t: Array, found: Outcome, threads: int) -> None:
-        if self.library is None:
-            self._interpret(p, t, found)
-            return
-        peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
-        results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
-        self.library.evaluate(t, self.bent(p, t), p, results, threads)
-
-    def _series(self, p: Array, t: Array, status: npt.NDArray[np.int8], series: Array, threads: int) -> None:
-        """The columns of designs at any instants, without peaks."""
+    def _evaluate(self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None) -> None:
+        """Fill what is asked for of designs ``p`` at instants ``t`` (1 or n, t), in equal steps where peaks are."""
         if self.library is not None:
-            results = {"status": status, **dict.fromkeys(("value", "peak_t", "xi", "mean", "rms")), "history": series}
-            self.library.evaluate(t, np.zeros((1, 0), bool), p, results, threads)
+            self.library.evaluate(t, self.bent(p, t), p, found, threads, listed)
             return
         for i, row in enumerate(p):
-            status[i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
-            series[i] = np.nan if table is None else table.out
+            status, design = outcome(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton, listed)
+            found["status"][i] = status
+            for name, array in found.items():
+                if name != "status" and array is not None:
+                    array[i] = np.nan if design is None else design[name]
+
+    def _series(self, p: Array, t: Array, found: Results, threads: int) -> None:
+        """The columns of designs at any instants, without peaks."""
+        if self.library is not None:
+            self.library.evaluate(t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads)
+            return
+        for i, row in enumerate(p):
+            found["status"][i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
+            found["history"][i] = np.nan if table is None else table.out
+            if "iterated" in found:
+                found["iterated"][i] = np.nan if table is None else table.iterated
 
     def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
         """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
@@ -311,16 +312,12 @@ class DesignEngine:
         known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
-    def _refuse_motions(self, p: Array, t: Array, found: Outcome, columns: Array | None) -> None:
-        """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if these are watched."""
+    def _refuse_motions(self, p: Array, t: Array, found: Results) -> None:
+        """Take the result from designs whose motion cannot be; the history has their columns, if these are watched."""
         if not self.watch:
             return
-        status = self.watch.statuses(p, t, found.status, columns)
-        some = status != found.status
-        found.status[some] = status[some]
-        for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
-            if array is not None:
-                array[some] = np.nan
+        status = self.watch.statuses(p, t, found["status"], found["history"])
+        refuse(found, status != found["status"], status)
 
     @symbolic_property
     def slopes(self) -> Slopes:
@@ -342,9 +339,8 @@ class DesignEngine:
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
-        series = self.evaluate(p[None], threads=1, histories=True).series
-        assert series is not None
-        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+        others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
+        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, others)
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
         """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""
@@ -370,19 +366,3 @@ class DesignEngine:
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
         return failures(whole, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
-
-    def _interpret(self, p: Array, t: Array, found: Outcome) -> None:
-        kept = (found.value, found.t, found.xi, found.mean, found.rms)
-        for i, row in enumerate(p):
-            found.status[i], design = outcome(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
-            for array, values in zip(kept, (*design.peaks, *design.means) if design else [np.nan] * 5, strict=True):
-                array[i] = values
-            if found.series is not None:
-                found.series[i] = design.columns if design else np.nan
-
-
-def _rows(found: Outcome, some: slice) -> Outcome:
-    """Some rows of an outcome, to be filled."""
-    arrays = {entry.name: getattr(found, entry.name) for entry in fields(found)}
-    rows: dict[str, Any] = {name: None if array is None else array[some] for name, array in arrays.items()}
-    return Outcome(**rows)

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...base.quantities import Output
-from ...base.tables import table_of
-from ...instants.signals import section_forces
-from ...instants.sizes import size_of
 from ...instants.statistics import counted, shares
 from ...sensitivity.curvatures import Curvatures
 from ...sensitivity.ends import end_bends, end_slopes
 from ...sensitivity.peak_curvatures import peak_bends
 from ...sensitivity.peaks import PeakSlopes, peak_slopes
 from ...sensitivity.slopes import Numbers, Slopes
-from ...sensitivity.ties import Curve, ties
+from ...sensitivity.ties import ties
 from ...summits.search import NOTHING
 from .times import DesignTimes
 
@@ -78,31 +73,12 @@ def curvature(
 
 
 def tied(
-    slopes: Slopes,
-    times: DesignTimes,
-    units: npt.NDArray[np.intp],
-    p: Array,
-    value: Array,
-    own: PeakSlopes,
-    outputs: Sequence[Output],
-    series: Array,
+    slopes: Slopes, times: DesignTimes, units: npt.NDArray[np.intp], p: Array, value: Array, own: PeakSlopes, others: Array
 ) -> npt.NDArray[np.bool_]:
-    """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
-    instants, graph = times.of(p[None])[1][0], slopes.graph
-    description, table = graph.data.at(p), table_of(graph.data.space)
-    rows = {output: k for k, output in enumerate(outputs)}
-    nowhere = np.full(instants.size, np.nan)
-
-    def curves(k: int) -> Sequence[Curve]:
-        quantity = slopes.points.quantities[k]
-        if quantity.group != "section":
-            parts = [series[rows[part]] for part in quantity.components(table) if part in rows]
-            return [(nowhere, parts[0] if len(parts) == 1 else size_of(parts))]
-        force = section_forces(description, quantity.part, rows)[quantity.member]
-        return list(zip(*force.curves(series), strict=True))
-
+    """Which of them (q,) tie with another peak; ``others`` (q, n, 4) are those that are as large: see :func:`.ties`."""
+    instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
-    return ties(slopes, instants, p, chosen, value, own, ends, _nothing(units, value), curves)
+    return ties(slopes, instants, p, chosen, value, own, ends, others) & ~_nothing(units, value)
 
 
 def _ends(slopes: Slopes, times: DesignTimes, instants: Array, p: Array) -> Array:

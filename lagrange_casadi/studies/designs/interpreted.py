@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...base.arrays import Array
+from ...base.status import Status
 from ...equations.program import Program
 from ...instants.backends import Evaluated, run
 from ...instants.determinacy import undetermined
-from ...instants.refusal import Status, refusal
+from ...instants.refusal import refusal
 from ...instants.rung import Rung
 from ...instants.signals import Quantity, Signals, section_forces
 from ...instants.statistics import counted, shares
+from ...summits.panels import TOPS, Listed
+from .outcome import KEPT
 from .reduction import KeptOutputs
-
-
-@dataclass(frozen=True, eq=False)
-class DesignResult:
-    """What is kept of a design that has a result: peaks (3, q) as value, time and ratio, means (2, e), and columns (columns, t)."""
-
-    peaks: Array
-    means: Array
-    columns: Array
 
 
 def columns_of(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
@@ -46,8 +39,10 @@ def columns_of(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: in
     return Status.OK, evaluated
 
 
-def outcome(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
-    """What is kept of a design, or why it has no result."""
+def outcome(
+    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None, listed: Listed | None = None
+) -> tuple[Status, dict[str, Array] | None]:
+    """What is kept of a design, by its names in C, or why it has no result."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
     if evaluated is None:
         return status, None
@@ -58,14 +53,17 @@ def outcome(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int |
     efforts = evaluated.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
         means = np.array([_means(t, effort) for effort in efforts]).reshape(-1, 2).T
-    peaks = np.full((3, len(reduction.units)), np.nan)
+    peaks, tops = np.full((3, len(reduction.units)), np.nan), np.full((len(reduction.units), TOPS, 4), np.nan)
     if told:
-        found = _signals(graph, kept, t, p, newton, evaluated, told).peaks([reduction.units[k] for k in told])
+        signals = _signals(graph, kept, t, p, newton, evaluated, told)
+        found = signals.peaks([reduction.units[k] for k in told], listed=listed)
         if not found.told.all():
             return Status.PEAK_NOT_TOLD, None
         peaks[:, told] = found.value, found.t, found.xi
+        tops[told] = np.nan if found.tops is None else found.tops
     means[:, [effort not in told for effort in reduction.efforts]] = np.nan
-    return Status.OK, DesignResult(peaks, means, evaluated.out)
+    every = dict(zip(KEPT, (*peaks, *means), strict=True))
+    return Status.OK, every | {"history": evaluated.out, "iterated": evaluated.iterated, "tops": tops}
 
 
 def _means(t: Array, values: Array) -> tuple[Any, Any]:

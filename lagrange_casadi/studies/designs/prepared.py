@@ -13,17 +13,21 @@ import numpy.typing as npt
 
 from ...arguments import LATER, Numeric, Outputs, ThreadCount, public
 from ...base.arrays import Array
+from ...base.status import Status
 from ...base.symbolic import symbolic_property
 from ...base.vocabulary import Backend, Precision
-from ...declare.scene import Scene, without_fitted, without_life
+from ...declare.description import fitted_of
+from ...declare.scene import Scene
 from ...declare.times import Over, Times
+from ...declare.wanted_names import without_fitted, without_life
+from ...equations.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
-from ...instants.refusal import Status
 from ...instants.rung import Rung
 from ...instants.solution import Solution
 from ..evaluate import evaluate
-from .engine import DesignEngine, Outcome
+from .engine import DesignEngine
 from .gradients import MeanSlopes
+from .outcome import KEPT, Outcome
 
 _Values: TypeAlias = Mapping[str, Any] | None
 
@@ -69,7 +73,7 @@ class Gradient:
     def tied(self) -> npt.NDArray[np.bool_]:
         """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
 
-        It is looked for when it is first asked for, which takes longer than the gradient; not at kinks between instants.
+        It is looked for when it is first asked for, which takes longer than the gradient.
         """
         return self.look()
 
@@ -125,9 +129,8 @@ class _Answers(threading.local):
         graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
         self.history = np.empty((1, len(graph.columns), engine.count))
         self.rows = {str(output): self.history[0, graph.outputs[output]] for output in engine.outputs}
-        kept = ("value", "peak_t", "xi", "mean", "rms")
-        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(kept)}
-        self.seen = Peaks(*(places[name][0] for name in kept))
+        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)}
+        self.seen = Peaks(*(places[name][0] for name in KEPT))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
         # Where nothing but the values changes from call to call, all that remains is the call itself.
         if engine.library is not None and engine.times.common:
@@ -137,7 +140,7 @@ class _Answers(threading.local):
             # What is watched at the instants of peaks; series of the evaluation before stay what they are.
             self.even = np.empty_like(self.history) if engine.watch.columns else None
             self.fill = (
-                bind(asked, nowhere, results={"status": self.status, **dict.fromkeys(kept), "history": self.history}),
+                bind(asked, nowhere, results={"status": self.status, **dict.fromkeys(KEPT), "history": self.history}),
                 bind(even, engine.bent(self.p, even), results={"status": self.status, **places, "history": self.even}),
             )
 
@@ -201,10 +204,9 @@ class Prepared:
         answers = self._answers
         fill = answers.fill
         if fill is None:
-            found = engine.histories(p)
-            assert found.series is not None
-            self._refuse(found.status[0], p)
-            return {str(o): row for o, row in engine.told(found.series[0], p[0]).items()}
+            found = engine.history(p[0])
+            self._refuse(found.outcome.status[0], p)
+            return {str(o): row for o, row in engine.told(found.columns, p[0]).items()}
         fill[0]()
         self._refuse(self._watched(answers.instants[1], answers.history), p)
         return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
@@ -321,10 +323,9 @@ def prepare(
 
     Raises what :func:`.evaluate` does for mistakes in the arguments, and :class:`CompilerError`.
     """
-    if not isinstance(scene, Scene):
-        raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
-    without_life(() if wanted is None else wanted, "prepared scenes")
-    without_fitted(scene.mechanism, () if wanted is None else wanted, "prepared scenes")
+    named = () if wanted is None else wanted
+    without_life(named, "prepared scenes")
+    without_fitted(fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes")
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
     return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))

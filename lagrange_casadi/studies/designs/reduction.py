@@ -9,20 +9,20 @@ import casadi as ca
 
 from ...base.arrays import Array
 from ...base.quantities import AVERAGED, Output, compared
+from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
 from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
-from ...codegen.stages import Stages, compensated, plain, turns_many
+from ...codegen.stages import Stages, compensated, plain, stages_for
 from ...equations.mobility import stations_of
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
-from ...instants.refusal import Status
-from ...instants.rules import NEAR, rules
+from ...instants.rules import NEAR, limit
 from ...instants.rung import Rung
 from ...summits.sharpness import Sharpness
 
@@ -33,16 +33,13 @@ def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> St
 
     ``alike`` tells that all designs have the instants ``t``.
     """
-    if rung.precision == "single":
-        return compensated(graph, "single")
     time, p = graph.laws.motion.sx_in()
-    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
-        try:
-            return compensated(graph, "double")
-        except DeclarationError:
-            return plain(graph)
-    many = turns_many(graph, t, graph.data.defaults)
-    return compensated(graph, "double") if many else plain(graph)
+    if rung.precision == "single" or (alike and not ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
+        return stages_for(graph, rung.precision, t, graph.data.defaults)
+    try:
+        return compensated(graph, "double")
+    except DeclarationError:
+        return plain(graph)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,13 +141,9 @@ def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
 
 
 def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
-    """The rules of a graph as the emitted C takes them: a row is followed by the column that is the size of its terms."""
-    found: list[tuple[int, str, float]] = []
-    for rule in rules(graph, rung.precision, rung.newton):
-        found.append((rule.column, rule.kind, rule.limit))
-        if rule.kind == "ROW":
-            found.append((rule.beside, "ROWSIZE", 0.0))
-    return found
+    """What a graph's columns must keep to, as the emitted C takes it; last are the sizes of the terms of rows."""
+    found = [(bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton)) for bound in graph.bounds]
+    return [*found, *((bound.size, "ROWSIZE", 0.0) for bound in graph.bounds if bound.kind == "ROW")]
 
 
 @symbolic

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
+from ...base.status import Status
 from ...declare.corners import Corners
 from ...declare.ends import BEYOND
 from ...equations.program import Program
-from ...instants.refusal import Status
 
 _OK = int(Status.OK)
 

@@ -12,7 +12,7 @@ from ...errors import AssemblyError
 from .fatigue import tired_link
 from .judge import Judge
 from .judged import Judged
-from .look import Point
+from .look import KEEP, Point
 from .problem import Box, Problem
 from .program import Found, Held, NonlinearProgram
 from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
@@ -23,14 +23,8 @@ _ROUNDS, _HALVINGS = 40, 12
 _CONDITIONS = 1e-6
 """What may be left of the first-order conditions of an optimum."""
 
-_KEEP = 0.7
-"""Of the largest: local peaks that a program knows from the beginning."""
-
 _NEAR = 1e-3
 """Of its scale: how near to its limit a local peak is that later programs know too."""
-
-_LITTLE = 0.02
-"""Of the largest: how much lower local peaks at instants are that are looked for between them."""
 
 _CLOSED = 12
 """Instants at which a program watches how its loops close, from the beginning."""
@@ -202,23 +196,21 @@ class Descent:
             if not points:
                 continue
             largest = points[0][1] * points[0][0].value
-            least = _KEEP * largest if largest > 0.0 else largest / _KEEP
+            least = KEEP * largest if largest > 0.0 else largest / KEEP
             if not everything:
                 # Only what may exceed what the program found.
                 level = largest if k == 0 else term.bound
                 least = max(least, level - _NEAR * term.scale)
-            # Between instants a peak is a little larger.
-            high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
-            exact = self.judge.exact(term.term, high or points[:1], look)
-            first, sign = exact[0]
+            high = [(point, sign) for point, sign in points if sign * point.value >= least]
+            found = self.judge.following(term.term, high or points[:1], look)
+            first, sign = found[0]
             if term.term.kind == "peak" and not tired_link(term.term.output) and not any(first.turn) and 0.0 < first.share < 1.0:
                 # Where it is, a kink has no derivative; along its way it has one.
-                exact[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
-            for point, sign in exact:
-                if sign * point.value >= least:
-                    added |= term.add(point, sign, near)
+                found[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
+            for point, sign in found if high else ():
+                added |= term.add(point, sign, near)
             if not term.points:
-                added |= term.add(*exact[0], near)
+                added |= term.add(*found[0], near)
         for row in look.closures():
             k = int(np.argmin(row))
             point = look.instant(k)

@@ -56,7 +56,7 @@ class Tired:
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
         fatigue = self.fatigue
-        members = np.asarray(look.found.out, float)[[self.graph.outputs[member] for member in fatigue.members]]
+        members = look.history.columns[[self.graph.outputs[member] for member in fatigue.members]]
         instants = np.flatnonzero(counted(members))
         members = members[:, instants]
         if not instants.size:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...base.tables import table_of
-from ...equations.program import Program
-from ...instants.backends import Evaluated, run
-from ...instants.rung import Rung
-from ...instants.signals import section_forces
-from ...instants.sizes import size_of
+from ...summits.panels import Listed
+from ..designs.engine import DesignEngine
+from ..designs.outcome import History
+
+KEEP = 0.7
+"""Of the largest: local peaks that are looked at."""
+
+_ALL = 0.51
+"""The same of values that are largest or smallest: all that there are."""
 
 
 @dataclass(frozen=True)
@@ -47,23 +49,26 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """A design over instants: ``t`` (t,), the graph's columns (columns, t) and iterated coordinates (z, t) there."""
+    """A design by an ``engine``: its parameters (parameters,), and its history over instants in equal steps of time."""
 
-    graph: Program
-    t: Array
+    engine: DesignEngine
     p: Array
-    found: Evaluated
+    history: History
 
     @classmethod
-    def at(cls, graph: Program, t: Array, p: Array, rung: Rung) -> Look:
+    def at(cls, engine: DesignEngine, p: Array) -> Look:
         """A design looked at; what has no result is NaN there."""
-        found, _ = run(graph, t, p, rung)
-        return cls(graph, t, p, found)
+        return cls(engine, p, engine.history(p, Listed(KEEP)))
+
+    def as_asked(self) -> Look:
+        """The same over the instants that are asked for, where these are not in equal steps of time."""
+        asked = self.engine.times.of(self.p[None])[1][0]
+        return self if np.array_equal(asked, self.t) else replace(self, history=self.engine.history(self.p))
 
     @property
-    def shares(self) -> Array:
-        """What share of the time from the first instant to the last each instant is at."""
-        return np.linspace(0.0, 1.0, self.t.size)
+    def t(self) -> Array:
+        """The instants (t,)."""
+        return self.history.t
 
     @property
     def step(self) -> float:
@@ -71,7 +76,7 @@ class Look:
         return 1.0 / max(self.t.size - 1, 1)
 
     def share(self, t: float) -> float:
-        """That of a time."""
+        """What share of the time from the first instant to the last a time is at."""
         span = float(self.t[-1] - self.t[0])
         return min(max((t - float(self.t[0])) / span, 0.0), 1.0) if span else 0.0
 
@@ -79,25 +84,23 @@ class Look:
         """The time of a point [s]."""
         return float(self.t[0] + point.share * (self.t[-1] - self.t[0]))
 
-    def points(self, output: Output, sign: float) -> list[Point]:
-        """The local peaks over time of a quantity times ``sign``, or of its size where that is 0, the largest first."""
+    def points(self, output: Output, way: int) -> list[Point]:
+        """The local peaks over time of a quantity times ``way``, or of its size where that is 0, the largest first."""
+        history = self.engine.history(self.p, Listed(_ALL, way)) if way else self.history
         found: list[Point] = []
-        for number, (places, values) in enumerate(zip(*self._curves(output), strict=True)):
-            sized = np.abs(values) if sign == 0.0 else sign * values
-            sized = np.where(np.isfinite(sized), sized, -np.inf)
-            padded = np.concatenate([[-np.inf], sized, [-np.inf]])
-            tops = (sized >= padded[:-2]) & (sized > padded[2:]) | (sized > padded[:-2]) & (sized >= padded[2:])
-            if sized.size == 1:
-                tops = np.isfinite(sized)
-            for k in np.flatnonzero(tops & np.isfinite(sized)).tolist():
-                found.append(self._point(k, float(places[k]), self._place(output, number), float(values[k])))
-        return sorted(found, key=lambda point: -(abs(point.value) if sign == 0.0 else sign * point.value))
+        for curve, t, xi, value in history.tops[self.engine.quantities.index(str(output))].tolist():
+            if curve == curve:
+                near = self.instant(int(np.argmin(np.abs(self.t - t))))
+                place = self._place(output, int(curve))
+                found.append(replace(near, share=self.share(t), xi=0.0 if xi != xi else xi, place=place, value=value))
+        return sorted(found, key=lambda point: -(way * point.value if way else abs(point.value)))
 
     def closures(self) -> Array:
         """The squares of the sines of the transmission angles (loops, t), NaN or below zero where loops do not close."""
-        names = self.graph.checks("closure")
-        rows = [self.found.out[k] for k in names.values()]
-        rows = [row * np.abs(row) if self.graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
+        graph = self.engine.graph
+        names = graph.checks("closure")
+        rows = [self.history.columns[k] for k in names.values()]
+        rows = [row * np.abs(row) if graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
         return np.array(rows).reshape(len(rows), self.t.size)
 
     @property
@@ -107,24 +110,10 @@ class Look:
 
     def instant(self, k: int) -> Point:
         """An instant by its number, as a point."""
-        return self._point(k, 0.0, 0, 0.0)
-
-    def _point(self, k: int, xi: float, place: int, value: float) -> Point:
-        return Point(self.share(float(self.t[k])), xi, place, value, tuple(self.found.iterated[:, k].tolist()))
-
-    def _curves(self, output: Output) -> tuple[Sequence[Array], Sequence[Array]]:
-        """Ratios and values of a quantity's curves, (t,) each."""
-        out, data = np.asarray(self.found.out, float), self.graph.data
-        if output.group != "section":
-            rows = out[[self.graph.outputs[part] for part in output.components(table_of(data.space)) if part in self.graph.outputs]]
-            return [np.zeros(self.t.size)], [rows[0] if len(rows) == 1 else size_of(rows)]
-        description = data.at(self.p)
-        with np.errstate(all="ignore"):
-            force = section_forces(description, output.part, self.graph.outputs)[output.member]
-            places, curves = force.curves(out)
-        return list(places), list(curves)
+        return Point(self.share(float(self.t[k])), 0.0, 0, 0.0, tuple(self.history.iterated[:, k].tolist()))
 
     def _place(self, output: Output, curve: int) -> int:
         """Which place of :meth:`.PointValues.of` a curve of :meth:`.SectionLaw.curves` is at: after the ends come the stations."""
-        stations = sum(1 for o in self.graph.outputs if o.group == "station" and o.part == output.part and o.member == "station")
+        outputs = self.engine.graph.outputs
+        stations = sum(1 for o in outputs if o.group == "station" and o.part == output.part and o.member == "station")
         return curve - 1 if output.group == "section" and 2 <= curve < 2 + 2 * stations else 0

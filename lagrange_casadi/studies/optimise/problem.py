@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.vocabulary import Backend
-from ...declare.scene import Scene, Wanted
+from ...declare.scene import Scene
 from ...declare.times import Times, Timing
 from ...equations.fingerprint import sources
 from ...errors import DeclarationError, UnknownNameError, check_kind
@@ -39,7 +39,7 @@ class Box:
     @classmethod
     def of(cls, scene: Scene, over: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, float] | None) -> Box:
         """Bounds by parameter. Raises :class:`DeclarationError` for what is no pair of bounds, or out of a parameter's range."""
-        declared = scene.mechanism.parameters
+        declared = scene.parameters
         if not isinstance(over, Mapping) or not over:
             raise DeclarationError(f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}")
         check_kind("parameters", parameters or {}, "values by name, as {'l': 0.25}", Mapping)
@@ -58,7 +58,7 @@ class Box:
             high.append(b)
             if name in (parameters or {}):
                 raise DeclarationError(f"over: parameter '{name}' is chosen, and set to a value as well")
-        values = scene.mechanism.values(parameters)
+        values = scene.values(parameters)
         places = tuple(list(declared).index(name) for name in names)
         return cls(names, places, np.array(low), np.array(high), np.array(list(values.values())))
 
@@ -136,7 +136,7 @@ class Question:
         backend: Backend,
     ) -> Question:
         """Read what a user says. Raises what :func:`.optimise` does for mistakes."""
-        declared = scene.mechanism.parameters
+        declared = scene.parameters
         texts = [minimise] if isinstance(minimise, str) else minimise
         if not isinstance(texts, (list, tuple)) or not texts:
             raise DeclarationError(f"minimise: expected a text such as 'peak:effort:O', or several, got {minimise!r}")
@@ -148,7 +148,7 @@ class Question:
             raise DeclarationError(f"minimise: a term is there twice: {', '.join(map(str, objectives))}")
         if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
             raise DeclarationError(f"subject_to: expected a list of constraints, got {subject_to!r}")
-        constraints = tuple(found for text in subject_to for found in constraints_of(text, scene.mechanism))
+        constraints = tuple(found for text in subject_to for found in constraints_of(text, scene))
         box = Box.of(scene, over, parameters)
         if not isinstance(transmission, float) or not 0.0 < transmission < 1.0:
             raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
@@ -173,7 +173,7 @@ class Question:
             if term.output is None:
                 term.of_parameters(engine.graph.data)
             if term.kind == "peak" and (link := tired_link(term.output)):
-                Wanted.of(scene.mechanism, [f"safety:{link}"])
+                scene.wants([f"safety:{link}"])
                 continue
             there = engine.efforts if term.averaged else engine.quantities
             if term.output is not None and term.name not in there:

@@ -11,7 +11,7 @@ from ...arguments import public
 from ...base.publish import uninterrupted
 from ...base.units import Within
 from ...base.vocabulary import POINTS, Backend
-from ...case import Case
+from ...case import Case, scene_of
 from ...declare.scene import Scene
 from ...declare.times import Times
 from ...errors import DeclarationError
@@ -130,6 +130,8 @@ def optimise(
     progress
         Is called after each step with the number of the start, the objective and the worst excess over a limit.
 
+    Notes
+    -----
     Programs with some points of every quantity are solved by IPOPT with exact derivatives. What exceeds a limit elsewhere is added
     to them, until nothing does. An interrupt ends the search; the best design so far is given. One that violates a constraint is
     marked: it is not ``feasible``.
@@ -138,9 +140,7 @@ def optimise(
     :class:`NoDesignError` where no design has a result, :class:`PathError`, :class:`StoreError` or :class:`BusyError` where the
     file or its journal is another search's or cannot be written, :class:`ClusterError` where a cluster cannot serve.
     """
-    own = scene.scene if isinstance(scene, Case) else scene
-    if not isinstance(own, Scene):
-        raise DeclarationError(f"optimise: expected a Scene or a Case, got {scene!r}")
+    own = scene_of(scene)
     question = Question.of(own, minimise, over, subject_to, transmission=transmission, t=t, parameters=parameters, backend=backend)
     if resume and force:
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")

@@ -7,9 +7,9 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
+from ...base.status import Status
 from ...base.units import Within
 from ...errors import DeclarationError, NoDesignError, UnknownNameError
-from ...instants.refusal import Status
 from .finder import Finder
 from .judged import Judged
 from .problem import Problem

@@ -6,35 +6,34 @@ import math
 import re
 
 from ...base.numerals import real
-from ...declare.mechanism import Mechanism
-from ...declare.scene import Wanted
+from ...declare.scene import Scene
+from ...equations.model_data import materials_of, template
 from ...errors import DeclarationError
-from ...strength.fatigue import strengths, tires
+from ...strength.fatigue import lacking, strengths
 from ..sweep.meanings import WAYS
 from .terms import Constraint
 
 _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
 
 
-def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
+def constraints_of(text: str, scene: Scene) -> list[Constraint]:
     """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to fail, any other text one.
 
     Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a material that lacks a number.
     """
     found = _LEAST.fullmatch(text) if isinstance(text, str) else None
     if found is None:
-        return [Constraint.parse(text, mechanism.parameters)]
+        return [Constraint.parse(text, scene.parameters)]
     way, link, relation, number = found.groups()
-    Wanted.of(mechanism, [f"safety:{link}"])
+    scene.wants([f"safety:{link}"])
     try:
         factor = real(number)
     except ValueError:
         factor = math.nan
     if not (0.0 < factor < math.inf and relation.startswith(">")):
         raise DeclarationError(f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2")
-    beam = mechanism.links[link].beam
-    assert beam is not None
+    material = materials_of(template(scene).content)[link]
     if way == "fatigue":
-        strengths(beam.material, "goodman")
-    ways = tuple(w for w in WAYS if w != "fatigue" or tires(beam.material)) if way == "safety" else (way,)
-    return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", mechanism.parameters) for each in ways]
+        strengths(material, "goodman")
+    ways = tuple(w for w in WAYS if w != "fatigue" or not lacking(material)) if way == "safety" else (way,)
+    return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters) for each in ways]

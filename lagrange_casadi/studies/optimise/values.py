@@ -8,12 +8,14 @@ function theorem.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
+from ...base.arrays import Array
 from ...base.quantities import Output
 from ...base.symbolic import symbolic, symbolic_property
 from ...base.tables import table_of
@@ -26,6 +28,11 @@ from ...errors import DeclarationError
 from ...sensitivity.points import resultant
 from ..designs.times import DesignTimes
 from .fatigue import Tired, tired_link
+from .look import Point
+
+_NUDGE, _NEAR, _REACH = 1e-2, 1e-2, 8.0
+"""Steps between instants: of which second derivatives are taken, in which a smooth peak is where it was found, and which it follows
+at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +57,33 @@ class Followed:
         """Whether it depends on each parameter."""
         found = self.value.jac_sparsity(0, 2)
         return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
+
+    def following(self, point: Point, p: Array, sign: float, step: float, *, free: bool) -> Point:
+        """A local peak of the value times ``sign``, and how it follows as parameters change, unless it is at a kink or an end.
+
+        ``free`` may xi be; ``step`` is that between instants.
+        """
+        at, nudges, size = np.array([point.share, point.xi]), np.array([_NUDGE * step, _NUDGE]), 1 + free
+        if not (at[:size] > 0.0).all() or not (at[:size] < 1.0).all():
+            return point
+        guess, place = list(point.guess), point.where(self.size)
+
+        def slopes(at: Array) -> Array:
+            return np.asarray(self.slopes(at[0], guess, p, at[1], place).full().ravel()[:size])
+
+        ways = np.eye(2)[:size] * nudges
+        bend = np.array([(slopes(at + way) - slopes(at - way)) / (2 * way.sum()) for way in ways])
+        bend = (bend + bend.T) / 2
+        if not np.isfinite(bend).all() or not (np.linalg.eigvalsh(sign * bend) < 0.0).all():
+            return point
+        turn = np.zeros((2, 2))
+        turn[:size, :size] = -np.linalg.inv(bend)
+        away = turn[:, :size] @ slopes(at)
+        if not (np.abs(away) <= _NEAR * np.array([step, 1.0])).all():
+            return point
+        reach = (_REACH * step, 0.1 if free else 0.0)
+        turns = (float(turn[0, 0]), float(turn[0, 1]), float(turn[1, 1]))
+        return replace(point, share=float(point.share + away[0]), xi=float(point.xi + away[1]), turn=turns, reach=reach)
 
     @classmethod
     def of(cls, value: Any, size: int) -> Followed:

@@ -19,7 +19,7 @@ from ...base.arrays import Array
 from ...base.units import number, typed
 from ...declare.even_points import points
 from ...declare.limits import parameter_faults
-from ...declare.mechanism import Mechanism
+from ...declare.parts import Parameter
 from ...errors import DeclarationError, NumberError, ParameterError, UnknownNameError, check_kind, shown
 
 Numbers = npt.NDArray[np.int64]
@@ -276,9 +276,8 @@ def designs_of(given: Any) -> Designs:
     return given if isinstance(given, (Grid, Listed)) else Grid(given)
 
 
-def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
+def check_designs(designs: Designs, parameters: Mapping[str, Parameter], fixed: Mapping[str, float]) -> None:
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
-    parameters = mechanism.parameters
     check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
     if designs.source:
         check_known(designs.names, parameters, f"{designs.source}, head")

@@ -8,9 +8,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ...base.status import Status
+from ...declare.description import values_of
 from ...declare.even_points import points
 from ...errors import one_line
-from ...instants.refusal import Status
 from ...store.untrusted import check_chunks, parsed, told_as
 from ...store.words import unlike, unlike_conventions
 from .axes import are_described, counted, grouped, size_of
@@ -81,7 +82,7 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
 def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
     """Compare what a file tells twice: the case and its parameters, and the axes with what was asked for."""
     identity, description = sweep.identity, sweep.description
-    told = {name: parameter["value"] for name, parameter in description["parameters"].items()}
+    told = values_of(description)
     if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or sweep.case != description["name"]:
         yield "case or parameters: differ from those of the mechanism"
     values = {name: file["grid"][name][()] for name in sweep.parameters}

@@ -15,15 +15,15 @@ import numpy as np
 
 from ...base.arrays import Array
 from ...base.quantities import Output
+from ...base.status import Status
 from ...base.tables import Table, table_of
 from ...base.vocabulary import KEEPS, Keep
-from ...declare.wanted_slopes import SENSITIVITY
+from ...declare.wanted_names import SENSITIVITY
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...errors import DeclarationError, UnknownNameError
-from ...instants.refusal import Status
 from ...instants.statistics import of_counted
-from ..designs.engine import Outcome
+from ..designs.outcome import Outcome
 from .chunks import encoded
 from .column import MISSING, Column
 from .engine import Engine

@@ -8,7 +8,7 @@ from typing import Protocol
 from ...base.arrays import Array
 from ...equations.program import Program
 from ...instants.solution import Provenance
-from ..designs.engine import Outcome
+from ..designs.outcome import Outcome
 
 
 class Engine(Protocol):

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from ...base.publish import PatientFile
-from ...declare.wanted_slopes import SENSITIVITY
+from ...declare.wanted_names import SENSITIVITY
 from ...errors import DeclarationError
 from ...store.scales import LARGE, Scales
 from ...store.words import conventions, say

@@ -16,11 +16,11 @@ import numpy as np
 from ...base.arrays import Array
 from ...base.room import in_words, require
 from ...base.vocabulary import Keep
-from ...declare.description import Description, shape_of
-from ...declare.even_points import EvenPoints, points
-from ...declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
+from ...declare.description import Description, beams_of, fitted_of, shape_of
+from ...declare.even_points import EvenPoints, checked_ratios, points
+from ...declare.scene import STRENGTH, Scene
 from ...declare.times import Over, Times, Timing
-from ...declare.wanted_slopes import SENSITIVITY, by_parameters
+from ...declare.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
 from ...equations.derive import compile_scene
 from ...equations.fingerprint import sources
 from ...equations.program import Program
@@ -139,22 +139,23 @@ class Plan:
         if rung.table is not None:
             raise DeclarationError("a sweep reads no tables: every design would need one of its own")
         check_keep(keep)
-        check_designs(designs, scene.mechanism, fixed)
-        values = scene.mechanism.values(fixed)
+        check_designs(designs, scene.parameters, fixed)
+        values, timing = scene.values(fixed), scene.timing(t, over)
         if designs.size > MOST:
             raise DeclarationError(f"the grid has {counted(designs.size)}, and a sweep at most 10^12")
         if designs.size > MANY and not many:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
-        named = [name for name in names if name != "all"]
-        safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
-        task = Task(scene.timing(t, over), ratios, keep, rung, safety, life, tuple(by_parameters(scene.mechanism, names)))
-        scene = _assembled(scene, designs, values, names)
-        graph = compile_scene(scene, names)
+        assembly = _assembly(scene, designs, values, names)
+        graph = compile_scene(scene, names, parameters=assembly)
+        content, named = graph.data.template.content, [name for name in names if name != "all"]
+        without_fitted(fitted_of(content), names, "sweeps")
+        safety, life = (tuple(among(kind, beams_of(content), named)) for kind in ("safety", "life"))
+        task = Task(timing, ratios, keep, rung, safety, life, by_parameters(graph.data.parameters, names))
         rung.check(graph)
-        scene.checked(scene.mechanism.values())
-        whole = compile_scene(scene, wanted_whole(map(str, graph.outputs)))
+        scene.checked(scene.values())
+        whole = compile_scene(scene, wanted_whole(map(str, graph.outputs)), parameters=assembly)
         harvest = task.harvest(graph, whole)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
@@ -240,8 +241,8 @@ class Plan:
         return told
 
 
-def _assembled(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> Scene:
-    """Return a scene; where its own parameters cannot be assembled, with those of the first of some designs that can be.
+def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> Mapping[str, float] | None:
+    """Return values with which a scene is assembled: its own, None; else those of the first of some designs that can be.
 
     Raises what :func:`.compile_scene` does for the scene's own where there is none.
     """
@@ -250,27 +251,25 @@ def _assembled(scene: Scene, designs: Designs, values: Mapping[str, float], want
     except (AssemblyError, MobilityError):
         for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
             row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
+            tried = {**values, **row}
             try:
-                tried = dataclasses.replace(scene, assembly={**values, **row})
-                compile_scene(tried, wanted)
+                compile_scene(scene, wanted, parameters=tried)
             except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tried
         raise
-    return scene
+    return None
 
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
-    wanted = scene.wanted if wanted is None else wanted
-    Wanted.of(scene.mechanism, wanted)
-    names = tuple(wanted)
-    without_fitted(scene.mechanism, names, "sweeps")
+    scene.wants(wanted)
+    names = tuple(scene.wanted if wanted is None else wanted)
     if "all" not in names or "motion" in names:
         return names
-    own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
+    own = (name for name in scene.outputs if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
     strength = (name for name in names if name.partition(":")[0] in STRENGTH)
-    slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.mechanism, names))
+    slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.parameters, names))
     return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.arrays import Array
-from ...declare.wanted_slopes import SENSITIVITY
+from ...declare.wanted_names import SENSITIVITY
 from .reading import Sweep
 from .scale import Scale, tick
 

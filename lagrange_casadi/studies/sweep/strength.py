@@ -7,7 +7,7 @@ of all designs at once (:mod:`...strength.fibres`), else of one design after ano
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,11 +18,12 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...beams.beam import beam_told
+from ...beams.beam import beam_of, beam_told
+from ...declare.description import Description
 from ...declare.masses import ALL
 from ...equations.model_data import ModelData
 from ...instants.statistics import counted
-from ...strength.fatigue import damage_score, factor_score, tires
+from ...strength.fatigue import damage_score, factor_score, lacking
 from ...strength.fibres import FibreStresses
 from ...strength.member import Member
 from ...strength.stress import Stress
@@ -37,6 +38,13 @@ _CRITERION = "goodman"
 
 _ENDLESS = 0.9
 """Utilisation at places up to which nothing wears between them: of a polynomial of degree 5 they miss less than the rest."""
+
+
+def left_out(description: Description, columns: Collection[str]) -> Iterator[str]:
+    """Say of each link with a factor of safety among ``columns`` why there is none against fatigue."""
+    for name, body in description["bodies"].items():
+        if f"{LEAST}:safety:{name}" in columns and f"{LEAST}:fatigue:{name}" not in columns:
+            yield f"no factor against fatigue of '{name}' is kept: {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +109,7 @@ class Kept:
         return [link for link in self.life if self._tires(link)]
 
     def _tires(self, link: str) -> bool:
-        return link in self.data.materials and tires(self.data.materials[link])
+        return link in self.data.materials and not lacking(self.data.materials[link])
 
     def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 from ...arguments import LATER, Outputs, ThreadCount, public
 from ...base.room import MOST_THREADS
 from ...base.vocabulary import Backend, Keep, Precision
-from ...case import Case
+from ...case import Case, scene_of
 from ...declare.even_points import EvenPoints
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
@@ -84,16 +84,15 @@ def sweep(
         Called with what is being done (``designs``, after an interrupt ``stopping``, then ``file``), how much of it is done, and of
         how much.
 
+    Notes
+    -----
     Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
     :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
     :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
-    own = scene.scene if isinstance(scene, Case) else scene
-    if not isinstance(own, Scene):
-        raise DeclarationError(f"sweep: expected a Scene or a Case, got {own!r}")
     plan = Plan.of(
-        own,
+        scene_of(scene),
         designs_of(grid),
         fixed=parameters,
         t=t,

@@ -13,7 +13,7 @@ from ..declare.motion import Motion, motion_function
 from ..declare.parts import Constraint, Force, Friction, LineLoad, Load, Torque
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
-from ..equations.kinematics import describe_coordinate
+from .kinematics import describe_coordinate
 
 _LONG, _LOOKS, _MOST_JUMPS = 200, 1001, 8
 

@@ -1,24 +1,30 @@
-"""Whether joints that rub come to rest in the designs of a sweep."""
+"""Notes on a sweep: whether joints that rub come to rest in its designs, and whether drives make whole turns, the same in all."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 
+from ...base.status import Status
+from ...declare.description import kinds_of_described
 from ...declare.notes import rest_note
 from ...declare.scene import Scene
-from ...declare.times import Over, Times
-from ...equations.meshes import transmissions_of
-from ...equations.pressing import frictions_of
+from ...declare.times import Over, Times, Timing
+from ...declare.turned import note
+from ...equations.model_data import template
 from ...errors import LagrangeCasadiError
-from ...instants.refusal import Status
 from ..evaluate import evaluate
+from .axes import designs_of
 from .reading import Sweep
 
-_LOOKED_AT = 16
+_RESTS_OF = 16
 """Designs of a sweep, from the first to the last that has a result."""
+
+_TURNS_OF = 1024
+"""Designs, evenly spread over all of them."""
 
 
 def resting_note(
@@ -31,11 +37,11 @@ def resting_note(
     wanted: Sequence[str] | None = None,
 ) -> str:
     """A line where a joint that rubs rests in some design that is looked at, of all those with a result; empty where none does."""
-    rub = transmissions_of(scene.mechanism).values()
-    if not frictions_of(scene.mechanism) and all(transmission.loss is None for transmission in rub):
+    told = found.description
+    if "losses" not in told and not any("friction" in load for load in told["loads"].values()):
         return ""
     right = np.concatenate([numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])])
-    some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _LOOKED_AT)).astype(int))]
+    some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _RESTS_OF)).astype(int))]
     lines = []
     for number in some.tolist():
         design = {**fixed, **found.design(number)}
@@ -46,3 +52,14 @@ def resting_note(
     if not lines:
         return ""
     return f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were looked at" if some.size > 1 else lines[0]
+
+
+def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, float]) -> str:
+    """A line where the drive turns, and makes less than a turn, or not the same in every design of a ``grid``."""
+    designs, values = designs_of(grid), scene.values(fixed)
+    numbers = np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TURNS_OF)).astype(np.int64))
+    p = np.tile(np.array(list(values.values())), (numbers.size, 1))
+    columns = [list(values).index(name) for name in designs.names]
+    for row, number in zip(p, numbers.tolist(), strict=True):
+        row[columns] = designs.block(number, number + 1)[0]
+    return note(scene.prescribed, kinds_of_described(template(scene).content), timing, p)

@@ -1,0 +1,174 @@
+"""The documentation site: ``sphinx-build -W -b html docs OUT``. The build needs no network."""
+
+import ast
+import builtins
+import inspect
+import re
+import typing
+from collections import Counter
+from contextlib import suppress
+from pathlib import Path
+
+from sphinx import addnodes
+from sphinx.util.nodes import make_refnode
+
+import lagrange_casadi
+
+HERE = Path(__file__).parent
+CASES = HERE.parent / "cases"
+
+project = "lagrange_casadi"
+author = "The lagrange_casadi developers"
+copyright = author  # noqa: A001 - Sphinx has this name
+version = release = lagrange_casadi.__version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.intersphinx",
+    "sphinx_click",
+    "sphinx_design",
+]
+exclude_patterns = ["_*"]
+UNLISTED = [
+    *("Axis", "Backend", "Between", "Deflection", "Derivatives", "Design", "Figure", "Listed", "Over", "Progress", "Quantity"),
+    *("Range", "RigidMass", "Spread", "Starts", "StiffSafety", "Times", "Timetable", "Transmission", "Vibration", "View"),
+    *("IN_SPACE", "check_picture", "elastic.deflection.deflection", "fingerprint", "outputs", "read_rows", "time"),
+    *(r"_pickle\.PicklingError", r"h5py\._hl\..*"),
+]
+"""Names that docstrings and signatures mention, and that have no page."""
+
+suppress_warnings = ["myst.header"]  # the glossary has its words at one level
+nitpicky = True
+nitpick_ignore_regex = [
+    ("py:class", r"lagrange_casadi\..*"),  # types in signatures that are no part of the interface
+    ("py:.*", r"casadi\..*|(SX|DM|Function)"),  # CasADi has no inventory
+    ("py:(class|func|data|attr)", "|".join(UNLISTED)),
+    ("py:mod", r"\.*[a-z_.]+"),  # modules that docstrings name to developers
+]
+templates_path = ["_templates"]
+
+# Pages are Markdown, with links as on GitHub.
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_heading_anchors = 4
+
+# Links into other projects. Their inventories are kept here, as text, with the names that are used and no others.
+intersphinx_mapping = {
+    name: (address, f"_inventories/{name}.inv")
+    for name, address in (
+        ("python", "https://docs.python.org/3/"),
+        ("numpy", "https://numpy.org/doc/stable/"),
+        ("matplotlib", "https://matplotlib.org/stable/"),
+        ("h5py", "https://docs.h5py.org/en/stable/"),
+        ("xarray", "https://docs.xarray.dev/en/stable/"),
+        ("pandas", "https://pandas.pydata.org/docs/"),
+    )
+}
+
+# The reference is made from docstrings, and the gallery from the cases.
+autosummary_generate = True
+doors = [lagrange_casadi, *(thing for name in lagrange_casadi.__all__ if inspect.ismodule(thing := getattr(lagrange_casadi, name)))]
+names = [f"{door.__name__}.{name}" for door in doors for name in dir(door)]
+twins = Counter(map(str.lower, names))
+autosummary_filename_map = {name: f"{name}_class" for name in names if not name.islower() and twins[name.lower()] > 1}
+autodoc_default_options = {"members": True, "inherited-members": True, "show-inheritance": False}
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 88
+numpydoc_show_class_members = False
+
+html_theme = "pydata_sphinx_theme"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_title = "lagrange_casadi"
+html_show_sphinx = False
+html_theme_options = {"show_prev_next": False, "secondary_sidebar_items": ["page-toc"], "navigation_with_keys": False}
+
+
+def gallery(_app):
+    """Write a page for each case: its picture, its README, its code; and a card with the first line of its code for each."""
+    folder = HERE / "gallery" / "generated"
+    folder.mkdir(exist_ok=True)
+    cards = []
+    for case in sorted(CASES.glob("*/case.py")):
+        name, code = case.parent.name, case.read_text()
+        picture = f"![{name} in motion](../{name}.svg)"
+        title, rest = case.with_name("README.md").read_text().split("\n", 1)
+        write(folder / f"{name}.md", f"{title}\n\n{picture}\n{rest}\n## The case\n\n```python\n{code}```\n")
+        purpose = ast.get_docstring(ast.parse(code)).split("\n\n")[0]
+        cards.append(
+            f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-bottom: {name}.svg\n\n{purpose}\n:::\n"
+        )
+    write(folder / "cards.txt", f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(cards)}::::\n")
+
+
+def write(path, text):
+    """Write a file that is made, if it is to be another; what is unchanged is not read again by the build."""
+    if not path.is_file() or path.read_text() != text:
+        path.write_text(text)
+
+
+class Names(dict):
+    """Names of annotations that only a type checker imports, each as a class of this name."""
+
+    def __init__(self, known):
+        self.known = known
+
+    def __missing__(self, name):
+        if name in self.known or hasattr(builtins, name):
+            raise KeyError(name)
+        return type(name, (), {"__module__": "builtins"})
+
+
+def without_marks(_app, thing, _bound):
+    """Leave out of annotations what only looks at arguments: ``Annotated[float, ...]`` is a float to a reader."""
+    function = inspect.unwrap(thing.__init__ if isinstance(thing, type) else thing)
+    if inspect.isfunction(function):
+        with suppress(AttributeError, NameError, TypeError):  # of what a type checker imports: it stays as it is written
+            function.__annotations__.update(typing.get_type_hints(function, localns=Names(function.__globals__)))
+
+
+def short_arrays(_app, _what, _name, _thing, _options, signature, returned):
+    """Write an array as ``ndarray``; all are of doubles."""
+    return tuple(
+        text and re.sub(r"(numpy\.)?ndarray\[.*?, (numpy\.)?dtype\[[\w.]*\]\]", "ndarray", text) for text in (signature, returned)
+    )
+
+
+def by_last_name(_app, env, node, shown):
+    """Find a name of Python that docstrings give without its module."""
+    if node.get("refdomain") != "py":
+        return None
+    domain = env.get_domain("py")
+    found = {entry.node_id: entry for _, entry in domain.find_obj(env, None, None, node["reftarget"].lstrip("."), None, 1)}
+    if len(found) != 1:
+        return None
+    (entry,) = found.values()
+    return make_refnode(env.app.builder, node["refdoc"], entry.docname, entry.node_id, shown)
+
+
+def out_of_the_pages(app, tree):
+    """Lead links to cases into the gallery; leave folders of the source, which are links on GitHub, as text."""
+    here = (HERE / app.env.docname).parent
+    for node in list(tree.findall(addnodes.pending_xref)):
+        place = (here / node["reftarget"]).resolve()
+        if place.is_relative_to(CASES):
+            case = place.relative_to(CASES).parts[:1]
+            link = addnodes.pending_xref("", *node.children, refdomain="std", reftype="doc", refexplicit=True, refwarn=True)
+            link["reftarget"], link["refdoc"] = f"/gallery/{'/'.join(('generated', *case)) if case else 'index'}", app.env.docname
+            node.replace_self(link)
+        elif place.is_dir() and not place.is_relative_to(HERE):
+            node.replace_self(node.children)
+
+
+def setup(app):
+    """Connect what is above."""
+    app.connect("builder-inited", gallery)
+    app.connect("autodoc-before-process-signature", without_marks)
+    app.connect("autodoc-process-signature", short_arrays)
+    app.connect("missing-reference", by_last_name)
+    app.connect("doctree-read", out_of_the_pages)

@@ -1,0 +1,36 @@
+"""Rough directions and places of a posture, as a user says them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ..base.tables import ANGLE, LENGTH
+from ..base.units import number
+from ..errors import DeclarationError, NumberError, UnknownNameError
+from .mechanism import Mechanism
+from .times import TURNS
+
+
+def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[str, float]:
+    """Return rough directions of links and coordinates of joints [rad, m] by name. Raises what a :class:`.Scene` does."""
+    coordinates = mechanism.coordinates
+    places = [*(() if mechanism.space else mechanism.links), *coordinates]
+    for name in posture:
+        if name not in places:
+            raise UnknownNameError("link or joint in posture", name, places)
+    slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
+    return {name: _rough(name, value, name not in slides) for name, value in posture.items()}
+
+
+def _rough(name: str, value: object, turns: bool) -> float:
+    """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
+    try:
+        found = number(value, ANGLE if turns else LENGTH)
+    except NumberError as error:
+        raise DeclarationError(f"posture of '{name}': {error}") from None
+    if turns and abs(found) > TURNS:
+        degrees = f"{math.degrees(found):.6g} deg, more than two turns"
+        told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
+        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
+    return found

@@ -1,0 +1,144 @@
+"""A derivation that is wrong throughout, so that all of its results agree with each other, fails the certificate all the same."""
+
+from dataclasses import replace
+
+import casadi as ca
+import pytest
+from every_load import every_joint_and_load
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, motion
+from lagrange_casadi.base import cache
+from lagrange_casadi.declare import laws
+from lagrange_casadi.declare.parts import Force, Friction, LineLoad, Spring, Torque
+from lagrange_casadi.equations import assembly, friction, mobility
+from lagrange_casadi.errors import CertificateWarning
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+
+def arm_in_space():
+    """A turning link with loads on its own axes."""
+    m = SpatialMechanism("arm")
+    arm = m.link("arm", length=0.5, mass=2.0)
+    m.revolute("O", m.ground, arm, axis=(0.0, 0.6, 0.8))
+    m.force("follow", arm.tip, x=3.0, y=20.0, z=5.0, turning=True)
+    m.torque("twist", arm, x=4.0, y=-7.0, z=2.0, turning=True)
+    m.line_load("wind", arm, x=2.0, y=(3.0, -9.0), z=lambda x: 1.0 + 30.0 * x**2, between=(0.1, 0.4))
+    return Scene(m, {"O": motion.polynomial(0.3, 7.0, 2.0)}, t=(0.0, 0.9, 7))
+
+
+def tool_on_a_path():
+    """A point whose place is given, and a body whose direction is."""
+    m = Mechanism("tool")
+    near, far = (m.link(name, length=0.6, mass=1.0) for name in ("near", "far"))
+    m.revolute("A", m.ground, near)
+    m.revolute("B", near.tip, far)
+    m.path("tool", far.tip)
+    law = motion.harmonic(0.7, 0.1, 2.0), motion.harmonic(0.2, 0.1, 2.0, 0.5)
+    return Scene(m, {"tool": law}, drives=["A", "B"], t=(0.0, 0.5, 7), posture={"near": 1.2, "far": -0.9})
+
+
+def loads(kind, change):
+    """Derive with other loads of a kind than were declared."""
+
+    def patch(monkeypatch):
+        applied_by = assembly.applied_by
+
+        def wrong(load, resting):
+            return applied_by(change(load) if isinstance(load, kind) else load, resting)
+
+        monkeypatch.setattr(assembly, "applied_by", wrong)
+
+    return patch
+
+
+def law(change):
+    """Derive with another motion than was declared."""
+
+    def patch(monkeypatch):
+        right = laws.motion_function
+
+        def wrong(given, parameters):
+            function = right(given, parameters)
+            t, p = function.sx_in()
+            return ca.Function("motion", [t, p], change(*function(t, p)), ["t", "p"], ["d", "d_rate", "d_acceleration"])
+
+        monkeypatch.setattr(laws, "motion_function", wrong)
+
+    return patch
+
+
+def lost(monkeypatch):
+    """Tell half of what frictions take."""
+    right = friction.solve
+
+    def wrong(*given):
+        found = right(*given)
+        return replace(found, lost={name: value / 2 for name, value in found.lost.items()})
+
+    monkeypatch.setattr(mobility, "solve", wrong)
+
+
+WRONG = {
+    "spring, its sign": (every_joint_and_load, loads(Spring, lambda one: replace(one, stiffness=-one.stiffness)), "balance"),
+    "spring, its free length": (every_joint_and_load, loads(Spring, lambda one: replace(one, length=0.0)), "balance"),
+    "damper, a factor": (every_joint_and_load, loads(Spring, lambda one: replace(one, damping=one.damping * 1.001)), "balance"),
+    "force, its sign": (every_joint_and_load, loads(Force, lambda one: replace(one, y=-one.y)), "balance"),
+    "force, its axes": (every_joint_and_load, loads(Force, lambda one: replace(one, turning=not one.turning)), "balance"),
+    "torque, a factor": (every_joint_and_load, loads(Torque, lambda one: replace(one, value=one.value / 2)), "balance"),
+    "line load, its ends": (every_joint_and_load, loads(LineLoad, lambda one: replace(one, y=one.y[::-1])), "balance"),
+    "friction, a factor": (every_joint_and_load, loads(Friction, lambda one: replace(one, symbol=one.symbol / 2)), "balance"),
+    "friction, its loss": (every_joint_and_load, lost, "friction"),
+    "force in space": (arm_in_space, loads(Force, lambda one: replace(one, z=-one.z)), "balance"),
+    "torque in space": (arm_in_space, loads(Torque, lambda one: replace(one, turning=False)), "balance"),
+    "line load in space": (arm_in_space, loads(LineLoad, lambda one: replace(one, z=(*one.z[:2], 2 * one.z[2]))), "balance"),
+    "motion": (every_joint_and_load, law(lambda d, rate, change: [d * 1.001, rate * 1.001, change * 1.001]), "closure"),
+    "motion, its rate": (arm_in_space, law(lambda d, rate, change: [d, rate / 2, change]), "closure"),
+    "motion, its acceleration": (arm_in_space, law(lambda d, rate, change: [d, rate, change / 2]), "closure"),
+    "motion of a point": (tool_on_a_path, law(lambda d, rate, change: [d, rate * 1.001, change]), "closure"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_derivation_is_noticed(name, monkeypatch):
+    made, patch, residual = WRONG[name]
+    monkeypatch.setattr(cache, "read", lambda _: None)
+    monkeypatch.setattr(cache, "write", lambda *_: None)
+    patch(monkeypatch)
+    with pytest.warns(CertificateWarning):
+        assert residual in evaluate(made()).failed
+
+
+@pytest.mark.parametrize("made", [arm_in_space, tool_on_a_path])
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_a_right_one_is_certified(made, precision):
+    assert evaluate(made(), precision=precision, backend="c" if precision == "single" else "vm").certified
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_a_law_that_jumps_may_be_on_either_side(precision):
+    """Where rounding decides, as of a stop that is met exactly at an instant, and of a rest."""
+    m = Mechanism("stop")
+    arm = m.link("arm", length=0.7, mass=1.0)
+    joint = m.revolute("O", m.ground, arm)
+    x, _ = m.place(arm.tip)
+    m.force("stop", arm.tip, x=ca.if_else(x < 0.7 * ca.cos(0.3), 90.0, 0.0))
+    m.torque("brake", arm, -5.0 * ca.sign(m.rate(joint)))
+    m.torque("late", arm, ca.if_else(m.time > 0.3, 4.0, 0.0))
+    scene = Scene(m, {"O": motion.harmonic(0.0, 0.3, 2.5)}, t=(0.0, 0.4, 17))
+    assert evaluate(scene, precision=precision, backend="c" if precision == "single" else "vm").certified
+
+
+def test_turns_that_few_instants_do_not_tell_are_no_gap():
+    """What a load has seen with its turns is reported without those between instants that are far apart."""
+    m = Mechanism("drag_link")
+    a, b, c = (m.link(name, length=length, mass=0.4) for name, length in zip("abc", (0.3, 0.35, 0.32), strict=True))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    joint = m.revolute("C", m.ground.at(0.1, 0.0), c)
+    angle = m.coordinate(joint)
+    m.torque("stiffer", c, -0.3 * angle - 0.01 * angle**3)
+    scene = Scene(m, {"O": motion.polynomial(0.2, 6.3)}, posture={"b": 0.9, "c": 1.5}, t=(0.0, 3.0, 101))
+    for grid in ((0.0, 2.0, 3), (2.7, 2.7, 1)):
+        assert evaluate(scene, t=grid).certified
