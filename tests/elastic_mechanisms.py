@@ -9,7 +9,9 @@ from lagrange_casadi import (
     SpatialMechanism,
     beams,
 )
+from lagrange_casadi.elastic.compliance import Compliance, nodes
 from lagrange_casadi.motion import harmonic
+from lagrange_casadi.strength.member import Member
 
 STEEL = beams.material("S235")
 LIGHT = STEEL.but(density=1e-9)
@@ -36,6 +38,19 @@ def agrees(solution, i, reactions, tolerance=1e-8):
         for k, member in enumerate(("fx", "fy", "fz", "mx", "my", "mz")):
             if (values := getattr(found, member, None)) is not None:
                 assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
+
+
+def work(first, second, links):
+    """Forces of a solution times the strains of another, summed over links, (t,); and a size beside it."""
+    total, size = 0.0, 0.0
+    for link in links:
+        beam = Compliance.of(Member.of(first, link, spun=True), "test")
+        at = nodes(beam.member)
+        forces = [Member.of(one, link, spun=True).at(at.u) for one in (first, second)]
+        parts = [force * beam.strains(forces[1], at.index, at.u) * at.weights for force in forces]
+        total = total + parts[0].sum(axis=(0, 2))
+        size = size + np.abs(parts[1]).sum(axis=(0, 2))
+    return total, size
 
 
 def held(**forces):

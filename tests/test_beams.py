@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, motion
-from lagrange_casadi.beams.told import beam_told, told_beam
+from lagrange_casadi.beams.beam import beam_told, told_beam
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 

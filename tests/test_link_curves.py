@@ -11,9 +11,8 @@ from compiled import cc
 from lagrange_casadi.base.tables import PLANE, SPACE
 from lagrange_casadi.codegen.link_curves import Along, along, matter_of, turning
 from lagrange_casadi.declare.density import NumericDensity
+from lagrange_casadi.instants.loads import SpatialStationLoad, SpreadLoad, StationLoad
 from lagrange_casadi.instants.section_law import SectionLaw
-from lagrange_casadi.instants.spread_loads import SpreadLoad
-from lagrange_casadi.instants.station_loads import SpatialStationLoad, StationLoad
 
 HEAD = """#include <math.h>
 #include <stdio.h>

@@ -11,8 +11,8 @@ from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants import grids
 from lagrange_casadi.instants.laws import made_of
+from lagrange_casadi.instants.loads import SpatialStationLoad
 from lagrange_casadi.instants.section_law import SectionLaw
-from lagrange_casadi.instants.station_loads import SpatialStationLoad
 from lagrange_casadi.instants.views import Section
 
 X = np.array([1.0, 0.0, 0.0])

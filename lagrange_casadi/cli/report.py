@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..instants.ordering import error_of, told
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
-from ..instants.told import error_of, told
 
 _NOTHING = 1e-37
 """What is smaller is zero, in single precision too."""

@@ -9,8 +9,8 @@ from ..base.quantities import AVERAGED, Output
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError
+from ..instants.ordering import told
 from ..instants.solution import Solution
-from ..instants.told import told
 from ..sensitivity.peaks import PeakKind
 from ..studies.sensitivities import Changes, sensitivities
 

@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
-from ..beams.told import told_beam
+from ..beams.beam import told_beam
 from ..geometry.vectors import cross
 from .density import Density, NumericDensity
 from .fitted import told_parts

@@ -59,7 +59,9 @@ def first_mode(
     """The first mode of a beam of a length [m] by its bending ``stiffness`` EI [N m^2] and ``mass`` per length [kg/m], functions of
     the ratio xi/l that are smooth between two ``breaks``.
     """
-    edges = np.concatenate([*(np.linspace(a, b, _parts(b - a) + 1)[:-1] for a, b in itertools.pairwise(breaks)), [1.0]])
+    edges = np.concatenate(
+        [*(np.linspace(a, b, max(4, round(_PARTS * (b - a))) + 1)[:-1] for a, b in itertools.pairwise(breaks)), [1.0]]
+    )
     x, w = np.polynomial.legendre.leggauss(_POINTS)
     s = (x + 1) / 2
     low, width = edges[:-1, None], np.diff(edges)[:, None]
@@ -103,10 +105,6 @@ def first_mode(
         rest = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends)) - np.sum(flexible[1:])
         bound = float(min(1.0 / np.sqrt(rest), np.sqrt(most)))
     return Mode(float(np.sqrt(most)), bound, u.ravel(), weights.ravel(), curvature.ravel())
-
-
-def _parts(width: float) -> int:
-    return max(4, round(_PARTS * width))
 
 
 def _sag(stiffness: Callable[[Array], Array], length: float, edges: Array, u: Array, ends: Ends) -> Array:

@@ -1,10 +1,4 @@
-"""How a link gives way to its section forces: the strains of a straight beam, and its strain energy.
-
-Axial strain N/EA, curvatures by both bendings about any axes, twist T/GIt about the shear centre, and the shear strains V/GAs of
-Timoshenko's beam, each along y and z (Timoshenko, *Strength of Materials*, part I; Cowper, *The Shear Coefficient in
-Timoshenko's Beam Theory*, J. Appl. Mech. 33, 1966). Warping that is held adds nothing. In a planar mechanism bending is in its
-plane.
-"""
+"""A link of a solution as an elastic beam, in numbers: its strains (:mod:`..equations.strains`), and where they are summed."""
 
 from __future__ import annotations
 
@@ -14,19 +8,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
-from ..errors import DeclarationError
+from ..equations.strains import Moduli, moduli_of, strains
 from ..strength.member import Member
-
-_PLANE = (0, 1, 5)
 
 
 @dataclass(frozen=True, eq=False)
 class Compliance:
-    """A link of a solution as an elastic beam, by its elasticity and shear modulus [Pa]."""
+    """A link of a solution as an elastic beam, by the moduli of its material [Pa]."""
 
     member: Member
-    elasticity: float
-    shear_modulus: float
+    moduli: Moduli
 
     @classmethod
     def of(cls, member: Member, what: str) -> Compliance:
@@ -35,55 +26,18 @@ class Compliance:
         Raises :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant,
         which ``what`` needs.
         """
-        elasticity, shear_modulus = member.beam.material.needs(what, "elasticity", "shear_modulus")
-        if member.space:
-            for first, _ in member.beam.course.cells:
-                if first.properties().torsion is None:
-                    how = "give its properties by beams.given, with its torsion"
-                    raise DeclarationError(f"{what}: for torsion of a {first.kind} there is no formula; {how}")
-        return cls(member, elasticity, shear_modulus)
-
-    def root(self, index: int, u: Array) -> Array:
-        """Factors of section forces between two breaks, at ratios ``u`` (n,), whose squares add up to twice the strain energy of a
-        unit of length: (strains, forces, n), or (strains, forces, 1) where the cross-section is constant.
-        """
-        p = self.member.cross.properties(index, u)
-        e, g = self.elasticity, self.shear_modulus
-        numbers = (p.area, p.iy, p.iz, p.iyz, p.torsion, p.shear_y, p.shear_z, p.centre_y, p.centre_z)
-        area, iy, iz, iyz, torsion, *rest = np.broadcast_arrays(*(np.atleast_1d(np.inf if x is None else x) for x in numbers))
-        shear_y, shear_z, centre_y, centre_z = rest
-        found = np.zeros((6, 6, *area.shape))
-        found[0, 0] = 1.0 / np.sqrt(e * area)
-        found[1, 1], found[2, 2] = 1.0 / np.sqrt(g * shear_y), 1.0 / np.sqrt(g * shear_z)
-        # Section forces act at the centroid, torsion counts from the shear centre.
-        found[3, 3] = 1.0 / np.sqrt(g * torsion)
-        found[3, 1], found[3, 2] = centre_z * found[3, 3], -centre_y * found[3, 3]
-        found[4, 4] = np.sqrt(iz / (e * (iy * iz - iyz**2)))
-        found[4, 5] = found[4, 4] * iyz / iz
-        found[5, 5] = 1.0 / np.sqrt(e * iz)
-        if self.member.space:
-            return found
-        plane = found[_PLANE, :][:, _PLANE]
-        plane[2, 2] = np.hypot(found[4, 5], found[5, 5])
-        return plane
-
-    def scaled(self, forces: Array, index: npt.NDArray[np.intp], u: Array) -> Array:
-        """Section forces (forces, ..., t, n) at ratios (t, n) in cells ``index`` (t, n), times :meth:`root`, of the same shape."""
-        found = np.empty_like(forces)
-        for cell in range(len(self.member.beam.course.cells)):
-            here = index == cell
-            if here.any():
-                found[..., here] = np.einsum("rfn,f...n->r...n", self.root(cell, u[here]), forces[..., here])
-        return found
+        return cls(member, moduli_of(member.beam, what, space=member.space))
 
     def strains(self, forces: Array, index: npt.NDArray[np.intp], u: Array) -> Array:
-        """The strains of section forces (forces, t, n): axial, shears, twist and curvatures, in the order of the forces."""
+        """The strains of section forces (forces, t, n) at ratios (t, n) in cells ``index`` (t, n): in the order of the forces."""
         found = np.empty_like(forces)
         for cell in range(len(self.member.beam.course.cells)):
             here = index == cell
             if here.any():
-                root = self.root(cell, u[here])
-                found[:, here] = np.einsum("rgn,rfn,fn->gn", root, root, forces[:, here])
+                own = dict(zip(self.member.forces, forces[:, here], strict=True))
+                each = strains(self.member.cross.properties(cell, u[here]), own, self.moduli)
+                for k, name in enumerate(self.member.forces):
+                    found[k, here] = each[name]
         return found
 
 

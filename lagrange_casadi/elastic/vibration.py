@@ -157,7 +157,7 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
             each: Any = [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
             for i, row in enumerate(each):
                 for j, value in enumerate(row):
-                    found[i, j, here] = compliance.elasticity * value
+                    found[i, j, here] = compliance.moduli[0] * value
     return found
 
 

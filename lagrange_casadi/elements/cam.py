@@ -22,8 +22,7 @@ from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
-from .hertz import STEEL, largest_pressure, stiffness_of
-from .lift import rise_of
+from .follower import STEEL, largest_pressure, rise_of, stiffness_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -83,20 +83,13 @@ def courses_on(
         both = [name for name in both if name == carrier.name]
     if not both:
         where = f"'{carrier.name}'" if carrier is not None else "one body"
-        told = "; ".join(f"{_told(point)} turns on {_listed(one)}" for point, one in zip((first, second), found, strict=True))
+        names = [", ".join(f"'{name}'" for name in one) or "nothing" for one in found]
+        told = "; ".join(f"'{point.body.name}' turns on {on}" for point, on in zip((first, second), names, strict=True))
         raise DeclarationError(
             f"{what}: expected the centres of two bodies that turn on {where} by revolute joints through these; {told}"
         )
     nearest = min(both, key=lambda name: sum(len(one[name].joints) for one in found))
     return found[0][nearest], found[1][nearest]
-
-
-def _told(point: Point) -> str:
-    return f"'{point.body.name}'"
-
-
-def _listed(found: dict[str, Course]) -> str:
-    return ", ".join(f"'{name}'" for name in found) or "nothing"
 
 
 def fits_of(what: str, course: Course) -> list[Fit]:

@@ -30,8 +30,7 @@ from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
 from .cam_profile import turn_in
-from .hertz import STEEL, largest_pressure, stiffness_of
-from .lift import rise_of
+from .follower import STEEL, largest_pressure, rise_of, stiffness_of
 
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""

@@ -16,13 +16,14 @@ import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
+from ..declare.joints import Joint
 from ..errors import MobilityError
+from ..geometry.vectors import cross, dot
 from .bars import idle_spins
 from .freed import Freed, rank_of
 from .gaps import extent, units
-from .legs import solve_leg
-from .lines import solve_line
-from .loops import ClosedForm, solve_loop
+from .legs import in_fewest, solve_leg
+from .loops import ClosedForm, solve_in_turn, solve_loop, solves
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
 
@@ -296,3 +297,31 @@ def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
     """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None where no posture is found."""
     # Drives are free to give way in it, for there may be too many.
     return Freed.of(multibody, start["posture"], start["inputs"], start["values"], ()).slopes(start["values"])
+
+
+def solve_line(
+    joint: Joint, rows: Sequence[int], phi: Any, unknown: Sequence[Coordinate], multibody: Multibody
+) -> tuple[ClosedForm, ...]:
+    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the plane in which its line moves.
+
+    A slot or a cylindrical joint that closes a loop holds its points together along two lines across its own, and its directions
+    as well. What moves in a plane has one of them for each: that across the line in the plane. Out of the plane nothing may be
+    off, and the two lines lie anyhow to it. So each two equations are summed to the one in the plane, with weights that no
+    motion changes.
+
+    None where it does not close a loop along a line, where what is unknown does not turn in a plane with it, or none were verified.
+    """
+    if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.lets) != 1:
+        return ()
+    turn = next((c.name for c in unknown if c.name in multibody.axes), None)
+    pairs = [(k, k + 1) for k in rows if k % 2 == 0]
+    if turn is None or [k for pair in pairs for k in pair] != list(rows):
+        return ()
+    line, first, second = joint.triad
+    across = cross(multibody.frames[joint.parent.body.name].rotation.resolve(multibody.axes[turn]), line)
+    weights = in_fewest(ca.vertcat(dot(across, first), dot(across, second)), (), multibody.coordinates)
+    if weights is None:
+        return ()
+    equations = [weights.T @ phi[2 * k : 2 * k + 2] for k in range(len(pairs))]
+    forms = solve_in_turn(equations, unknown, multibody.coordinates)
+    return forms if forms and solves(forms, phi, multibody.coordinates) else ()

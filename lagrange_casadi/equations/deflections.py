@@ -21,7 +21,7 @@ from ..base.quantities import Output
 from ..declare.mechanism import Mechanism
 from .checks import Column
 from .multibody import column
-from .strains import moduli, strains
+from .strains import Moduli, moduli_of, strains
 from .strength import Loaded, Part, looked, most
 
 _MORE = 6
@@ -35,8 +35,8 @@ def deflections(mechanism: Mechanism, name: str, columns: Mapping[Column, Any], 
     :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant.
     """
     link = Loaded(mechanism.space, mechanism.links[name], columns)
-    pair = moduli(link, f"output 'deflection:{name}'")
-    curves = [_curve(link, *plane, pair, ends=ends) for plane in _PLANES[link.space]]
+    moduli = moduli_of(link.beam, f"output 'deflection:{name}'", space=link.space)
+    curves = [_curve(link, *plane, moduli, ends=ends) for plane in _PLANES[link.space]]
     along = zip(*curves, strict=True)
     value = most([value for pieces in along for value in looked(partial(_size, pieces), len(pieces) * pieces[0].degree)])
     if link.space:
@@ -74,14 +74,14 @@ class _Piece:
         return self.coefficients[0] + 0.5 * twice * last - before
 
 
-def _curve(link: Loaded, bending: str, shear: str, sign: float, pair: tuple[float, ...], *, ends: bool) -> list[_Piece]:
+def _curve(link: Loaded, bending: str, shear: str, sign: float, moduli: Moduli, *, ends: bool) -> list[_Piece]:
     """The deflection in a plane, part after part."""
     found: list[tuple[Part, Any]] = []
     turn, across = ca.SX(0.0), ca.SX(0.0)
     for part in link.parts:
         first, last = link.course.cells[part.cell]
         nodes, once, twice = _integrals(link.degree + (0 if first is last else _MORE))
-        each = [strains(link, part, x, *pair) for x in nodes]
+        each = [strains(link.at(part, x), {name: part.force(name, x) for name in part.forces}, moduli) for x in nodes]
         bent, sheared = sign * column(strain[bending] for strain in each), column(strain[shear] for strain in each)
         length = link.link.length * part.width
         curve = length * (length * ca.mtimes(twice, bent) + ca.vertcat(ca.mtimes(once, sheared), 0.0))

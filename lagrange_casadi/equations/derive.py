@@ -14,9 +14,13 @@ from ..arguments import Outputs, public
 from ..base import cache
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
+from ..base.tables import Table, table_of
+from ..declare.density import Density
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
-from ..declare.limits import told_parameters
+from ..declare.limits import END, told_parameters
+from ..declare.parts import Link
+from ..declare.results import Asked
 from ..declare.scene import STRENGTH, Scene, Wanted
 from ..declare.wanted_names import among
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
@@ -25,16 +29,17 @@ from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
 from .fingerprint import fingerprint
-from .least_work import feeling, least_work
+from .kinematics import Kinematics
+from .least_energy import Completion, LeastEnergy, feeling, least_energy
 from .mobility import internal_forces
 from .model_data import ModelData
 from .moving import Moving
-from .multibody import column
-from .open_forces import open_forces
-from .own import own_outputs
+from .multibody import Multibody, column
+from .open_forces import Forces
 from .program import Program
 from .reciprocals import share_reciprocals
 from .rounding import nearest
+from .section_function import Place, Section
 from .stations import gathered
 from .strength import stresses, utilisation
 
@@ -54,7 +59,6 @@ def compile_scene(
     wanted: Outputs | None = None,
     *,
     parameters: Mapping[str, float] | None = None,
-    elastic: bool = False,
 ) -> Program:
     """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
 
@@ -68,8 +72,6 @@ def compile_scene(
         Output names, as in :class:`.Scene`; by default the scene's own.
     parameters
         Values with which loops are assembled where they cannot be with the scene's own.
-    elastic
-        Whether the functions tell how forces change with what equilibrium leaves open.
 
     Notes
     -----
@@ -80,11 +82,11 @@ def compile_scene(
     """
     names = scene.wanted if wanted is None else wanted
     if parameters is not None:
-        scene = assembled(scene, scene.values(parameters), names, elastic=elastic)
+        scene = assembled(scene, scene.values(parameters), names)
     want = Wanted.of(scene.mechanism, names)
     _check_aimed(scene, names)
     try:
-        found = _kept(scene, want, elastic)
+        found = _kept(scene, want)
     except PostureError as error:
         error.scene = scene
         raise
@@ -102,19 +104,13 @@ def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -
     """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded axes corrected."""
     scene = assembled(scene, scene.values(parameters), wanted)
     compile_scene(scene, wanted)
-    found = _kept(scene, Wanted.of(scene.mechanism, wanted), False)
+    found = _kept(scene, Wanted.of(scene.mechanism, wanted))
     assert isinstance(found, _Derived)
     return found.scene
 
 
 @symbolic
-def assembled(
-    scene: Scene,
-    values: Mapping[str, float],
-    wanted: Sequence[str] | None = None,
-    *,
-    elastic: bool = False,
-) -> Scene:
+def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
     So it is too where loops close with its own parameters but not with ``values``, and axes are corrected for one or the other.
@@ -122,17 +118,17 @@ def assembled(
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
     try:
-        graph = compile_scene(scene, wanted, elastic=elastic)
+        graph = compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
         there = _at(scene, tuple(values.items()))
-        compile_scene(there, wanted, elastic=elastic)
+        compile_scene(there, wanted)
         return there
     if scene.mechanism.space and scene.rounding and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
-            if compile_scene(there, wanted, elastic=elastic).data.rounding or graph.data.rounding:
+            if compile_scene(there, wanted).data.rounding or graph.data.rounding:
                 return there
     return scene
 
@@ -156,31 +152,30 @@ class _Derived:
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, elastic: bool) -> _Derived | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
     identity = fingerprint(scene, want)
-    key = f"{identity}-elastic" if identity and elastic else identity
-    text = cache.read(f"{key}.graph") if key else None
+    text = cache.read(f"{identity}.graph") if identity else None
     if text is not None:
         graph = Program.loads(text)
         # Scenes of one name may differ in what follows from nothing that is derived.
         return _Derived(replace(graph, data=graph.data.asked_by(scene)), scene)
     try:
-        graph = replace(_derive(scene, want, elastic), identity=identity)
+        graph = replace(_derive(scene, want), identity=identity)
     except (AssemblyError, MobilityError) as error:
         near = _nearest(scene)
-        found = None if near is None else _kept(near, want, elastic)
+        found = None if near is None else _kept(near, want)
         if isinstance(found, _Derived):
             return replace(found, graph=replace(found.graph, identity=identity))
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
-        found = _kept(near, want, elastic)
+        found = _kept(near, want)
         if isinstance(found, _Derived):
             return replace(found, graph=replace(found.graph, identity=identity))
-    if key:
-        cache.write(f"{key}.graph", graph.dumps())
+    if identity:
+        cache.write(f"{identity}.graph", graph.dumps())
     return _Derived(graph, scene)
 
 
@@ -233,25 +228,22 @@ class _Borne:
         return cls(acting, forces.free, rubbed.forces)
 
 
-def _derive(scene: Scene, asked: Wanted, elastic: bool) -> Program:
+def _derive(scene: Scene, asked: Wanted) -> Program:
     mechanism = scene.mechanism
     want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
     moving = Moving.of(scene, want)
     columns, loop_angles = moving.columns()
     borne = _Borne.of(moving, columns) if want.forces else _Borne({}, ca.SX(0, 1), {})
     columns = {key: value for key, value in columns.items() if key not in borne.columns}
-    free, inputs = borne.free, moving.inputs
     acting = borne.columns | own_outputs(moving.body, moving.solved, columns | borne.columns)
-    opened = open_forces(acting, free, inputs, borne.frictions) if (elastic or scene.elastic) and free.numel() else None
-    least = least_work(mechanism, scene.elastic, columns | acting, free, moving.begins) if opened else None
-    loaded = acting if least is None else least.completed(acting, free)
-    strength = _strength(scene, asked, columns | loaded)
-    acting = (acting if elastic else loaded) | strength | ({} if least is None else least.doubts(strength))
-    columns |= _settled(acting, free)
+    least = _least_energy(scene, acting, borne) if scene.elastic else None
+    forces = Forces.over(acting, borne.free) if least is None else least.completed(acting, borne.free)
+    forces = forces.with_those_of(lambda told: _strength(scene, asked, {**columns, **told}))
+    columns |= forces.columns
     columns = columns if want is asked else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
+    instant = share_reciprocals(ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p")
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
@@ -259,8 +251,22 @@ def _derive(scene: Scene, asked: Wanted, elastic: bool) -> Program:
         newton=moving.solved.newton,
         columns=tuple(columns),
         loop_angles=loop_angles,
-        open_forces=opened if elastic else None,
+        completion=None if least is None else Completion.of(least, forces, columns, moving.inputs),
     )
+
+
+def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> LeastEnergy | None:
+    """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
+
+    Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what presses on it.
+    """
+    for name, value in borne.frictions.items():
+        if ca.depends_on(ca.SX(value), borne.free):
+            raise DeclarationError(
+                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open; elasticity tells it without friction"
+            )
+    open_ = any(ca.depends_on(ca.SX(value), borne.free) for value in acting.values())
+    return least_energy(scene.mechanism, scene.elastic, acting, borne.free) if open_ else None
 
 
 def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
@@ -290,22 +296,37 @@ def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict
 
 def _felt_alone(key: Column, asked: Wanted) -> bool:
     """Whether a column is there for strain energy alone."""
-    if not isinstance(key, Output):
+    output = key.part if isinstance(key, Check) else key
+    if not isinstance(output, Output):
         return False
-    return (key.group == "reaction" and key.part not in asked.reactions) or (key.along and key.part not in asked.sections)
+    return (output.group == "reaction" and output.part not in asked.reactions) or (
+        output.along and output.part not in asked.sections
+    )
 
 
-def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:
-    """Forces with nothing for what equilibrium leaves open, and by a check that it is ``open`` how much a force changes with that.
+def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]) -> dict[Column, Any]:
+    """The user's outputs as expressions of an instant, where ``found`` are the columns that they may be made of."""
+    mechanism = body.mechanism
+    asked = [asked for asked in mechanism.asked if any(asked in mechanism.outputs[name].made_of for name in body.own)]
+    values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
+    symbols = column(one.symbol for one in asked)
+    placed = solved.evaluate(column(body.own.values()))
+    return {
+        Output("output", name): value
+        for name, value in zip(body.own, ca.vertsplit(ca.substitute(placed, symbols, values)) if body.own else (), strict=True)
+    }
 
-    What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
-    at instants that are looked at then.
-    """
-    if not free.numel():
-        return columns
-    forces = column(columns.values())
-    slopes = ca.jacobian(forces, free)
-    slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
-    doubted = ((output, slopes[k, :]) for k, output in enumerate(columns) if slopes[k, :].nnz() and isinstance(output, Output))
-    sizes: dict[Column, Any] = {Check("open", output): ca.sum2(ca.fabs(slope)) for output, slope in doubted}
-    return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
+
+def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table) -> Any:
+    if asked.output.group == "section":
+        link = links[asked.output.part]
+        assert isinstance(link.mass, Density)
+        section = Section(link.name, table, found, link.length, link.mass)
+        # One graph serves both precisions.
+        return section.at(asked.output.member, Place(asked.ratio), END["single"])
+    if asked.output not in found:
+        drives = ", ".join(str(key.part) for key in found if isinstance(key, Output) and key.group == "effort")
+        raise DeclarationError(
+            f"an output is made of {asked.output}, and joint '{asked.output.part}' is no drive; drives: {drives}"
+        )
+    return found[asked.output]

@@ -142,7 +142,7 @@ class _Law:
         if isinstance(friction, Loss):
             sigma, rest, still = _way(one, sign)
             return cls(friction.name, pressed, 1.0, sigma, None, rest, still)
-        steady = None if _nil(friction.viscous) else friction.viscous * v
+        steady = None if isinstance(friction.viscous, float) and friction.viscous == 0.0 else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
         mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
@@ -340,7 +340,3 @@ def _sum(row: Sequence[Any], values: Sequence[Any], start: Any) -> Any:
 def _entry(matrix: Any, row: int, k: int) -> Any:
     entry = matrix[row, k]
     return None if not entry.nnz() or entry.is_zero() else entry
-
-
-def _nil(value: Any) -> bool:
-    return isinstance(value, float) and value == 0.0

@@ -217,7 +217,7 @@ class _Solver:
             first = self.ways[number] if number < len(self.ways) else 0
             near = near[first:] + near[:first]
             ways = [_numbers(form.unknown, values[signs]) for signs in near]
-            words = [_describe(way) for way in ways]
+            words = [" with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items()) for way in ways]
             self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
         return near[0]
 
@@ -379,7 +379,3 @@ def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coo
         found[coordinate] = math.atan2(rest[1] + 0.0, rest[0]) if coordinate.kind == "angle" else rest[0]
         rest = rest[size:]
     return found
-
-
-def _describe(way: Mapping[Coordinate, float]) -> str:
-    return " with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items())

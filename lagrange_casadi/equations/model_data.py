@@ -16,9 +16,8 @@ from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..base.tables import table_of
 from ..base.vocabulary import PRECISIONS, Precision
-from ..beams.beam import Beam
+from ..beams.beam import Beam, beam_of
 from ..beams.material import Material
-from ..beams.told import beam_of
 from ..declare.corners import Corners
 from ..declare.declared import Declared
 from ..declare.density import Density

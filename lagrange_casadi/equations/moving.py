@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..base.quantities import Kinds, Output, force_members
+from ..base.quantities import Output, force_members
 from ..base.tables import ANGLE
 from ..declare.description import kinds_of_described
 from ..declare.ends import beyond_ends
@@ -109,7 +109,10 @@ class Moving:
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
-        loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(kinds, output)}
+        told = {
+            output: value for output, value in motions.items() if output.member in ("", "angle") and output.unit(kinds) == ANGLE
+        }
+        loop_angles = {output: _turns(value, loose | counted) for output, value in told.items()}
         loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
@@ -221,10 +224,6 @@ def _within_a_turn(mechanism: Mechanism, body: Multibody, motions: Collection[Ou
 def _known_by(coordinate: Coordinate) -> Output:
     """The output that an angle that a loop sets is the same as."""
     return Output("motion", coordinate.name) if coordinate.relative else Output("pose", coordinate.body, "angle")
-
-
-def _is_angle(kinds: Kinds, output: Output) -> bool:
-    return output.member in ("", "angle") and output.unit(kinds) == ANGLE
 
 
 def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:

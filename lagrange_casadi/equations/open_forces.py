@@ -1,59 +1,57 @@
-"""Forces as functions of what equilibrium leaves open in an over-constrained mechanism."""
+"""Forces with nothing for what equilibrium leaves open, and how much each of them changes with that."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
 
-from ..errors import DeclarationError
-from .checks import Column, column_of
+from ..base.quantities import Output
+from .checks import Check, Column
+from .multibody import column
 
 
 @dataclass(frozen=True, eq=False)
-class OpenForces:
-    """The ``columns`` of a graph that change with what equilibrium leaves open, which is ``count`` numbers x.
+class Forces:
+    """Forces ``values`` with nothing for what is open, and of those that change with that how much they do, ``open``.
 
-    ``values(t, d, d_rate, d_acceleration, z, p, x) -> (columns,)`` are these for any x, and ``slopes`` of the same ->
-    (columns, count) their derivatives by x. Section forces and reactions are linear in x.
+    What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
+    at instants that are looked at then. Where elasticity has completed them, ``before`` is how much they changed before.
     """
 
-    columns: tuple[Column, ...]
-    count: int
-    values: Any
-    slopes: Any
-
-    def dumps(self) -> str:
-        """All of it as text."""
-        names = [str(column) for column in self.columns]
-        return json.dumps([names, self.count, self.values.serialize(), self.slopes.serialize()])
+    values: Mapping[Column, Any]
+    open: Mapping[Output, Any]
+    before: Mapping[Output, Any] | None = None
 
     @classmethod
-    def loads(cls, text: str) -> OpenForces:
-        """What :meth:`dumps` made a text of."""
-        names, count, values, slopes = json.loads(text)
-        return cls(tuple(map(column_of, names)), count, *(ca.Function.deserialize(f) for f in (values, slopes)))
+    def over(cls, acting: Mapping[Column, Any], free: Any) -> Forces:
+        """Forces ``acting`` that are expressions of what is open, ``free``."""
+        if not free.numel():
+            return cls(acting, {})
+        forces = column(map(ca.SX, acting.values()))
+        slopes = ca.jacobian(forces, free)
+        slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
+        doubted = {key: slopes[k, :] for k, key in enumerate(acting) if slopes[k, :].nnz() and isinstance(key, Output)}
+        sizes = {output: ca.sum2(ca.fabs(slope)) for output, slope in doubted.items()}
+        return cls(dict(zip(acting, ca.vertsplit(forces), strict=True)), sizes)
 
+    def with_those_of(self, made: Callable[[Mapping[Column, Any]], Mapping[Column, Any]]) -> Forces:
+        """Add what is ``made`` of these forces, which is open with what goes into it."""
+        symbols: dict[Column, Any] = {output: ca.SX.sym(str(output)) for output in self.open}
+        more = made({**self.values, **symbols})
+        if not symbols or not more:
+            return replace(self, values={**self.values, **more})
+        found, names = column(map(ca.SX, more.values())), column(symbols.values())
+        sparsity = ca.jacobian_sparsity(found, names)
+        into = {key: [output for j, output in enumerate(self.open) if sparsity.has_nz(k, j)] for k, key in enumerate(more)}
+        placed = ca.substitute(found, names, column(self.values[output] for output in symbols))
+        values = {**self.values, **dict(zip(more, ca.vertsplit(placed), strict=True))}
+        sums = {key: sum(self.open[output] for output in each) for key, each in into.items() if isinstance(key, Output) and each}
+        return replace(self, values=values, open={**self.open, **sums})
 
-def open_forces(columns: Mapping[Column, Any], free: Any, inputs: Sequence[Any], frictions: Mapping[str, Any]) -> OpenForces | None:
-    """Those of ``columns`` that change with ``free``; None where none does.
-
-    Raises :class:`.DeclarationError` where ``frictions`` do: what rubs is not linear in what presses on it.
-    """
-    for name, value in frictions.items():
-        if ca.depends_on(ca.SX(value), free):
-            raise DeclarationError(
-                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open; elasticity tells it without friction"
-            )
-    each = {key: ca.SX(value) for key, value in columns.items()}
-    doubted = {key: value for key, value in each.items() if ca.jacobian(value, free).nnz()}
-    if not doubted:
-        return None
-    rows = ca.densify(ca.vertcat(*doubted.values()))
-    names = ["t", "d", "d_rate", "d_acceleration", "z", "p", "x"]
-    values = ca.Function("open_forces", [*inputs, free], [rows], names, ["out"], {"cse": True})
-    slopes = ca.Function("open_slopes", [*inputs, free], [ca.densify(ca.jacobian(rows, free))], names, ["out"], {"cse": True})
-    return OpenForces(tuple(doubted), free.numel(), values, slopes)
+    @property
+    def columns(self) -> dict[Column, Any]:
+        """The forces, and checks by which it is seen whether they are open."""
+        return {**self.values, **{Check("open", output): size for output, size in self.open.items()}}

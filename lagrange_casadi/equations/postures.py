@@ -28,7 +28,8 @@ def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[An
     told: dict[str, tuple[Any, set[Coordinate]]] = {}
     for name in names:
         if name in multibody.frames:
-            expression = _direction(multibody, name)
+            turn = multibody.frames[name].rotation
+            expression = ca.SX(ca.atan2(turn.s, turn.c))
         else:
             joint, axis = multibody.mechanism.coordinates[name]
             if joint.turns > 2 and own_coordinate(axis, multibody.coordinates) is None:
@@ -117,8 +118,3 @@ class Undecided:
         say = f"say which by {' or '.join(lines)}" if self.ways else lines[0]
         after = " or the like: each loop is told as it is with the first way of those before it" if len(self.ways) > 1 else ""
         return PostureError(f"{'; '.join(self.words)}; {say}{after}", tuple(ways for _, ways in self.ways), bool(self.lacking))
-
-
-def _direction(multibody: Multibody, body: str) -> Any:
-    turn = multibody.frames[body].rotation
-    return ca.SX(ca.atan2(turn.s, turn.c))

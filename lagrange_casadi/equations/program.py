@@ -19,9 +19,9 @@ from ..declare.scene import Wanted
 from ..errors import PickleError
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
+from .least_energy import Completion
 from .mobility import stations_of
 from .model_data import ModelData
-from .open_forces import OpenForces
 from .status import Bound, Rule, bounds_of, rules_of, status_of
 
 
@@ -32,8 +32,8 @@ class Program(Graphs):
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
     each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
     loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
-    of a joint the whole turns of angles that count them, which are in these columns without them. ``open_forces`` are there where
-    they were asked for, and equilibrium leaves something open. ``identity`` is the hash of all that it follows from (see
+    of a joint the whole turns of angles that count them, which are in these columns without them. ``completion`` is there where
+    elasticity tells what equilibrium leaves open. ``identity`` is the hash of all that it follows from (see
     :func:`.fingerprint`), or None where the declaration holds something whose content cannot be told.
     """
 
@@ -43,7 +43,7 @@ class Program(Graphs):
     newton: NewtonLoop | None
     columns: tuple[Column, ...]
     loop_angles: Mapping[Output, Mapping[Column, int]]
-    open_forces: OpenForces | None = None
+    completion: Completion | None = None
     identity: str | None = None
 
     @cached_property
@@ -154,8 +154,8 @@ class Program(Graphs):
             "columns": self.names,
             "loop_angles": loop_angles,
         }
-        if self.open_forces is not None:
-            kept["open_forces"] = self.open_forces.dumps()
+        if self.completion is not None:
+            kept["completion"] = self.completion.dumps()
         return json.dumps(kept | {"instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
@@ -171,11 +171,11 @@ class Program(Graphs):
             newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
-        free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
+        completion = Completion.loads(kept["completion"]) if "completion" in kept else None
         data = ModelData.loads(kept["data"])
         told: dict[str, Any] = {name: tuple(own) if isinstance(own, list) else own for name, own in kept["wanted"].items()}
         wanted = Wanted(**told)
-        return cls(data, wanted, instant, newton, columns, loop_angles, free, kept["identity"])
+        return cls(data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""

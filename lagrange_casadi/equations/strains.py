@@ -1,46 +1,64 @@
-"""Strains of a link at an instant, as a beam of Timoshenko's, as expressions: see :mod:`..elastic.compliance`."""
+"""Strains of a link under its section forces, in numbers or expressions: a beam of Timoshenko's.
+
+Axial strain N/EA, curvatures by both bendings about any axes, twist T/GIt about the shear centre, and the shear strains V/GAs,
+along y and along z (Timoshenko, *Strength of Materials*, part I; Cowper, *The Shear Coefficient in Timoshenko's Beam Theory*,
+J. Appl. Mech. 33, 1966). Warping that is held adds nothing. In a planar mechanism bending is in its plane.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
+from ..beams.beam import Beam
+from ..beams.properties import Properties
 from ..errors import DeclarationError
-from .strength import Loaded, Part
+
+Moduli: TypeAlias = tuple[float, ...]
+"""Elasticity and shear modulus [Pa]."""
 
 
-def moduli(link: Loaded, what: str) -> tuple[float, ...]:
-    """Elasticity and shear modulus [Pa].
+def moduli_of(beam: Beam, what: str, *, space: bool) -> Moduli:
+    """Return the moduli of a beam's material.
 
     Raises :class:`.DeclarationError` where one is not there, or in space no torsion constant, which ``what`` needs.
     """
-    found = link.beam.material.needs(what, "elasticity", "shear_modulus")
-    if not link.told:
-        kind = next(shape.kind for shape in link.course.shapes() if shape.properties().torsion is None)
-        how = "give its properties by beams.given, with its torsion"
-        raise DeclarationError(f"{what}: for torsion of a {kind} there is no formula; {how}")
+    found = beam.material.needs(what, "elasticity", "shear_modulus")
+    for shape in beam.course.shapes() if space else ():
+        if shape.properties().torsion is None:
+            how = "give its properties by beams.given, with its torsion"
+            raise DeclarationError(f"{what}: for torsion of a {shape.kind} there is no formula; {how}")
     return found
 
 
-def strains(link: Loaded, part: Part, x: float, elasticity: float, shear_modulus: float) -> dict[str, Any]:
-    """By the names of section forces what each strains, for a unit of the link's length, at a place of a part from 0 to 1."""
-    p = link.at(part, x)
-    force = {name: part.force(name, x) for name in part.forces}
+def resultants(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, tuple[Any, Any]]:
+    """Section forces put together so that each strains alone, with how much: a unit of length has half their squares' energy.
+
+    Torsion is about the shear centre, and bending about y has with it the part of bending about z that strains as it does.
+    """
+    elasticity, shear_modulus = moduli
     whole = elasticity * (p.iy * p.iz - p.iyz**2)
-    sheared = {
-        name: 0.0 if area is None else force[name] / (shear_modulus * area)
-        for name, area in (("shear", p.shear_y), ("shear_y", p.shear_y), ("shear_z", p.shear_z))
-        if name in force
-    }
-    found = {"axial": force["axial"] / (elasticity * p.area), **sheared}
-    if not link.space:
-        return found | {"bending": force["bending"] * p.iy / whole}
+    found = {"axial": (force["axial"], 1.0 / (elasticity * p.area))}
+    for name, area in (("shear", p.shear_y), ("shear_y", p.shear_y), ("shear_z", p.shear_z)):
+        if name in force and area is not None:
+            found[name] = force[name], 1.0 / (shear_modulus * area)
+    if "bending" in force:
+        return found | {"bending": (force["bending"], p.iy / whole)}
     # Section forces act at the centroid, torsion counts from the shear centre.
-    twist = (force["torsion"] + p.centre_z * force["shear_y"] - p.centre_y * force["shear_z"]) / (shear_modulus * p.torsion)
-    about_y, about_z = force["bending_y"], force["bending_z"]
+    torsion = force["torsion"] + p.centre_z * force["shear_y"] - p.centre_y * force["shear_z"]
     return found | {
-        "shear_y": sheared["shear_y"] + p.centre_z * twist,
-        "shear_z": sheared["shear_z"] - p.centre_y * twist,
-        "torsion": twist,
-        "bending_y": (p.iz * about_y + p.iyz * about_z) / whole,
-        "bending_z": (p.iyz * about_y + p.iy * about_z) / whole,
+        "torsion": (torsion, 1.0 / (shear_modulus * p.torsion)),
+        "bending_y": (force["bending_y"] + p.iyz / p.iz * force["bending_z"], p.iz / whole),
+        "bending_z": (force["bending_z"], 1.0 / (elasticity * p.iz)),
     }
+
+
+def strains(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, Any]:
+    """By the names of section forces what each strains, for a unit of the link's length."""
+    found = dict.fromkeys(force, 0.0) | {name: value * soft for name, (value, soft) in resultants(p, force, moduli).items()}
+    if "bending" in force:
+        return found
+    found["shear_y"] = found["shear_y"] + p.centre_z * found["torsion"]
+    found["shear_z"] = found["shear_z"] - p.centre_y * found["torsion"]
+    found["bending_z"] = found["bending_z"] + p.iyz / p.iz * found["bending_y"]
+    return found

@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -47,7 +47,7 @@ class Part:
     low: Any
     width: Any
     cell: int
-    forces: Mapping[str, Sequence[Any]]
+    forces: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     def force(self, name: str, x: Any) -> Any:
         """A section force at a place from 0 to 1."""
@@ -78,25 +78,34 @@ class Loaded:
 
     @cached_property
     def parts(self) -> list[Part]:
-        """The parts between stations, ends of loads along the link, and breaks of its density and its cross-section."""
+        """Parts of the link, with their section forces."""
+        return [replace(part, forces=self._polynomials(part)) for part in self.spans]
+
+    @property
+    def spans(self) -> list[Part]:
+        """Parts between stations, ends of loads along the link, and breaks of its density and its cross-section."""
         found = []
         for cell, (low, high) in enumerate(itertools.pairwise(self.course.breaks)):
             inner = _in_order([ca.fmin(ca.fmax(ca.SX(mark), low), high) for mark in self.marks])
             for a, b in itertools.pairwise([ca.SX(low), *inner, ca.SX(high)]):
                 if not (a - b).is_zero():
-                    found.append(Part(a, b - a, cell, self._polynomials(a, b)))
+                    found.append(Part(a, b - a, cell))
         return found
 
     def force_at(self, name: str, u: Any, side: Side) -> Any:
         """A section force at a ratio; at a station on a ``side`` of it."""
         return self.section.at(name, Place(u, side=side), _SLACK)
 
-    def _polynomials(self, a: Any, b: Any) -> dict[str, list[Any]]:
+    def force_within(self, name: str, part: Part, x: Any) -> Any:
+        """A section force at a place of a part from 0 to 1, by the link's law."""
+        return self.section.force(name, part.low + part.width * x, edge(part.low, _SLACK))
+
+    def _polynomials(self, part: Part) -> dict[str, list[Any]]:
         nodes = (1.0 - np.cos(math.pi * np.arange(self.degree + 1) / self.degree)) / 2
         inverse = np.linalg.inv(np.vander(nodes, increasing=True))
         found = {}
         for name in self.cross.forces:
-            values = [self.section.force(name, a + (b - a) * x, edge(a, _SLACK)) for x in nodes.tolist()]
+            values = [self.force_within(name, part, x) for x in nodes.tolist()]
             found[name] = [sum(w * value for w, value in zip(row.tolist(), values, strict=True)) for row in inverse]
         return found
 

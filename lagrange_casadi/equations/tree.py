@@ -149,7 +149,8 @@ def _is_turned(joint: Joint) -> bool:
 
 def _refuse_driven(mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]) -> NoReturn:
     """Raise :class:`DeclarationError` for a driven joint that closes a loop; ``given`` are the coordinates that have a motion."""
-    following = [c for one in _around(joint, branches) for c in _coordinates(one) if mechanism.space and c not in given]
+    axes = [axis for one in _around(joint, branches) for axis in one.axes if mechanism.space]
+    following = [axis.coordinate for axis in axes if axis.coordinate not in given]
     if following:
         raise DeclarationError(
             f"joint '{joint.name}': of every joint of its loop some motion is given, so none is left to close it, and "
@@ -172,10 +173,6 @@ def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
             ways[-1].append(led[body].joint)
             body = led[body].near.body
     return [*(one for k, way in enumerate(ways) for one in way if one not in ways[1 - k]), joint]
-
-
-def _coordinates(joint: Joint) -> list[str]:
-    return [axis.coordinate for axis in joint.axes]
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:

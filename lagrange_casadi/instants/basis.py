@@ -13,7 +13,7 @@ from ..base.arrays import Array
 from ..base.tables import Terms
 from ..declare.density import NumericDensity
 from ..equations.section_function import along
-from .spread_loads import SpreadLoad
+from .loads import SpreadLoad
 
 _NUMPY = numpy_arithmetic()
 

@@ -19,10 +19,10 @@ from ..base.arrays import Array
 from ..base.symbolic import symbolic
 from ..base.tables import ANGLE, FORCE, LENGTH, MOMENT
 from ..equations.checks import FRACTIONS, Check, Column
-from ..equations.dead_centres import passes_dead_centre
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.program import Program
 from ..errors import DeclarationError
+from .rules import passes_dead_centre
 
 TURNS = 4
 """Of the longest period."""

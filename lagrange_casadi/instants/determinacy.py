@@ -1,13 +1,14 @@
 """What equilibrium determines, decided for the parameters and instants that are evaluated.
 
-In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium leaves open. A check ``open`` of
-a force is the size of s. A force is determined where that is zero: by structure, and then it has no such check, in every posture,
-or in one alone.
+In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium leaves open, and elasticity does
+not tell. A check ``open`` of a force is the size of s. A force is determined where that is zero: by structure, and then it has no
+such check, in every posture, or in one alone.
 """
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import casadi as ca
@@ -16,20 +17,45 @@ import numpy as np
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.status import Status
+from ..base.tables import MOMENT
 from ..equations.checks import Check, Column
 from ..equations.program import Program
-from .backends import run
-from .rules import limits
+from .backends import Evaluated, run
+from .elasticity import Elasticity
+from .rules import open_limit
 from .rung import Rung
 
 
 def undetermined(graph: Program, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
     """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
-    if not graph.doubtful:
+    return _beyond(graph, {output: out[k] for output, k in graph.doubtful.items()}, p, rung)
+
+
+def completed(
+    graph: Program, found: Evaluated, t: Array, p: Array, left_open: Sequence[Output]
+) -> tuple[Elasticity, dict[str, Array]]:
+    """Report what least strain energy told at instants ``t``, why some are ``left_open``, and its residual for a certificate."""
+    completion, known = graph.completion, np.isfinite(found.out).all(axis=0)
+    if completion is None or not known.any():
+        return Elasticity(), {}
+    driven, iterated = graph.motion(t[None, known], p), np.asarray(found.iterated, float)[:, known]
+    rows = completion.function(t[None, known], *driven, iterated, p).full()
+    changes, (*through, idle, chosen, unbalanced) = np.split(rows, [len(completion.doubted)])
+    doubted = _beyond(graph, dict(zip(completion.doubted, changes, strict=True)), p, Rung())
+    told = tuple(output for output in doubted if output not in left_open)
+    reasons = completion.reasons([bool(row.any()) for row in through], idle=bool(idle.any())) if left_open else ()
+    residual = np.zeros(t.size)
+    residual[known] = unbalanced
+    return Elasticity(told, reasons), {"elasticity": residual} if chosen.any() else {}
+
+
+def _beyond(graph: Program, changes: Mapping[Output, Array], p: Array, rung: Rung) -> tuple[Output, ...]:
+    """The outputs that change at any of some instants by more than what is none."""
+    if not changes:
         return ()
-    known = zip(graph.bounds, limits(graph, rung.precision, rung.newton, graph.extent(p)), strict=True)
-    most = {bound.column: limit for bound, limit in known}
-    return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > most[k]))
+    extent, limit = graph.extent(p), open_limit(graph, rung.precision, rung.newton)
+    units = {output: extent if output.unit(graph.data.kinds) == MOMENT else 1.0 for output in changes}
+    return tuple(output for output, sizes in changes.items() if np.any(sizes > limit * units[output]))
 
 
 def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) -> tuple[Program, tuple[Output, ...]]:

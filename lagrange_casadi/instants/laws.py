@@ -10,9 +10,8 @@ from ..base.quantities import Output
 from ..base.tables import PLANE, Table
 from ..declare.density import NumericDensity
 from ..declare.limits import END
+from .loads import spread_load, station_load
 from .section_law import SectionLaw
-from .spread_loads import spread_load
-from .station_loads import station_load
 
 
 def law_of(

@@ -1,13 +1,18 @@
-"""The order in which a solution keeps its outputs."""
+"""The order in which a solution keeps its outputs, and in which they are listed, with how far each may be off."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..base.tables import Table, table_of
+from ..base.tables import LARGEST, Table, table_of
 from ..declare.description import Description, in_space, parts_of
+
+if TYPE_CHECKING:
+    from .solution import Solution
 
 
 def table_of_described(description: Description) -> Table:
@@ -32,3 +37,24 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
         return group, parts.index(part), axis, output.station, rows.index(output.meant(table)), output.power or 0
 
     return {output: outputs[output] for output in sorted(outputs, key=rank)}
+
+
+_GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
+
+
+def told(solution: Solution) -> Iterator[Output]:
+    """Efforts, reactions with their resultants, section forces, what is largest along links, and own outputs."""
+    for output in solution.quantities():
+        if output.group in _GROUPS:
+            yield output
+            for member in solution.table.reactions:
+                resultant = Output("reaction", output.part, member)
+                if output == solution.made_of(resultant)[-1]:
+                    yield resultant
+
+
+def error_of(solution: Solution, name: str | Output) -> float | None:
+    """How far a quantity may be off, in its unit, or None; the size of a force by no more than its components together."""
+    errors = [solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))]
+    known = [error for error in errors if error is not None]
+    return math.hypot(*known) if len(known) == len(errors) else None

@@ -17,14 +17,13 @@ from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..declare.ends import share_beyond
-from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
 from ..equations.program import Program
 from ..equations.status import Bound, Rule
 from ..errors import AssemblyError
 from .backends import Evaluated, run
-from .rules import limits
+from .rules import limits, passes_dead_centre
 from .rung import Rung
 
 _JAM = "friction there has no force that holds its law, or several; expected less mu, a longer guide, or a push nearer to its line"

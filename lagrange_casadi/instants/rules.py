@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from ..arithmetic.compensated import ROUNDING
+from ..base.arrays import Array
 from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
@@ -27,6 +31,9 @@ _DEAD = 64.0
 SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 """How far the laws of frictions may miss, of their forces."""
 
+NEAR = 0.3
+"""Sines of the transmission angle below which a loop may pass a dead centre."""
+
 EXTENSIVE = ("GAP", "OPEN_MOMENT")
 """Kinds whose limit is a share of the mechanism's extent."""
 
@@ -41,7 +48,7 @@ def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None
     """The limit of a bound; of those that are :data:`EXTENSIVE` a share of the mechanism's extent."""
     exact, kind = newton is None, bound.kind
     if kind in ("OPEN", "OPEN_MOMENT"):
-        return max(OPEN[precision] if exact else max(_COUNTED, OPEN[precision]), graph.data.rounding)
+        return open_limit(graph, precision, newton)
     if kind == "BEYOND":
         return BEYOND[precision]
     if kind in ("CLOSURE", "BRANCH"):
@@ -57,7 +64,26 @@ def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None
     return {"JAM": _DEAD * ROUNDING[precision], "REST": 0.5, "TURNED": REACH}[kind]
 
 
+def open_limit(graph: Program, precision: Precision, newton: int | None) -> float:
+    """Limit of how far a determined force may change with what equilibrium leaves open; of a moment, a share of the extent."""
+    return max(OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision]), graph.data.rounding)
+
+
 def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
     square = _DEAD * ROUNDING[precision]
     return math.sqrt(square) if graph.iterates(closure) else square
+
+
+def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
+    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
+
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
+    last are looked at too, each from its one side.
+    """
+    found = np.zeros(closure.size, dtype=bool)
+    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
+    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
+    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
+    return found

@@ -2,7 +2,7 @@
 
 With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density` gives, and of what acts on the
 link beyond it: at the tip (n0, f0, m0), at stations in between, each seen by the sections on its base side, and along the link
-(:mod:`.spread_loads`). In space a link has two planes of bending, each like that of a planar link, and torsion, which nothing but
+(:mod:`.loads`). In space a link has two planes of bending, each like that of a planar link, and torsion, which nothing but
 the ends and stations changes.
 """
 
@@ -26,9 +26,8 @@ from ..declare.limits import END
 from ..equations.section_function import SIDES, Side, edge
 from . import grids
 from .basis import Basis
+from .loads import AnyStationLoad, SpreadLoad, StationLoad
 from .sizes import growth_of_size, size_of, slope_of_size
-from .spread_loads import SpreadLoad
-from .station_loads import AnyStationLoad, StationLoad
 from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
 __all__ = ["Basis", "SectionLaw", "Side", "StationLoad"]

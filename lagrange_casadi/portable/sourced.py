@@ -61,17 +61,15 @@ def sourced(
     checked_span(compiled.laws, data.timing, values)
     instants = instants_of(compiled.laws, data.timing, values).t
     whole, (compiled, left_open) = compiled, determinate(compiled, instants, p, telling=table is None)
-    # What elasticity tells is in the program whole, or not at all.
-    gives = scene.elastic and not left_open
     # What rounding alone makes of it: all steps that loops want, and no table.
-    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", elastic=gives)
+    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm")
     if exact.failed:
         raise CertificateError(f"cannot export {name}: {failure(exact)}")
     solution = exact
     if newton is not None or table is not None:
         # It is held to the exact one, and as far off as that was asked for.
         words: dict[str, Any] = {"parameters": values, "wanted": wanted, "newton": newton, "table": table}
-        solution = evaluate(scene, **words, backend="vm", certificate=False, elastic=gives)
+        solution = evaluate(scene, **words, backend="vm", certificate=False)
     read = None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, rung))
     agreed = contract(compiled, name, precision, solution, left_open, fixed=table is not None)
     emitted = program(compiled, precision, newton, p, read)

@@ -14,9 +14,9 @@ from ..base.quantities import Output
 from ..declare.description import Description
 from ..instants.derivatives import derivatives
 from ..instants.held import held_outputs
+from ..instants.ordering import error_of, told
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
-from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
 from ..shapes.places import require_poses
 from ..shapes.shapes import joint_shapes, load_shapes, path_spots, shapes

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..instants.ordering import told
 from ..instants.solution import Solution
-from ..instants.told import told
 
 MOST = 1_000_000
 """Numbers that a page holds at most, or little more: 8 bytes each, 11 in the page."""

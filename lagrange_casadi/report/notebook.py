@@ -9,8 +9,8 @@ from html import escape
 from ..declare.scene import Scene
 from ..equations.model_data import template
 from ..errors import DeclarationError, LagrangeCasadiError
+from ..instants.ordering import told
 from ..instants.solution import Solution
-from ..instants.told import told
 from ..shapes.places import require_poses
 from ..studies.evaluate import evaluate
 from .page import page

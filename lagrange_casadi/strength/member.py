@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Array
-from ..beams.beam import Beam
-from ..beams.told import beam_told
+from ..beams.beam import Beam, beam_told
 from ..declare.description import beams_of, in_space
 from ..equations.bars import unaimed
 from ..equations.stress import FORCES, CrossSections

@@ -142,7 +142,7 @@ def yielded(member: Member, peak: StressPeak) -> Verdict:
     """The factor of safety of a link against yielding, by the peak of a stress."""
     (strength,) = member.beam.material.needs("safety against yielding", "yield_strength")
     where = f"{peak.kind} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
-    return Verdict("yield", _over(strength, peak.value), where)
+    return Verdict("yield", strength / abs(peak.value) if peak.value else math.inf, where)
 
 
 def buckling(member: Member, of: Column) -> Verdict:
@@ -178,7 +178,3 @@ def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
     many = math.inf if most == 0.0 else -1.0 / most
     span = float(solution.t[-1] - solution.t[0])
     return Life(link, 0.0 - most, many, many * span / 3600.0, place.xi, fibre)
-
-
-def _over(strength: float, size: float) -> float:
-    return strength / abs(size) if size else math.inf

@@ -20,24 +20,20 @@ from ..declare.laws import Laws
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, Timing, instants_of, span_of
 from ..declare.wanted_names import by_parameters
-from ..elastic.completing import told_errors, wanted_alone
-from ..elastic.least_energy import Completed, complete
 from ..equations.checks import Check
 from ..equations.derive import compile_scene
 from ..equations.model_data import ModelData
 from ..equations.program import Program
 from ..errors import CertificateWarning, DeclarationError, warn
 from ..instants.backends import Evaluated
-from ..instants.cost import seconds
 from ..instants.derivatives import Derivatives
-from ..instants.determinacy import determinate, undetermined
-from ..instants.elasticity import Elasticity
+from ..instants.determinacy import completed, determinate, undetermined
 from ..instants.from_table import columns
 from ..instants.holding import holding
 from ..instants.ordering import in_order
 from ..instants.phases import phases
 from ..instants.refusal import refuse
-from ..instants.rung import Rung
+from ..instants.rung import Rung, seconds
 from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance
@@ -74,8 +70,7 @@ def solve(
     if gives and rung.table is not None:
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
-    asked = [*names, *(name for name in scene.outputs if name.startswith(("reaction:", "section:")))] if gives else names
-    graph = compile_scene(scene, asked, parameters=values, elastic=bool(gives))
+    graph = compile_scene(scene, names, parameters=values)
     rung.check(graph)
     checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
@@ -93,60 +88,25 @@ def solve(
     graph.data.corners.refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
     left_open += undetermined(graph, out, p, rung)
     description = graph.data.at(p)
-    done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
-    if done is not None:
-        out, left_open = done.out, done.left_open
+    elasticity, unbalanced = completed(graph, found, times, p, left_open)
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
     solution = Solution(graph.data.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     by = by_parameters(graph.data.parameters, names)
-    slopes = {}
-    if by and done is None:
-        slopes = series_slopes(graph, solution, p, by, rung)
-    elif by:
-        slopes = _completed_slopes(compile_scene(scene, asked, parameters=values), solution, p, by, rung)
-    solution = replace(solution, tolerance=tolerance(solution), sensitivities=Derivatives(slopes))
-    if done is not None:
-        solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
+    slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
+    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity)
     if solution.resting.any():
         open_ = {name: held for name, held in holding(scene, solution).items() if np.isnan(solution.effort(name)).any()}
         solution = replace(solution, held=open_)
     if certificate:
-        solution = _certified(graph, found, solution, out, p, within, done)
+        residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within) | unbalanced
+        errors = explained(solution, residuals, estimate(graph, found, solution, p))
+        named = {str(output): error for output, error in errors.items()}
+        solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
         if solution.failed:
             warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
-    return wanted_alone(solution, scene.wants(names)) if gives else solution
-
-
-def _certified(
-    graph: Program,
-    found: Evaluated,
-    solution: Solution,
-    out: Array,
-    p: Array,
-    within: Mapping[Output, Array],
-    done: Completed | None,
-) -> Solution:
-    """The solution with its certificate and its errors; it was made of the columns ``out``, which ``done`` has completed."""
-    residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
-    errors = estimate(graph, found, solution, p)
-    if done is not None and done.told:
-        before = np.asarray(found.out, float)
-        residuals["elasticity"] = done.residual
-        errors = told_errors(errors, solution, {output: before[k] for output, k in graph.outputs.items()}, done)
-    named = {str(output): error for output, error in explained(solution, residuals, errors).items()}
-    return replace(solution, certificate=residuals | _condition(graph, found), errors=named)
-
-
-def _completed_slopes(
-    graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung
-) -> dict[str, dict[Output, Array]]:
-    """Differentiate by parameters a solution that elasticity completed, by a graph that has what it tells."""
-    _, left_open = determinate(graph, solution.t, p)
-    nothing = {output: np.full(solution.t.size, np.nan) for output in left_open}
-    known = replace(solution, outputs={**solution.outputs, **nothing}, left_open=(*solution.left_open, *left_open))
-    return series_slopes(graph, known, p, by, rung)
+    return solution
 
 
 def _announce(graph: Program, count: int, rung: Rung, threads: int) -> None:

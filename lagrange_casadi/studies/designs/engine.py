@@ -29,9 +29,8 @@ from ...equations.derive import compile_scene
 from ...equations.program import Program
 from ...errors import DeclarationError
 from ...instants.backends import begun, compiled, provenance
-from ...instants.cost import seconds
 from ...instants.determinacy import undetermined
-from ...instants.rung import Rung
+from ...instants.rung import Rung, seconds
 from ...instants.solution import Provenance
 from ...sensitivity.curvatures import Curvatures
 from ...sensitivity.peaks import PeakSlopes

@@ -16,14 +16,13 @@ from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
 from ...codegen.stages import Stages, compensated, plain, stages_for
-from ...equations.dead_centres import NEAR
 from ...equations.mobility import stations_of
 from ...equations.model_data import ModelData
 from ...equations.program import Program
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
-from ...instants.rules import limit
+from ...instants.rules import NEAR, limit
 from ...instants.rung import Rung
 from ...summits.sharpness import Sharpness
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...base.status import Status
-from ...beams.told import beam_of
+from ...beams.beam import beam_of
 from ...declare.description import kinds_of_described
 from ...declare.notes import rest_note
 from ...declare.scene import Scene

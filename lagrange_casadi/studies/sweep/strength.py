@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from ...base.arrays import Array
 from ...base.quantities import Output
-from ...beams.told import beam_told
+from ...beams.beam import beam_told
 from ...declare.masses import ALL
 from ...equations.model_data import ModelData
 from ...instants.statistics import counted
