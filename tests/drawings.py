@@ -28,12 +28,12 @@ def drawing(noise, seed=1, exact=()):
         return place.body.at(*off(place.place))
 
     class Drawn(SpatialMechanism):
-        def _spatial(self, name, kind, parent, child, axis, second, at, turned, pitch=0.0):
+        def _spatial(self, name, kind, bodies, axes, at, turned, pitch=0.0):
             if name in exact:
-                return super()._spatial(name, kind, parent, child, axis, second, at, turned, pitch)
+                return super()._spatial(name, kind, bodies, axes, at, turned, pitch)
             if len(turned) == 2 and all(len(one) == 3 for one in turned):
                 turned = tuple(map(off, turned))
-            return super()._spatial(name, kind, put(parent), put(child), off(axis), off(second), off(at), turned, pitch)
+            return super()._spatial(name, kind, tuple(map(put, bodies)), tuple(map(off, axes)), off(at), turned, pitch)
 
         def link(self, name, *, between=None, beside=None, **options) -> Link:
             between = between and tuple(map(off, between))

@@ -132,6 +132,9 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     yield "Scene.report", (scene.report, {"path": "scene.html"})
     yield "Scene.checked", (scene.checked, {"values": {"l": 0.5}})
     yield "Scene.timing", (scene.timing, {"t": SPAN})
+    yield "Scene.values", (scene.values, {"parameters": {"l": 0.5}})
+    yield "Scene.wants", (scene.wants, {"names": ["effort"]})
+    yield "Scene.giving", (scene.giving, {"elastic": True})
     yield "Deflection.at", (solution.deflection("arm").at, {"name": solution.deflection("arm").names[0], "u": 0.5})
     for name, given in {
         "at": {"xi": 0.5},

@@ -313,14 +313,17 @@ class Scene(Graphs):
         """The names of all outputs that can be wanted."""
         return outputs(self.mechanism)
 
+    @fitting
     def wants(self, names: Sequence[str] | None = None) -> Wanted:
         """Read names of outputs, its own wanted ones or others. Raises what :meth:`.Wanted.of` does."""
         return Wanted.of(self.mechanism, self.wanted if names is None else names)
 
+    @public
     def values(self, parameters: Mapping[str, float] | None = None) -> dict[str, float]:
         """Return the values of all parameters, the defaults but for those given: see :meth:`.Mechanism.values`."""
         return self.mechanism.values(parameters)
 
+    @fitting
     def giving(self, elastic: Elastic | None) -> Scene:
         """Return the scene with what is said of elasticity; None is what it says itself."""
         gives = self.elastic if elastic is None else giving(self.mechanism, elastic)
