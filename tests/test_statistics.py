@@ -4,6 +4,7 @@ import csv
 import math
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -170,6 +171,13 @@ def test_rows_have_a_place_of_their_own(here, capfd):
     assert main(["run", "slider_crank", "--no-figures", "--csv", "./slider_crank.h5"]) == 2
     assert "--csv slider_crank.h5: expected another place than the file's" in capfd.readouterr().err
     assert main(["run", "slider_crank", "--csv", "nowhere/rows.csv"]) == 2
+    assert not list(here.iterdir())
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_rows_that_cannot_be_written_leave_no_file(here, capfd):
+    assert main(["run", "slider_crank", "--no-figures", "--csv", "/dev/full"]) == 1
+    assert capfd.readouterr().err == "error: cannot write /dev/full: No space left on device\n"
     assert not list(here.iterdir())
 
 
