@@ -59,13 +59,14 @@ static void search_look(search_now* now, double step, const double* times, const
   }
 }
 
-/* What a curve's values beside a step are off by rounding: where third differences are no smaller than second ones. */
+/* What a curve's values beside a step are off by rounding: where third differences are no smaller than second ones, and change
+   their sign to and fro, as those of a steep flank do not. */
 static search_real search_noise(const search_now* now, const search_panel* panel, int curve, long long step) {
   const search_real* row = search_row(panel, curve);
   const search_peak* peak = now->peaks + now->quantity[curve];
-  search_real sorted[2][SEARCH_QUIET], x, median[2];
+  search_real sorted[2][SEARCH_QUIET], x, median[2], before = 0;
   long long first = step - SEARCH_QUIET/2 + 1;
-  int j, k, order, count;
+  int j, k, order, count, turns = 0;
   if (panel->n < SEARCH_QUIET) return 0;
   first = first < 0 ? 0 : first > panel->n - SEARCH_QUIET ? panel->n - SEARCH_QUIET : first;
   row += first;
@@ -73,13 +74,15 @@ static search_real search_noise(const search_now* now, const search_panel* panel
     count = SEARCH_QUIET - 2 - order;
     for (j = 0; j < count; ++j) {
       x = order ? row[j + 3] - 3*row[j + 2] + 3*row[j + 1] - row[j] : row[j + 2] - 2*row[j + 1] + row[j];
+      turns += order && j && ((x < 0 && before > 0) || (x > 0 && before < 0));
+      before = x;
       x = x < 0 ? -x : x;
       for (k = j; k > 0 && sorted[order][k - 1] > x; --k) sorted[order][k] = sorted[order][k - 1];
       sorted[order][k] = x;
     }
     median[order] = count % 2 ? sorted[order][count/2] : (sorted[order][count/2 - 1] + sorted[order][count/2])/2;
   }
-  if (!(median[1] >= median[0])) return 0;
+  if (turns < 2 || !(median[1] >= median[0])) return 0;
   if (!(median[1] <= SEARCH_NOISE*(peak->best + SEARCH_BESIDE*now->scale[now->curves->unit[now->quantity[curve]]]))) return 0;
   return 3*median[1];
 }

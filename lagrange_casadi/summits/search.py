@@ -352,13 +352,20 @@ class _Search:
         return np.asarray(same[:-3] & same[1:-2] & same[2:-1] & same[3:])
 
     def noise(self, curve: int, row: Array, step: int) -> float:
-        """What a curve's values beside a step are off by rounding: where third differences are no smaller than second ones."""
+        """What a curve's values beside a step are off by rounding.
+
+        That is where third differences are no smaller than second ones, and change their sign to and fro: those of a steep flank
+        do not.
+        """
         if row.size < QUIET:
             return 0.0
         first = min(max(step - QUIET // 2 + 1, 0), row.size - QUIET)
-        second, third = (float(np.median(np.abs(np.diff(row[first : first + QUIET], k)))) for k in (2, 3))
+        thirds = np.diff(row[first : first + QUIET], 3)
+        second, third = (float(np.median(np.abs(of))) for of in (np.diff(row[first : first + QUIET], 2), thirds))
+        turns = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
         q = self.quantity[curve]
-        return 3 * third if second <= third <= NOISE * (self.best[q] + BESIDE * self.scale[q]) else 0.0
+        noisy = turns >= 2 and second <= third <= NOISE * (self.best[q] + BESIDE * self.scale[q])
+        return 3 * third if noisy else 0.0
 
     def rounded(self, curve: int) -> bool:
         """Whether a curve is nothing but rounding: it zigzags at the instants, though between most of them nothing hides."""
