@@ -6,6 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
 from lagrange_casadi.cli.slope_lines import slope_lines
@@ -127,3 +128,8 @@ def test_nothing_ties_where_a_load_jumps():
     assert not gradient.tied.any()
     assert np.isfinite(gradient.slopes).all()
     assert math.isfinite(gradient["effort:O"]["r"])
+
+
+def test_of_nothing_there_are_no_peaks():
+    scene = slider_crank()
+    assert sensitivities(scene, evaluate(scene, backend="vm", certificate=False)).peaks([]) == []

@@ -257,7 +257,7 @@ class ContinuousSolution:
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
         if not sought or (solution.t.size == 1 and listed is None):
-            return list(sampled), np.array([nothing for _ in sampled])
+            return list(sampled), np.array([nothing for _ in sampled]).reshape(-1, TOPS, 4)
         self._refuse_isolated()
         turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
         signals = self.signals([self.quantity(name) for name in sought], turned)
