@@ -19,7 +19,7 @@ CASES = HERE.parent / "cases"
 
 project = "lagrange_casadi"
 author = "The lagrange_casadi developers"
-copyright = author  # noqa: A001 - Sphinx has this name
+project_copyright = author
 version = release = lagrange_casadi.__version__
 
 extensions = [

@@ -187,10 +187,10 @@ class EquationGraph(Graphs):
         return cls(name, row, Entries.loads(entries), values, slopes, next(names), next(names), wrenches)
 
     def _touch(self, names: tuple[str, str, str], row: list[float]) -> Touch:
-        centre, reach, *parts = (tuple(row[k : k + 3]) for k in range(0, 3 * _WRENCHES, 3))
+        centre, reach, *parts = ((row[k], row[k + 1], row[k + 2]) for k in range(0, 3 * _WRENCHES, 3))
         along, apart, braking = ((parts[k], parts[k + 1]) for k in (0, 2, 4))
-        slack, *loss = row[3 * _WRENCHES :]
-        return Touch(*names, centre, reach, along, apart, braking, slack, tuple(loss), self.turns)  # type: ignore[arg-type]
+        slack, arm, lean = row[3 * _WRENCHES :]
+        return Touch(*names, centre, reach, along, apart, braking, slack, (arm, lean), self.turns)
 
 
 @dataclass(frozen=True, eq=False)

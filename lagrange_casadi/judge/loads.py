@@ -35,9 +35,9 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
         acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
         gap = _apart(placed, given, acts)
         if np.max(gap) > digits.doubted * largest:
-            places = _turned(placed, law, load, given)
+            places = _turned(placed, law, load, given, places, rates)
             acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
-            gap = np.maximum(_apart(placed, given, acts) - _open(placed, law, load, places, digits), 0.0)
+            gap = np.maximum(_apart(placed, given, acts) - _open(placed, law, load, places, rates, acts, digits), 0.0)
         worst = np.maximum(worst, gap)
     for name, load in placed.declared.loads.items():
         value, holder = placed.reported.outputs.get(Output("friction", name, "along")), load.coordinate.partition(":")[0]
@@ -92,12 +92,11 @@ def _summed(numbers: Array, axes: Axes, *, turning: bool) -> Acts:
     return force, couple
 
 
-def _turned(placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts) -> Array:
+def _turned(placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts, places: Array, rates: Array) -> Array:
     """The places that a law sees, with the whole turns of angles that loops set: where instants are far apart, none are reported.
 
     They are those with which the law comes nearest to the load.
     """
-    places, rates, _ = stacked(placed, law)
     angles = [k for k, entry in enumerate(law.entries) if placed.turns(entry) and entry.part not in placed.declared.driven]
     t = placed.reported.t
 
@@ -121,11 +120,10 @@ def _turned(placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts) -> Arr
     return places
 
 
-def _open(placed: Placed, law: LoadLaw, load: LoadNumbers, places: Array, digits: Digits) -> Array:
-    """How far a load may be from its law for the rounding of what it sees: the change with each, added up."""
-    declared, off, (_, rates, _) = placed.declared, NEARBY * digits.rounding, stacked(placed, law)
+def _open(placed: Placed, law: LoadLaw, load: LoadNumbers, places: Array, rates: Array, acts: Acts, digits: Digits) -> Array:
+    """How far a load may be from its law, which ``acts`` so, for the rounding of what it sees: the change with each, added up."""
+    declared, off = placed.declared, NEARBY * digits.rounding
     t, (turned, fastest, _) = placed.reported.t, placed.rates
-    acts = _acting(placed, law, load, law.at(places, rates, t))
     found = np.zeros_like(t)
     for sign in (-off, off):
         seen = [law.at(places, rates, t + sign * np.max(np.abs(t)))]
