@@ -1,6 +1,5 @@
-"""The slider-crank of Nguyen, Petre and Stroe, with the motion of their eq.
-
-(22) and the figures of their section 3.
+"""The slider-crank of Nguyen, Petre and Stroe, with the motion of their eq. (22)
+and the figures of their section 3.
 """
 
 from math import pi

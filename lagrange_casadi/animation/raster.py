@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array
 from ..base.room import require
 from ..errors import LagrangeCasadiError, StoreError, one_line
 from ..shapes.pictures import one_at_a_time
@@ -214,7 +215,7 @@ def _artist(axes: Any, thing: Thing, unit: float, order: int) -> Any:
     )
 
 
-def _move(artist: Any, thing: Thing, points: Any) -> None:
+def _move(artist: Any, thing: Thing, points: Array) -> None:
     if isinstance(thing, Words):
         artist.set_position(points)
     elif isinstance(thing, Dot):

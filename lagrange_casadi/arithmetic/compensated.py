@@ -19,6 +19,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..base.vocabulary import Precision
 from .interpret import Arithmetic
 from .lookups import Lookup
@@ -35,7 +36,7 @@ _TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
 """2 pi as the sum of three doubles."""
 
 
-def closed(x: Any) -> Any:
+def closed(x: Expression) -> Expression:
     """A value that CasADi does not look into where it simplifies: under a sign of its own.
 
     Its patterns are of operations on operations, and none holds this one. So a value stays as it is
@@ -60,7 +61,7 @@ class Pair:
     whole: bool = False
 
     @property
-    def value(self) -> Any:
+    def value(self) -> Expression:
         """The one number that is nearest."""
         return self.high if self.low is None else closed(added(self.high, self.low))
 
@@ -234,7 +235,7 @@ class Pairs:
             rest = (rest - parts[-1]) + later
         return tuple(parts)
 
-    def _product(self, a: Any, b: Any) -> tuple[Any, Any]:
+    def _product(self, a: Expression, b: Expression) -> tuple[Expression, Expression]:
         """a b and its error (Dekker)."""
         product = self._times(a, b)
         (ah, al), (bh, bl) = self._split(a), self._split(b)
@@ -243,7 +244,7 @@ class Pairs:
             error = self._plus(error, self._times(half, other))
         return product, error
 
-    def _split(self, a: Any) -> tuple[Any, Any]:
+    def _split(self, a: ca.SX) -> tuple[ca.SX, ca.SX]:
         """The halves of a number's digits.
 
         A constant's are taken here: CasADi would fold them in doubles.
@@ -265,25 +266,25 @@ class Pairs:
             return lambda x: Pair(self._rounded(ca.SX.unary(code, self._value(x))))
         return lambda x, y: Pair(self._rounded(ca.SX.binary(code, self._value(x), self._value(y))))
 
-    def _plus(self, a: Any, b: Any) -> Any:
+    def _plus(self, a: ca.SX, b: Expression) -> Expression:
         return self._closed(added(a, b))
 
-    def _minus(self, a: Any, b: Any) -> Any:
+    def _minus(self, a: ca.SX, b: ca.SX) -> Expression:
         return self._closed(less(a, b))
 
-    def _times(self, a: Any, b: Any) -> Any:
+    def _times(self, a: Expression, b: Expression) -> Expression:
         return self._closed(product(a, b))
 
-    def _over(self, a: Any, b: Any) -> Any:
+    def _over(self, a: ca.SX, b: ca.SX) -> Expression:
         return self._closed(a / b)
 
-    def _negative(self, a: Any) -> Any:
+    def _negative(self, a: Expression) -> Expression:
         return self._closed(-a)
 
-    def _closed(self, x: Any) -> Any:
+    def _closed(self, x: Expression) -> Expression:
         return closed(self._rounded(x))
 
-    def _rounded(self, x: Any) -> Any:
+    def _rounded(self, x: Expression) -> Expression:
         """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants
         in doubles.
         """
@@ -292,20 +293,20 @@ class Pairs:
         with np.errstate(over="ignore"):
             return ca.SX(float(DTYPES[self.precision].type(float(x))))
 
-    def _value(self, x: Pair) -> Any:
+    def _value(self, x: Pair) -> Expression:
         return self._rounded(x.value)
 
-    def _sum(self, a: Any, b: Any) -> tuple[Any, Any]:
+    def _sum(self, a: Expression, b: Expression) -> tuple[Expression, Expression]:
         """a + b and its error (Knuth)."""
         total = self._plus(a, b)
         other = self._minus(total, a)
         return total, self._plus(self._minus(a, self._minus(total, other)), self._minus(b, other))
 
-    def _normal(self, high: Any, low: Any) -> Pair:
+    def _normal(self, high: ca.SX, low: ca.SX) -> Pair:
         total = self._plus(high, low)
         return Pair(total, self._minus(low, self._minus(total, high)))
 
-    def _signed(self, x: Pair, like: Any) -> Pair:
+    def _signed(self, x: Pair, like: ca.SX) -> Pair:
         sign = ca.copysign(ca.SX(1.0), like)
         return Pair(self._times(x.high, sign), None if x.low is None else self._times(x.low, sign))
 
@@ -319,11 +320,11 @@ class Pairs:
         return self._normal(high, _zero_unless(high == x.high, ca.floor(x.low)))
 
 
-def _choose(where: Any, x: Pair) -> Pair:
+def _choose(where: ca.SX, x: Pair) -> Pair:
     return Pair(_zero_unless(where, x.high), None if x.low is None else _zero_unless(where, x.low))
 
 
-def _zero_unless(where: Any, x: Any) -> Any:
+def _zero_unless(where: ca.SX, x: ca.SX) -> ca.SX:
     return ca.SX.binary(ca.OP_IF_ELSE_ZERO, where, x)
 
 

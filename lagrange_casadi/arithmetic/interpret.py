@@ -17,6 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Array, Expression, Operand
 from ..errors import DeclarationError
 from .lookups import Lookup, lookup
 from .scalars import applied
@@ -56,7 +57,7 @@ class Arithmetic:
 
 
 @functools.lru_cache(maxsize=64)
-def steps(function: Any) -> tuple[Step, ...]:
+def steps(function: ca.Function) -> tuple[Step, ...]:
     """The instructions of an SX function.
 
     Raises :class:`DeclarationError` for a function of another kind.
@@ -82,7 +83,7 @@ def steps(function: Any) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=64)
-def followable(function: Any) -> bool:
+def followable(function: ca.Function) -> bool:
     """Return whether a function is written in scalars, calls nothing but tables, and contains no
     operation that is unknown here.
     """
@@ -92,7 +93,9 @@ def followable(function: Any) -> bool:
 
 
 def replay(
-    function: Any, inputs: Sequence[Sequence[Any]], made: Callable[[int, Step, list[Any]], Any]
+    function: ca.Function,
+    inputs: Sequence[Sequence[Any]],
+    made: Callable[[int, Step, list[Any]], Any],
 ) -> list[list[Any]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
@@ -139,7 +142,7 @@ def interpret(
     return replay(function, inputs, made)
 
 
-def expressed(step: Step, operands: Sequence[Any]) -> Any:
+def expressed(step: Step, operands: Sequence[ca.SX]) -> ca.SX:
     """The expression of a step that is no call, but of a table, from
     the expressions that it reads.
     """
@@ -152,7 +155,7 @@ def expressed(step: Step, operands: Sequence[Any]) -> Any:
     )
 
 
-def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any]]]:
+def operations(function: ca.Function, inputs: Sequence[ca.SX]) -> list[tuple[int, list[ca.SX]]]:
     """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is
     applied to.
 
@@ -160,7 +163,7 @@ def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any
     """
     found: list[tuple[int, list[Any]]] = []
 
-    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+    def made(_k: int, step: Step, operands: list[ca.SX]) -> ca.SX:
         if step.looked_up is None and step.operation != ca.OP_CONST:
             found.append((step.operation, operands))
         elif step.looked_up is not None and step.looked_up.kind == "cell":
@@ -171,7 +174,7 @@ def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any
     return found
 
 
-def written_out(expression: Any) -> Any:
+def written_out(expression: ca.SX) -> Expression:
     """Return a scalar expression with the functions that it calls written out, but for tables and
     what has no expression.
 
@@ -185,7 +188,7 @@ def written_out(expression: Any) -> Any:
     return _written_out(function, symbols)[0]
 
 
-def _has_expression(function: Any) -> bool:
+def _has_expression(function: ca.Function) -> bool:
     return bool(function.is_a("SXFunction"))
 
 
@@ -234,7 +237,7 @@ def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda *values: np.asarray(function(*values)).astype(np.result_type(*values))
 
 
-def _remainder(x: Any, y: Any) -> Any:
+def _remainder(x: Array, y: float) -> Operand:
     """C's remainder, which is exact: every difference is of numbers within a factor of two."""
     left, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
     above = 2 * left > y

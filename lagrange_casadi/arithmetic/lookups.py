@@ -20,6 +20,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arrays import Array, Operand
+
 Kind = Literal["cell", "entry"]
 
 _PREFIX = "lagrange_casadi"
@@ -42,10 +44,10 @@ class Lookup:
 
     kind: Kind
     numbers: npt.NDArray[Any]
-    function: Any
+    function: ca.Function
     ends: bool = False
 
-    def at(self, x: Any) -> Any:
+    def at(self, x: Array) -> Operand:
         """Look real numbers ``x`` of any shape up; of complex ones the real part counts."""
         x = np.real(x)
         if self.kind == "cell":
@@ -62,14 +64,14 @@ class Lookup:
         return _function("entry", tuple(high.tolist())), rest
 
 
-def cell(breaks: Sequence[float], x: Any, *, ends: bool) -> Any:
+def cell(breaks: Sequence[float], x: ca.SX, *, ends: bool) -> ca.SX:
     """The number of the cell in which an expression lies, as a scalar expression; of three breaks
     or more.
     """
     return _function("cell", tuple(map(float, breaks)), ends)(x)
 
 
-def entries(numbers: Sequence[float], number: Any) -> Any:
+def entries(numbers: Sequence[float], number: ca.SX) -> ca.SX:
     """The entry of a table of finite numbers that an expression numbers; its derivative is zero.
 
     It is to 64 binary digits of the largest one.
@@ -84,7 +86,7 @@ def entries(numbers: Sequence[float], number: Any) -> Any:
     return ca.ceil(whole) * scale
 
 
-def is_entry(x: Any) -> bool:
+def is_entry(x: ca.SX) -> bool:
     """Return whether a scalar expression is a table's value for a cell, as a whole number."""
     if not x.is_output():
         return False
@@ -93,7 +95,7 @@ def is_entry(x: Any) -> bool:
 
 
 @functools.lru_cache(maxsize=256)
-def lookup(function: Any) -> Lookup | None:
+def lookup(function: ca.Function) -> Lookup | None:
     """Lookup of a function; None for any other function."""
     found = _NAME.fullmatch(function.name())
     if found is None or not function.is_a("MXFunction"):
@@ -111,7 +113,7 @@ def lookup(function: Any) -> Lookup | None:
 
 
 @functools.lru_cache(maxsize=256)
-def _function(kind: Kind, numbers: tuple[float, ...], ends: bool = False) -> Any:
+def _function(kind: Kind, numbers: tuple[float, ...], ends: bool = False) -> ca.Function:
     digest = hashlib.sha256(" ".join(number.hex() for number in numbers).encode()).hexdigest()[:16]
     x, table = ca.MX.sym("x"), ca.DM(numbers)
     found = ca.low(table, x, {"lookup_mode": "binary"}) if kind == "cell" else ca.MX(table)[x]

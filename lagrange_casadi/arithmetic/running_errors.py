@@ -20,7 +20,9 @@ _Pair = tuple[Any, Any]
 _KNOWN = numpy_arithmetic().operations
 
 
-def running_errors(function: Any, *columns: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def running_errors(
+    function: ca.Function, *columns: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
     """The errors (rows, m) of the one output of an SX function of columns (rows, m); zeros where it
     cannot be followed.
 

@@ -11,42 +11,44 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
+
 _SX, _binary = ca.SX, ca.SX.binary
 _ADD, _SUB, _MUL = ca.OP_ADD, ca.OP_SUB, ca.OP_MUL
 
 
-def added(a: Any, b: Any) -> Any:
+def added(a: Expression, b: Expression) -> Expression:
     """a + b."""
     return _binary(_ADD, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a + b
 
 
-def less(a: Any, b: Any) -> Any:
+def less(a: Expression, b: Expression) -> Expression:
     """a - b."""
     return _binary(_SUB, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a - b
 
 
-def product(a: Any, b: Any) -> Any:
+def product(a: Expression, b: Expression) -> Expression:
     """a b."""
     return _binary(_MUL, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a * b
 
 
-def products_added(a: Any, b: Any, c: Any, d: Any) -> Any:
+def products_added(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
     """a b + c d."""
     return added(product(a, b), product(c, d))
 
 
-def products_less(a: Any, b: Any, c: Any, d: Any) -> Any:
+def products_less(a: Expression, b: Expression, c: Expression, d: Expression) -> Expression:
     """a b - c d."""
     return less(product(a, b), product(c, d))
 
 
-def applied(operation: int, *operands: Any) -> Any:
+def applied(operation: int, *operands: Any) -> ca.SX:
     """An operation, by CasADi's ``OP_`` code, of one or two expressions."""
     return (
         ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)
     )
 
 
-def as_expression(value: Any) -> Any:
+def as_expression(value: Expression) -> ca.SX:
     """A number as an expression, an expression as it is."""
     return value if isinstance(value, _SX) else _SX(value)

@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ..errors import DeclarationError, NumberError, shown
+from .arrays import Operand
 from .numerals import real
 
 UNITS: dict[str, dict[str, float]] = {
@@ -145,7 +146,7 @@ def is_whole(value: object) -> TypeGuard[int]:
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
-def double(value: Any) -> float | None:
+def double(value: Operand) -> float | None:
     """Number of Python; None for anything else, such as truth values, texts, arrays, dates and
     symbols.
     """

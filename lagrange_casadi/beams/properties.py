@@ -10,6 +10,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Array, Operand
+
 POISSON = 0.3
 """Poisson's ratio in the coefficients of shear: from 0 to 0.5 they change by a twentieth."""
 
@@ -51,7 +53,7 @@ class Properties:
     centre_y: Any = 0.0
     centre_z: Any = 0.0
 
-    def rows(self, fibre: Fibre) -> tuple[tuple[Any, ...], ...]:
+    def rows(self, fibre: Fibre) -> tuple[tuple[Operand, ...], ...]:
         """Normal stress, and shear stresses along y and z, at a fibre by unit axial force, two
         shears, torsion and two bendings.
 
@@ -67,12 +69,12 @@ class Properties:
         return ((1.0 / self.area, 0.0, 0.0, 0.0, about_y, about_z), *sheared)
 
     @property
-    def wz(self) -> Any:
+    def wz(self) -> Operand:
         """The elastic modulus about z: iz over the largest distance of a fibre along y."""
         return self.iz / _farthest([fibre.y for fibre in self.fibres])
 
     @property
-    def wy(self) -> Any:
+    def wy(self) -> Operand:
         """The elastic modulus about y: iy over the largest distance of a fibre along z."""
         return self.iy / _farthest([fibre.z for fibre in self.fibres])
 
@@ -82,17 +84,17 @@ def symbolic(*values: Any) -> bool:
     return any(isinstance(value, (ca.SX, ca.MX)) for value in values)
 
 
-def larger(a: Any, b: Any) -> Any:
+def larger(a: Operand, b: Operand) -> Operand:
     """The larger of two, of numbers, arrays or expressions."""
     return ca.fmax(a, b) if symbolic(a, b) else np.maximum(a, b)
 
 
-def smaller(a: Any, b: Any) -> Any:
+def smaller(a: Operand, b: Operand) -> Operand:
     """The smaller of two."""
     return ca.fmin(a, b) if symbolic(a, b) else np.minimum(a, b)
 
 
-def chosen(a: Any, b: Any, first: Any, second: Any) -> Any:
+def chosen(a: Operand, b: float, first: Operand, second: float) -> Array:
     """``first`` where a is b or more, else ``second``."""
     return (
         ca.if_else(a >= b, first, second)
@@ -101,12 +103,12 @@ def chosen(a: Any, b: Any, first: Any, second: Any) -> Any:
     )
 
 
-def exponential(x: Any) -> Any:
+def exponential(x: Operand) -> Operand:
     """The exponential."""
     return ca.exp(x) if symbolic(x) else np.exp(x)
 
 
-def _farthest(places: list[Any]) -> Any:
+def _farthest(places: list[float]) -> Operand:
     sizes = [larger(place, -place) for place in places]
     found = sizes[0]
     for size in sizes[1:]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..arguments import Symbolic, public
+from ..base.arrays import Expression, Operand
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, check_kind
 from . import solid, walls
@@ -297,7 +298,7 @@ def course_of(what: str, shape: object) -> Course:
     return shape
 
 
-def between(first: Shape, last: Shape, share: Any) -> Shape:
+def between(first: Shape, last: Shape, share: Operand) -> Shape:
     """The shape at a ``share`` of the way from one to another, a number or an array."""
     if first is last:
         return first
@@ -332,11 +333,11 @@ _NAMES = {
 }
 
 
-def _corners(d: Mapping[str, Any]) -> list[tuple[Any, Any]]:
+def _corners(d: Mapping[str, Operand]) -> list[tuple[Operand, Operand]]:
     return [(d[f"y{k}"], d[f"z{k}"]) for k in range(1, len(d) // 2 + 1)]
 
 
-def _given(d: Mapping[str, Any], _space: bool) -> Properties:
+def _given(d: Mapping[str, float], _space: bool) -> Properties:
     fibres = [
         Fibre(f"corner {y_word} {z_word}", y, z)
         for y, y_word in ((d["top"], "+y"), (-d["bottom"], "-y"))
@@ -387,7 +388,7 @@ _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
 }
 
 
-def _demands(kind: str, d: dict[str, Any]) -> Iterator[Demand]:
+def _demands(kind: str, d: dict[str, Expression]) -> Iterator[Demand]:
     if kind == "polygon":
         yield solid.polygon_area(_corners(d)), "area, of corners counter-clockwise,"
         return

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.arrays import Operand
 from .properties import POISSON, Fibre, Properties, chosen, exponential, larger, smaller
 
 _FIFTH, _CATALAN = 1.0045237627951398, 0.9159655941772190
@@ -24,7 +25,7 @@ _FIFTH, _CATALAN = 1.0045237627951398, 0.9159655941772190
 _ODD = range(1, 25, 2)
 
 
-def rectangle(height: Any, width: Any) -> Properties:
+def rectangle(height: float, width: float) -> Properties:
     """A rectangle: nine fibres, at its corners, the middles of its sides and its centre."""
     area, torsion = height * width, rectangle_torsion(height, width)
     # The twist of a unit moment, 1/torsion, and the stress it makes in the middles of the long and
@@ -46,7 +47,7 @@ def rectangle(height: Any, width: Any) -> Properties:
     return Properties(area, iy, iz, tuple(fibres), torsion=torsion, shear_y=stiff, shear_z=stiff)
 
 
-def rectangle_torsion(a: Any, b: Any) -> Any:
+def rectangle_torsion(a: Operand, b: Operand) -> Operand:
     """Saint-Venant's constant of a rectangle [m^4]."""
     long, short = larger(a, b), smaller(a, b)
     waves = [exponential(-n * pi * long / short) for n in _ODD]
@@ -54,7 +55,7 @@ def rectangle_torsion(a: Any, b: Any) -> Any:
     return long * short**3 / 3 * (1.0 - 192 / pi**5 * (short / long) * (_FIFTH - rest))
 
 
-def _twisted(a: Any, b: Any) -> tuple[Any, Any]:
+def _twisted(a: float, b: float) -> tuple[float, float]:
     """The shear stress in the middle of a long and of a short side, over G times the twist per
     length [m].
     """
@@ -180,12 +181,14 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Properties:
     return Properties(area, iy, iz, tuple(fibres), iyz=iyz, shear_y=stiff, shear_z=stiff)
 
 
-def polygon_area(places: Sequence[tuple[Any, Any]]) -> Any:
+def polygon_area(places: Sequence[tuple[float, float]]) -> float:
     """Area of a polygon, positive if the corners go round counter-clockwise."""
     return _moments(list(zip(places, [*places[1:], places[0]], strict=True)))[0]
 
 
-def _moments(pairs: Sequence[tuple[tuple[Any, Any], tuple[Any, Any]]]) -> tuple[Any, Any, Any]:
+def _moments(
+    pairs: Sequence[tuple[tuple[float, float], tuple[float, float]]],
+) -> tuple[float, float, float]:
     """Area and first moments of a polygon by its sides."""
     crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
     first = [

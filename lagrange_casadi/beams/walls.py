@@ -12,13 +12,14 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
+from ..base.arrays import Operand
 from .properties import Fibre, Properties, smaller
 from .solid import rectangle_torsion
 
 _SIGNS = (1, -1)
 
 
-def i_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
+def i_section(height: Operand, width: Operand, web: Operand, flange: Operand) -> Properties:
     """An I: its web along y, two flanges of one width along z."""
     h, b, hw = height, width, height - 2 * flange
     area = 2 * b * flange + hw * web
@@ -197,7 +198,7 @@ def box(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     )
 
 
-def _corners(y: Any, z: Any) -> list[Fibre]:
+def _corners(y: Operand, z: Operand) -> list[Fibre]:
     return [
         Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * y, j * z)
         for i, j in itertools.product(_SIGNS, repeat=2)

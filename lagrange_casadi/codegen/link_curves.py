@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
+from ..base.arrays import Expression
 from ..base.tables import SPACE
 from ..summits.polynomials import interpolation
 
@@ -169,7 +170,9 @@ def _room(link: Along) -> int:
     )
 
 
-def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
+def matter_of(
+    link: Along, length: Expression, cells: Sequence[Sequence[Expression]]
+) -> list[Expression]:
     """Arguments of ``sections.c`` for a link, from its length [m] and its cells [kg], filled up to
     as many terms.
     """

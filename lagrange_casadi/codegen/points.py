@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
@@ -15,6 +15,9 @@ from .calls import Call
 from .compiler import Compiler, broken, loaded, packed
 from .emit import START, WIDE
 from .printer import print_functions
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 POINTS = Call(
     "lagrange_casadi_points",
@@ -104,7 +107,7 @@ class PointsLibrary:
         )
 
 
-def emit_points(function: Any) -> str:
+def emit_points(function: ca.Function) -> str:
     """The C of a function at points; the same text in every process."""
     sizes = {f"n{name[0]}": function.size1_in(name) for name in ("z", "p")}
     sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nz"]}
@@ -117,7 +120,9 @@ def emit_points(function: Any) -> str:
     return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes)
 
 
-def load_points(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> PointsLibrary:
+def load_points(
+    function: ca.Function, compiler: Compiler, extra: Sequence[str] = ()
+) -> PointsLibrary:
     """Build that, or take it from the cache, and load it. Raises :class:`CompilerError`."""
     source = packed(emit_points(function), compiler)
     library = loaded(source, compiler, tuple(extra))

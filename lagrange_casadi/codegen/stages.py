@@ -26,7 +26,7 @@ from ..arithmetic.compensated import Pair, Pairs
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
 from ..arithmetic.scalars import applied
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression, Operand
 from ..base.symbolic import Graphs, symbolic
 from ..base.vocabulary import Precision
 from ..equations.program import Program
@@ -48,9 +48,9 @@ class Stages(Graphs):
     drive of single precision takes t and p as pairs, all the rests after all the values.
     """
 
-    drive: Any
+    drive: ca.Function
     loops: Any | None
-    instant: Any
+    instant: ca.Function
     precision: Precision = "double"
     compensated: bool = False
 
@@ -109,10 +109,10 @@ class Controlled(Graphs):
     what rounding them to single left. So do t and d; parameters do not.
     """
 
-    law: Any
-    count: Any
+    law: ca.Function
+    count: ca.Function
     loops: Any | None
-    instant: Any
+    instant: ca.Function
     precision: Precision
 
 
@@ -151,7 +151,7 @@ def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
     return stages.loops, stages.instant, stages.precision
 
 
-def _rest(pair: Pair) -> Any:
+def _rest(pair: Pair) -> ca.SX:
     return ca.SX(0) if pair.low is None else pair.low
 
 
@@ -203,14 +203,14 @@ def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) 
     angles = [0.0]
     known = numpy_arithmetic().operations
 
-    def measured(code: int, *values: Any) -> Any:
+    def measured(code: int, *values: Any) -> Operand:
         if np.ndim(values[0]) and code in _PHASES | REMAINDERS | {ca.OP_FLOOR}:
             angles.append(
                 float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0)
             )
         return known[code](*values)
 
-    def counted(code: int, *values: Any) -> Any:
+    def counted(code: int, *values: Any) -> Operand | None:
         if any(value is None for value in values):
             return None
         found = measured(code, *values)
@@ -284,23 +284,23 @@ class _Counting:
             return _Value(ca.SX.unary(code, self._symbol("angle", pairs[0], self.pairs.reduced)))
         return _Value(self._plain(code, values))
 
-    def settled(self, value: _Value) -> Any:
+    def settled(self, value: _Value) -> Expression:
         """A value as one number."""
         if value.plain is not None:
             return value.plain
         assert value.pair is not None
         return self._symbol("counted", value.pair, lambda pair: pair)
 
-    def handed(self) -> tuple[Any, Any]:
+    def handed(self) -> tuple[ca.SX, ca.SX]:
         """The symbols that were made, and what the drive hands on for them."""
         return _column([symbol for symbol, *_ in self.symbols.values()]), _column(
             [pair.value for _, pair, _ in self.symbols.values()]
         )
 
-    def _plain(self, code: int, values: Sequence[_Value]) -> Any:
+    def _plain(self, code: int, values: Sequence[_Value]) -> ca.SX:
         return applied(code, *map(self.settled, values))
 
-    def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Any:
+    def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Expression:
         """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest
         others take their place.
         """
@@ -373,9 +373,9 @@ def _counted(
     return handed, loops, instant
 
 
-def _split(symbols: Any) -> list[Any]:
+def _split(symbols: ca.SX) -> list[ca.SX]:
     return ca.vertsplit(symbols) if symbols.numel() else []
 
 
-def _column(parts: list[Any]) -> Any:
+def _column(parts: list[ca.SX]) -> ca.SX:
     return ca.densify(ca.vertcat(ca.SX(0, 1), *parts))

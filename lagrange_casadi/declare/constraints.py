@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import casadi as ca
 
 from ..errors import DeclarationError
@@ -12,7 +10,7 @@ from .ownership import Ownership
 from .parts import Constraint, Row
 
 
-def constraint(own: Ownership, name: str, phi: Any) -> Constraint:
+def constraint(own: Ownership, name: str, phi: ca.SX) -> Constraint:
     """A constraint Phi = 0 of a mechanism. Raises :class:`DeclarationError` for what is none."""
     m = own.mechanism
     own.free("constraint", name, m.constraints)
@@ -29,7 +27,7 @@ def constraint(own: Ownership, name: str, phi: Any) -> Constraint:
     return Constraint(name, phi)
 
 
-def row(own: Ownership, name: str, expression: Any, replaces: Joint) -> Row:
+def row(own: Ownership, name: str, expression: ca.SX, replaces: Joint) -> Row:
     """A non-holonomic row of a mechanism. Raises :class:`DeclarationError` for what is none."""
     m = own.mechanism
     own.free("non-holonomic constraint", name, m.rows)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arguments import fitting, public
 from ..arithmetic import lookups
+from ..base.arrays import Expression
 from ..base.units import number
 from ..errors import DeclarationError, NumberError, shown
 from .splines import Cell, smoothed, through
@@ -86,7 +87,7 @@ class Curve:
     cells: tuple[Cell, ...]
 
     @fitting
-    def __call__(self, x: Any) -> Any:
+    def __call__(self, x: Expression) -> Expression:
         """The curve of an expression, as a ``casadi.SX`` expression; of numbers, as numbers.
 
         Raises :class:`DeclarationError` for what is neither a scalar expression nor numbers, or for
@@ -125,7 +126,7 @@ class Curve:
             f" {self.low:g} to {self.high:g}>"
         )
 
-    def _expression(self, x: Any) -> Any:
+    def _expression(self, x: Expression) -> Expression:
         within = x - self.origin if self.origin else x
         if self.periodic:
             # A remainder is exact, and goes on with whole turns where angles count them.

@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from ..arguments import Symbolic, public
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression, Operand
 from ..errors import DeclarationError
 from .curves import Curve, rows
 
@@ -34,7 +34,7 @@ class Density:
     """
 
     breaks: tuple[float, ...]
-    cells: tuple[tuple[Any, ...], ...]
+    cells: tuple[tuple[Expression, ...], ...]
     per_length: bool
     slices: Slices | None = None
 
@@ -48,7 +48,7 @@ class Density:
         """The breaks at which it may jump, as far as numbers tell."""
         return _jumps(self.breaks, self.cells)
 
-    def ends(self, length: Any) -> tuple[Any, Any, Any]:
+    def ends(self, length: Expression) -> tuple[Expression, Expression, Expression]:
         """Masses at the base and at the tip, and a moment of inertia, that together move just as
         the link does.
 
@@ -71,7 +71,7 @@ class Density:
         scale = length if self.per_length else 1.0
         return found[0] * scale, found[1] * scale, found[2] * scale * length * length
 
-    def tails(self, u: Any, length: Any) -> tuple[Any, Any, Any]:
+    def tails(self, u: Expression, length: Expression) -> tuple[Expression, Expression, Expression]:
         """T0, T1 and T2 at a ratio ``u`` from 0 to 1, a number or an expression in parameters."""
         larger = (lambda x: ca.fmax(x, 0.0)) if isinstance(u, ca.SX) else (lambda x: max(x, 0.0))
         scale = length if self.per_length else 1.0
@@ -273,7 +273,7 @@ def along(curve: Curve) -> Density:
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
 
 
-def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Any]]) -> tuple[float, ...]:
+def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Expression]]) -> tuple[float, ...]:
     """The inner breaks at which neighbouring cells have two values, or values that numbers do not
     tell.
     """
@@ -292,7 +292,7 @@ def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Any]]) -> tuple[flo
 _SAME = 1e-9
 
 
-def _differences(high: Any, low: Any, count: int) -> list[Any]:
+def _differences(high: Operand, low: Operand, count: int) -> list[Operand]:
     """high^n - low^n for n = 1, 2, ..., by products of their difference, so that close ones do not
     cancel; of numbers or arrays.
     """
@@ -303,7 +303,7 @@ def _differences(high: Any, low: Any, count: int) -> list[Any]:
     return found
 
 
-def _shift(cell: Sequence[Any], u: Any) -> list[Any]:
+def _shift(cell: Sequence[Expression], u: Operand) -> list[Operand]:
     """Coefficients of p(u + x) as a polynomial in x."""
     return [
         sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j)

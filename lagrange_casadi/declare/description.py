@@ -12,6 +12,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Kinds
 from ..base.symbolic import Graphs, symbolic
 from ..beams.beam import told_beam
@@ -233,7 +234,7 @@ class Template(Graphs):
     """
 
     content: Description
-    numbers: Any
+    numbers: ca.Function
 
     def filled(self, values: Mapping[str, float]) -> Description:
         """The description for values of all parameters."""
@@ -288,7 +289,7 @@ class Template(Graphs):
         return cls.over(content, asked, mechanism.symbols)
 
     @classmethod
-    def over(cls, content: Description, asked: Sequence[Any], symbols: Any) -> Template:
+    def over(cls, content: Description, asked: Sequence[Expression], symbols: ca.SX) -> Template:
         """The template whose numbers are expressions of the parameters' symbols, in the order of
         its places.
         """
@@ -359,7 +360,9 @@ def motions_of(description: Description) -> dict[str, str]:
 
 
 @symbolic
-def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Description, list[Any]]:
+def numbered(
+    mechanism: Mechanism, driven: Collection[str] = ()
+) -> tuple[Description, list[Expression]]:
     """A description with places in the place of its numbers, and the expressions of the parameters
     that stand at these places.
 
@@ -368,7 +371,7 @@ def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Descri
     """
     asked: list[Any] = []
 
-    def number(expression: Any) -> Place:
+    def number(expression: Expression) -> Place:
         asked.append(expression)
         return Place(len(asked) - 1)
 

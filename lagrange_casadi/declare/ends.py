@@ -18,7 +18,7 @@ BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 
 
 @symbolic
-def beyond_ends(expression: Any) -> list[Any]:
+def beyond_ends(expression: ca.SX) -> list[Any]:
     """Distance of each argument of an expression's curves beyond the curve's ends, for curves that
     have ends.
 

@@ -10,6 +10,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import written_out
+from ..base.arrays import Operand
 from ..base.units import number, typed
 from ..errors import DeclarationError, NumberError, one_line, shown
 from .parts import Expression
@@ -36,7 +37,7 @@ def check_line(what: str, text: object) -> None:
 
 
 def scalar(
-    what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: str = "1"
+    what: str, value: Any, symbols: Iterable[ca.SX], allowed: str, unit: str = "1"
 ) -> Expression:
     """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text,
     as ``"100 mm"``.
@@ -107,12 +108,12 @@ def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expres
     return found, next(iter(units), "")
 
 
-def symbols_of(value: Any) -> list[Any]:
+def symbols_of(value: Expression) -> list[ca.SX]:
     """The symbols of an expression; of anything else none."""
     return list(ca.symvar(value)) if isinstance(value, ca.SX) else []
 
 
-def sound(condition: Any) -> Any:
+def sound(condition: ca.SX) -> ca.SX:
     """One where a condition on parameters holds; elsewhere not a number, which every backend and
     compiler has as a root.
     """
@@ -133,7 +134,7 @@ def told(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}"
 
 
-def bound(what: str, value: Any, unit: str) -> float:
+def bound(what: str, value: Operand, unit: str) -> float:
     """A number in a unit, not always finite. Raises :class:`DeclarationError` for anything else."""
     try:
         return number(value, unit, finite=False)
@@ -160,13 +161,13 @@ def unit_vector(
     return x / norm, y / norm
 
 
-def plain(value: Any) -> Expression:
+def plain(value: Expression) -> Expression:
     """A number where an expression is one."""
     return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
 
 
 def value_of(
-    expression: Expression, symbols: Mapping[str, Any], values: Mapping[str, float]
+    expression: Expression, symbols: Mapping[str, ca.SX], values: Mapping[str, float]
 ) -> float:
     """The value of an expression in parameters.
 

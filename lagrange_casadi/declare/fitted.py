@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from ..arguments import NotNegative, Positive, Symbolic, public
+from ..base.arrays import Operand
 from ..beams.material import Material
 from ..errors import DeclarationError, shown
 
@@ -115,11 +116,11 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     mechanism.fitted[joint.name] = found
 
 
-def _numbers(part: Fitted) -> list[tuple[str, Any]]:
+def _numbers(part: Fitted) -> list[tuple[str, float | None]]:
     return [(entry.name, getattr(part, entry.name)) for entry in fields(part)]
 
 
-def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
+def _checked(mechanism: Mechanism, what: str, name: str, value: float | None) -> Operand:
     if name == "material":
         if not isinstance(value, Material):
             raise DeclarationError(
@@ -143,7 +144,7 @@ def positive(name: str, number: float) -> bool:
 def told_parts(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> dict[str, Any]:
     """Parts in plain numbers, as a file keeps them."""
 
-    def plain(name: str, value: Any) -> Any:
+    def plain(name: str, value: Operand) -> Any:
         return asdict(value) if name == "material" else None if value is None else number(value)
 
     return {

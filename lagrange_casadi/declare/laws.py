@@ -11,6 +11,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.symbolic import Graphs, symbolic
 from .motion import Motion, ends_function, motion_function
 
@@ -34,7 +35,7 @@ class Laws(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
+    def of(cls, laws: Mapping[str, Motion], parameters: Expression) -> Laws:
         """The function of laws by the joint's name."""
         spans, knots = (
             tuple(law.span for law in laws.values()),
@@ -73,7 +74,7 @@ class Laws(Graphs):
         return Laws(tuple(joints), motion, spans, knots, beyond)
 
     @symbolic
-    def jerk(self) -> Any:
+    def jerk(self) -> ca.Function:
         """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a knot, that
         after it.
         """

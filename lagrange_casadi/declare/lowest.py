@@ -10,6 +10,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
+
 _HALVINGS = 30
 """Number of halvings of an interval with a zero of a derivative.
 
@@ -17,7 +19,7 @@ At a turning point a miss by 1e-9 changes a value by its square.
 """
 
 
-def lowest(cell: Sequence[Any], start: float, stop: float) -> tuple[Any, Any]:
+def lowest(cell: Sequence[Expression], start: float, stop: float) -> tuple[ca.SX, ca.SX]:
     """Place u from ``start`` to ``stop`` at which sum_j cell[j] u^j is lowest, and its value there,
     for finite coefficients.
     """
@@ -30,7 +32,7 @@ def lowest(cell: Sequence[Any], start: float, stop: float) -> tuple[Any, Any]:
     return place, value
 
 
-def _zeros(cell: Sequence[Any], start: float, stop: float) -> list[Any]:
+def _zeros(cell: Sequence[Expression], start: float, stop: float) -> list[ca.SX]:
     """Places from ``start`` to ``stop``, in order: all zeros of a polynomial there, and for those
     that it lacks any others.
 
@@ -60,17 +62,17 @@ def _zero(cell: Sequence[Any], low: Any, high: Any) -> Any:
     return high
 
 
-def _at(cell: Sequence[Any], u: Any) -> Any:
+def _at(cell: Sequence[Expression], u: ca.SX) -> ca.SX:
     value = ca.SX(cell[-1])
     for coefficient in reversed(cell[:-1]):
         value = value * u + coefficient
     return value
 
 
-def _derivative(cell: Sequence[Any]) -> list[Any]:
+def _derivative(cell: Sequence[Expression]) -> list[Expression]:
     return [j * coefficient for j, coefficient in enumerate(cell)][1:]
 
 
-def _within(x: Any, start: float, stop: float) -> Any:
+def _within(x: ca.SX, start: float, stop: float) -> ca.SX:
     """A place in the interval; its start for what is not a number."""
     return ca.if_else(x > start, ca.if_else(x < stop, x, stop), start)

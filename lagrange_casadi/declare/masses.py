@@ -14,7 +14,7 @@ ALL = "all"
 """Name of the mass of everything that moves."""
 
 
-def masses_of(mechanism: Mechanism) -> Any:
+def masses_of(mechanism: Mechanism) -> ca.SX:
     """The masses of its links and point masses, in their order, and last that of all of them [kg],
     in a column.
     """
@@ -22,7 +22,7 @@ def masses_of(mechanism: Mechanism) -> Any:
     return ca.densify(ca.vertcat(*masses, sum(masses)))
 
 
-def _mass(body: Any) -> Any:
+def _mass(body: Any) -> ca.SX:
     if isinstance(body, PointMass):
         return ca.SX(body.mass)
     assert isinstance(body, Link)

@@ -87,7 +87,7 @@ def _checked(density: Density, what: str, checked: Callable[..., Expression]) ->
     return Density(density.breaks, cells, density.per_length)
 
 
-def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:
+def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[float]]:
     """J_ij, the integral of r_i r_j dm, of moments of inertia I [kg m^2] in three rows: tr(I) / 2 -
     I.
     """

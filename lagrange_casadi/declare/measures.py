@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass, field
-from typing import Any
 
 import casadi as ca
 
@@ -23,9 +22,9 @@ class Measure:
     """
 
     of: Joint | Point | Link
-    places: tuple[Any, ...]
-    rates: tuple[Any, ...]
-    accelerations: tuple[Any, ...]
+    places: tuple[ca.SX, ...]
+    rates: tuple[ca.SX, ...]
+    accelerations: tuple[ca.SX, ...]
     axis: Axis | None = None
 
 
@@ -59,26 +58,26 @@ class Measures:
         )
 
     @property
-    def places(self) -> Any:
+    def places(self) -> ca.SX:
         """All symbols of coordinates, places and directions, one column."""
         return ca.vertcat(
             ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.places)
         )
 
     @property
-    def rates(self) -> Any:
+    def rates(self) -> ca.SX:
         """All symbols of rates and velocities, one column."""
         return ca.vertcat(
             ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.rates)
         )
 
     @property
-    def accelerations(self) -> list[Any]:
+    def accelerations(self) -> list[ca.SX]:
         """All symbols of accelerations, one by one."""
         return [symbol for measure in self.asked for symbol in measure.accelerations]
 
     @property
-    def symbols(self) -> list[Any]:
+    def symbols(self) -> list[ca.SX]:
         """All symbols of places and rates, one by one."""
         return [symbol for measure in self.asked for symbol in (*measure.places, *measure.rates)]
 

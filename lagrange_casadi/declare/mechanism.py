@@ -274,9 +274,9 @@ class Mechanism(Graphs):
         return self.constraints.setdefault(name, constraint(self.own, name, phi))
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq.
+        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3).
 
-        3): an expression that is linear in rates and velocities.
+        It is an expression that is linear in rates and velocities.
 
         ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint;
         the constraint's multiplier then takes the place of the joint's effort.

@@ -98,7 +98,7 @@ class Transmission:
     slack: Expression = 0.0
     fits: tuple[Fit, ...] = ()
     loss: Loss | None = None
-    symbol: Any = field(default_factory=lambda: ca.SX.sym("apart"))
+    symbol: Expression = field(default_factory=lambda: ca.SX.sym("apart"))
 
     @property
     def parts(self) -> tuple[tuple[float, Expression], ...]:

@@ -48,7 +48,7 @@ class Motion:
     unit: str = ""
 
     @fitting
-    def __call__(self, x: Any) -> Any:
+    def __call__(self, x: Expression) -> Expression:
         """The law of an expression in place of the time, as of a joint's coordinate, for
         constraints and loads.
         """
@@ -80,7 +80,7 @@ def polynomial(*coefficients: Expression) -> Motion:
         raise DeclarationError("polynomial: expected at least one coefficient")
     told, unit = coordinates("polynomial", ((c, _per(k)) for k, c in enumerate(coefficients)))
 
-    def graph(t: Any) -> Any:
+    def graph(t: ca.SX) -> ca.SX:
         value = ca.SX(told[-1])
         for coefficient in reversed(told[:-1]):
             value = value * t + coefficient
@@ -146,7 +146,7 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     t, v = rows("motion samples", at.numbers, to.numbers, 4)
     through = curve(t, v)
 
-    def graph(time: Any) -> Any:
+    def graph(time: ca.SX) -> Expression:
         value = through(time if at.scale is None else (time - at.shift) / at.scale)
         return value if to.scale is None else to.shift + to.scale * value
 
@@ -156,7 +156,7 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
 
 
 @symbolic
-def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
+def motion_function(laws: Mapping[str, Motion], parameters: ca.SX) -> ca.Function:
     """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the
     joint's name.
 
@@ -175,7 +175,7 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     )
 
 
-def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth]:
+def smooth_laws(laws: Mapping[str, Motion], parameters: ca.SX) -> dict[str, Smooth]:
     """Check that laws have no kinks in time, by the joint's name.
 
     Moves go on smoothly by their making, wherever parameters allow them.
@@ -190,7 +190,7 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth
 
 
 @symbolic
-def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
+def ends_function(laws: Mapping[str, Motion], parameters: ca.SX) -> Any | None:
     """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their
     ends, a row a joint of the laws.
 
@@ -214,7 +214,7 @@ def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     )
 
 
-def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
+def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
     try:
         value = law.graph(t)
     except Exception as error:
@@ -230,7 +230,7 @@ def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")
 
 
-def _derivatives(value: Any, t: Any) -> list[Any]:
+def _derivatives(value: ca.SX, t: ca.SX) -> list[ca.SX]:
     value = ca.SX(value)
     rate = ca.densify(ca.jacobian(value, t))
     return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]

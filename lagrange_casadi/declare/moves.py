@@ -11,6 +11,7 @@ from typing import Any
 import casadi as ca
 
 from ..arguments import Symbolic, public
+from ..base.arrays import Operand
 from ..base.numerals import readable
 from ..base.symbolic import symbolic
 from ..errors import DeclarationError
@@ -158,8 +159,8 @@ def moves(
 def _graph(
     stretches: tuple[Stretch, ...],
     last: Expression,
-    period: Any,
-    advance: Any,
+    period: float | None,
+    advance: float,
     demands: tuple[Demand, ...],
 ) -> Any:
     """The law as a function of its argument: which stretch it is in is told once, and each law is
@@ -171,7 +172,7 @@ def _graph(
         value = ca.SX(demand.value)
         held = held * sound(value > 0.0 if demand.positive else value >= 0.0)
 
-    def graph(t: Any) -> Any:
+    def graph(t: ca.SX) -> Expression:
         x, gone = t, 0.0
         begin = stretches[0].start
         if period is not None:
@@ -222,7 +223,7 @@ def _bends(stretch: Stretch) -> bool:
     return not (isinstance(bend, int | float) and bend == 0.0)
 
 
-def _chosen(rows: Any) -> Any:
+def _chosen(rows: Any) -> Expression:
     """Select the value whose condition holds, of which at most one does; zero if none does."""
     total: Any = 0.0
     for here, value in rows:
@@ -253,7 +254,7 @@ class _Demanded:
     each: list[Demand]
     units: set[str]
 
-    def coordinate(self, what: str, value: Any, per: str = "") -> Any:
+    def coordinate(self, what: str, value: Expression, per: str = "") -> Expression:
         (found,), unit = coordinates(what, [(value, per)])
         self.units.update([unit] if unit else [])
         return plain(found)
@@ -295,7 +296,7 @@ def _named(name: str) -> str:
     return name
 
 
-def _expression(what: str, value: Any, unit: str = "1") -> Any:
+def _expression(what: str, value: Operand, unit: str = "1") -> Operand:
     return plain(scalar(what, value, symbols_of(value), "parameter", unit))
 
 
@@ -376,7 +377,7 @@ def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
 
 
 def _filled(
-    parts: list[Move | Dwell], times: list[Any], period: Any, demands: _Demanded
+    parts: list[Move | Dwell], times: list[float | None], period: float | None, demands: _Demanded
 ) -> list[Expression]:
     """The times of all parts, the dwell that has none filled up."""
     known = [

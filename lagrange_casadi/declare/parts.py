@@ -18,6 +18,9 @@ from ..geometry.vectors import Vector as Vector
 from .density import Density
 
 if TYPE_CHECKING:
+    import casadi as ca
+
+if TYPE_CHECKING:
     from .joints import Axis, Joint
     from .meshes import Transmission
 
@@ -33,21 +36,21 @@ class Parameter:
     unit: str
     low: float
     high: float
-    symbol: Any
+    symbol: ca.SX
 
     def check(self, value: float) -> None:
         """Raise :class:`ParameterError` unless ``value`` is finite and within ``[low, high]``."""
         if found := self.fault(value):
             raise ParameterError(found)
 
-    def number(self, value: Any) -> float:
+    def number(self, value: float) -> float:
         """A value as a number, see :func:`.units.number`.
 
         Raises :class:`.NumberError` for what is none; it may be infinite.
         """
         return number(value, self.unit, finite=False)
 
-    def fault(self, value: Any) -> str:
+    def fault(self, value: float) -> str:
         """Describe the fault of a value; empty if it is a finite number within ``[low, high]``."""
         try:
             found = self.number(value)
@@ -314,7 +317,7 @@ class Friction:
     name: str
     joint: Joint
     axis: Axis
-    symbol: Any
+    symbol: ca.SX
     mu: Expression
     radius: Expression | None = None
     length: Expression | None = None
@@ -351,9 +354,9 @@ Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Phi(q, t) = 0 in joint coordinates (paper eq.
+    """Phi(q, t) = 0 in joint coordinates (paper eq. 5).
 
-    5). Of a ``transmission`` the multiplier acts where its parts touch.
+    The multiplier of a ``transmission`` acts where its parts touch.
 
     Phi is differentiated twice, so its slopes must not jump; of a cam those of its ``lift`` alone,
     at the cam's angle: off the contact those of phi may jump as the normal turns, on it that counts
@@ -361,18 +364,17 @@ class Constraint:
     """
 
     name: str
-    phi: Any
+    phi: ca.SX
     transmission: Transmission | None = None
-    lift: Any = None
+    lift: ca.SX | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq.
-
-    3), in place of one drive's effort.
+    """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq. 3),
+    in place of one drive's effort.
     """
 
     name: str
-    expression: Any
+    expression: ca.SX
     replaces: str

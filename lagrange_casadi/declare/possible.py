@@ -51,11 +51,11 @@ class Demand:
 class Demands:
     """All demands of a mechanism's parts, in the order in which they are told."""
 
-    symbols: Any
+    symbols: ca.SX
     each: tuple[Demand, ...]
 
     @symbolic_property
-    def function(self) -> Any:
+    def function(self) -> ca.Function:
         """``possible(p)``: the value of each demand."""
         values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))
         return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
@@ -87,10 +87,10 @@ class Margins(Graphs):
     that must not be negative.
     """
 
-    function: Any
+    function: ca.Function
     positive: int
 
-    def in_order(self, symbols: Any) -> tuple[list[Any], list[Any]]:
+    def in_order(self, symbols: ca.SX) -> tuple[list[ca.SX], list[ca.SX]]:
         """Return expressions in the parameters: those that must be positive, and the others."""
         values = ca.vertsplit(self.function(symbols)) if self.function.numel_out(0) else []
         return values[: self.positive], values[self.positive :]

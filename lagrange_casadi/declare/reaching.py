@@ -12,7 +12,6 @@ from __future__ import annotations
 import enum
 import functools
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -84,7 +83,7 @@ class Reaching:
     parameters.
     """
 
-    law: Any
+    law: ca.Function
     steady: bool
     varies: bool
     span: tuple[float, float]
@@ -119,12 +118,12 @@ class Reaching:
         return found[0].reshape(t.shape), found[1].reshape(t.shape), found[2].reshape(t.shape)
 
     @functools.cached_property
-    def _few(self) -> Any:
+    def _few(self) -> ca.Function:
         # Of so many times at once: the law called with as many columns takes ten times as long.
         return self.law.map(_FEW)
 
     @functools.cached_property
-    def _many(self) -> Any:
+    def _many(self) -> ca.Function:
         return self.law.map(_MANY)
 
     def way(self, start: Array, stop: Array, p: Array, around: Array, *, looks: int) -> Way:

@@ -30,7 +30,7 @@ class Asked:
     """
 
     output: Output
-    symbol: Any
+    symbol: ca.SX
     ratio: Expression | None = None
 
     @property
@@ -48,7 +48,7 @@ class OwnOutput:
     """
 
     name: str
-    expression: Any
+    expression: ca.SX
     unit: str
     made_of: tuple[Asked, ...]
 
@@ -124,7 +124,7 @@ class Results:
             return measures.joint(*own.moving_joint(of)).accelerations[0]
         return measures.point(own.point("acceleration", of)).accelerations
 
-    def effort(self, joint: Joint) -> Any:
+    def effort(self, joint: Joint) -> ca.SX:
         """The symbol of the effort of the drive at a joint, along its coordinate."""
         return self._ask(Output("effort", self.mechanism.own.moving_joint(joint)[1].coordinate))
 
@@ -150,7 +150,7 @@ class Results:
             self._ask(Output("friction", name, "loss")),
         )
 
-    def multiplier(self, of: Constraint | Row) -> Any:
+    def multiplier(self, of: Constraint | Row) -> ca.SX:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
         own = (*self.mechanism.constraints.values(), *self.mechanism.rows.values())
         return self._ask(Output("multiplier", self._own("constraint", of, own)))
@@ -191,7 +191,7 @@ class Results:
         ]
         return SpatialForce(*found) if space else Force(*found)
 
-    def _ask(self, output: Output, ratio: Expression | None = None) -> Any:
+    def _ask(self, output: Output, ratio: Expression | None = None) -> ca.SX:
         asked = self.mechanism.asked
         for one in asked:
             same = one.ratio is ratio or (

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..arguments import public
+from ..base.arrays import Operand
 from ..errors import DeclarationError, shown
 from .density import Density
 from .matter import second_moments
@@ -111,7 +112,7 @@ _Pair = tuple[Point, Point]
 
 def _matter(
     mechanism: Mechanism, body: Any
-) -> tuple[list[tuple[Any, Point]], list[tuple[Any, _Pair, _Pair]]]:
+) -> tuple[list[tuple[Expression, Point]], list[tuple[Operand, _Pair, _Pair]]]:
     """Points with mass that stand for a body, and second moments with the pairs of points that are
     their axes.
     """
@@ -139,11 +140,11 @@ def _matter(
     ]
 
 
-def _spatial(mechanism: Mechanism, point: Point) -> tuple[list[Any], list[Any]]:
+def _spatial(mechanism: Mechanism, point: Point) -> tuple[list[Expression], list[Expression]]:
     """Place and acceleration of a point, three components each."""
     pad = [0.0] * (3 - len(mechanism.measures.components))
     return [*mechanism.place(point), *pad], [*mechanism.results.acceleration(point), *pad]
 
 
-def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+def _cross(a: Sequence[Expression], b: Sequence[Expression]) -> list[Expression]:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

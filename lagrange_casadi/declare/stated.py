@@ -13,7 +13,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.symbolic import Graphs, symbolic
 from .mechanism import Mechanism
 from .meshes import Mesh, Transmission, Wrench
@@ -88,10 +88,10 @@ class Entries(Graphs):
     """
 
     each: tuple[tuple[EntryKind, str], ...]
-    points: Any
+    points: ca.Function
 
     @classmethod
-    def of(cls, found: Sequence[_Measured], p: Any) -> Entries:
+    def of(cls, found: Sequence[_Measured], p: Expression) -> Entries:
         """Make it from symbols."""
         points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*one.point) for one in found))
         return cls(
@@ -131,11 +131,11 @@ class EquationGraph(Graphs):
     name: str
     row: bool
     entries: Entries
-    values: Any
-    slopes: Any
+    values: ca.Function
+    slopes: ca.Function
     meshes: tuple[tuple[str, str, str], ...]
     turns: tuple[tuple[int, str], ...]
-    wrenches: Any
+    wrenches: ca.Function
 
     @classmethod
     def of(cls, mechanism: Mechanism, told: Constraint | Row) -> EquationGraph:
@@ -162,7 +162,7 @@ class EquationGraph(Graphs):
         cls,
         mechanism: Mechanism,
         name: str,
-        expression: Any,
+        expression: ca.SX,
         found: Sequence[_Measured],
         row: bool,
         transmission: Transmission | None,
@@ -285,7 +285,7 @@ class LoadGraph(Graphs):
     kind: LoadKind
     turning: bool
     entries: Entries
-    values: Any
+    values: ca.Function
 
     @classmethod
     def of(cls, mechanism: Mechanism, load: Force | Torque | Spring | LineLoad) -> LoadGraph:
@@ -387,7 +387,7 @@ class Stated:
         )
 
 
-def _seen(mechanism: Mechanism, expression: Any) -> list[_Measured]:
+def _seen(mechanism: Mechanism, expression: ca.SX) -> list[_Measured]:
     """Measured symbols in an expression."""
     return [
         one
@@ -427,14 +427,14 @@ def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
     return _Measured("x" if what == "x" else "y", point.body.name, point.place)
 
 
-def _columns(found: Iterable[_Measured]) -> tuple[Any, Any]:
+def _columns(found: Iterable[_Measured]) -> tuple[ca.SX, ca.SX]:
     places, rates = (
         zip(*((one.place, one.rate) for one in found), strict=True) if found else ((), ())
     )
     return ca.vertcat(ca.SX(0, 1), *places), ca.vertcat(ca.SX(0, 1), *rates)
 
 
-def _told(load: Force | Torque | Spring | LineLoad) -> tuple[LoadKind, Sequence[Any]]:
+def _told(load: Force | Torque | Spring | LineLoad) -> tuple[LoadKind, Sequence[Expression]]:
     """The kind of a load, and its numbers."""
     if isinstance(load, Spring):
         return "spring", (load.stiffness, load.length, load.damping)
@@ -446,7 +446,7 @@ def _told(load: Force | Torque | Spring | LineLoad) -> tuple[LoadKind, Sequence[
     return ("force" if isinstance(load, Force) else "torque"), load.components
 
 
-def _numbers(transmission: Transmission, mesh: Mesh) -> Any:
+def _numbers(transmission: Transmission, mesh: Mesh) -> ca.SX:
     """The numbers of a mesh as one column, for :meth:`EquationGraph._touch`."""
     wrenches = (wrench or Wrench() for wrench in (mesh.along, mesh.apart, mesh.braking))
     vectors = [

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.running_errors import running_errors
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from .clearance import bound
 from .limits_beside import Side
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 _HALVINGS = 64
 """Number of times that a step is halved."""
@@ -79,16 +82,16 @@ class Steps:
             *(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS)
         )
 
-    def some(self, which: Any) -> Steps:
+    def some(self, which: Operand) -> Steps:
         """Some of the steps."""
         which = np.asarray(which) if len(which) else np.zeros(0, np.intp)
         return Steps(*(getattr(self, name)[..., which] for name in _STEPS))
 
-    def to(self, low: Any, high: Any) -> Steps:
+    def to(self, low: Operand, high: Operand) -> Steps:
         """Other shares of the steps."""
         return replace(self, low=low + 0.0 * self.low, high=high + 0.0 * self.high)
 
-    def at(self, share: Any) -> Array:
+    def at(self, share: Operand) -> Array:
         """The places at shares of the steps, not beyond the path."""
         return np.asarray(self.x + np.clip(share, self.least, self.most) * self.way)
 
@@ -115,7 +118,7 @@ class Steps:
 _STEPS = tuple(entry.name for entry in fields(Steps))
 
 
-def called(function: Any, *columns: Array) -> Array:
+def called(function: ca.Function, *columns: Array) -> Array:
     """The rows (rows, m) of a function of columns."""
     if not columns[0].shape[1]:
         return np.zeros((function.size1_out(0), 0))
@@ -126,7 +129,7 @@ def called(function: Any, *columns: Array) -> Array:
     return np.ascontiguousarray(found[0].T)
 
 
-def sides_of(function: Any, steps: Steps, middle: Any) -> tuple[Side, Side]:
+def sides_of(function: ca.Function, steps: Steps, middle: Array) -> tuple[Side, Side]:
     """Values of a function of places, fixed symbols and paths at ever smaller distances before and
     after a share of each step.
     """

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..base.brief import Brief
 from ..base.tables import ANGLE, LENGTH
 from ..base.units import number
@@ -130,7 +130,7 @@ class Timing:
                 )
         return found
 
-    def ends(self, symbols: Any) -> tuple[Any, Any]:
+    def ends(self, symbols: Expression) -> tuple[Operand, Expression]:
         """Start and stop as expressions of the parameters' symbols."""
         start, stop = (
             _function(bound)(symbols) if isinstance(bound, str) else bound
@@ -138,7 +138,7 @@ class Timing:
         )
         return start, stop
 
-    def words(self, symbols: Any) -> list[Any]:
+    def words(self, symbols: ca.SX) -> list[Any]:
         """Form for JSON: start, stop, count, and for a joint its name and around; expressions as
         text that distinguishes them.
         """
@@ -195,7 +195,7 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
             f"{self.joint} = {self.drawn(value):.5g} {'deg' if self.unit == ANGLE else self.unit}"
         )
 
-    def drawn(self, values: Any) -> Any:
+    def drawn(self, values: Operand) -> Operand:
         """Coordinates as figures and lines show them: angles in degrees."""
         return np.degrees(values) if self.unit == ANGLE else values
 
@@ -323,7 +323,7 @@ def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[
     return start, stop, count
 
 
-def _bound(name: str, bound: Any, unit: str) -> Any:
+def _bound(name: str, bound: Any, unit: str) -> Operand:
     """A bound of a coordinate, a text as a number.
 
     Raises :class:`DeclarationError` for a text of another unit, and for an angle beyond two turns
@@ -351,11 +351,11 @@ def _rising(even: Any) -> Any:
         return even
 
 
-def _symbols(mechanism: Mechanism) -> list[Any]:
+def _symbols(mechanism: Mechanism) -> list[ca.SX]:
     return [parameter.symbol for parameter in mechanism.parameters.values()]
 
 
-def _written(mechanism: Mechanism, expression: Any) -> str:
+def _written(mechanism: Mechanism, expression: ca.SX) -> str:
     return str(
         ca.Function(
             "bound", [mechanism.symbols], [ca.densify(expression)], ["p"], ["bound"], {"cse": True}
@@ -364,7 +364,7 @@ def _written(mechanism: Mechanism, expression: Any) -> str:
 
 
 @functools.lru_cache(maxsize=64)
-def _function(written: str) -> Any:
+def _function(written: str) -> ca.Function:
     return ca.Function.deserialize(written)
 
 
@@ -376,7 +376,7 @@ def _values(bound: Bound, p: Array) -> Array:
     return np.asarray(_function(bound)(p.T).full(), float).ravel()
 
 
-def _text(written: str, symbols: Any) -> str:
+def _text(written: str, symbols: ca.SX) -> str:
     return f"{_function(written)(symbols)} #{hashlib.sha256(written.encode()).hexdigest()[:8]}"
 
 

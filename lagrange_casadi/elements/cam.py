@@ -18,6 +18,7 @@ from typing import Any, cast
 import casadi as ca
 
 from ..arguments import Count, Elastic, public
+from ..base.arrays import Operand
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
@@ -178,7 +179,7 @@ class Layout:
     side: int
 
     @property
-    def away(self) -> tuple[Any, Any]:
+    def away(self) -> tuple[Expression, Operand]:
         """Vector from the cam's centre to the place on the ground at which the follower is
         guided.
         """
@@ -188,7 +189,7 @@ class Layout:
         )
 
     @property
-    def arm(self) -> tuple[Any, Any]:
+    def arm(self) -> tuple[Operand, Operand]:
         """Vector from the point at which the follower is guided to the one that touches, in the
         follower's axes.
         """
@@ -247,7 +248,7 @@ def layout_of(
     )
 
 
-def _positive(what: str, radius: Any) -> Any:
+def _positive(what: str, radius: Expression) -> Expression:
     """A radius; none that parameters make zero or less.
 
     Raises :class:`.DeclarationError` for a number of no radius.
@@ -259,24 +260,30 @@ def _positive(what: str, radius: Any) -> Any:
     return radius
 
 
-def _turned(vector: tuple[Any, Any], angle: Any) -> tuple[Any, Any]:
+def _turned(
+    vector: tuple[Expression, Expression], angle: Expression
+) -> tuple[Expression, Expression]:
     c, s = direction(angle)
     return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
 
 
-def _sum(a: tuple[Any, Any], b: tuple[Any, Any], by: Any = 1.0) -> tuple[Any, Any]:
+def _sum(
+    a: tuple[Expression, Expression], b: tuple[Expression, Expression], by: Expression = 1.0
+) -> tuple[Expression, Expression]:
     return a[0] + by * b[0], a[1] + by * b[1]
 
 
-def _dot(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+def _dot(a: tuple[Expression, Expression], b: tuple[Expression, Expression]) -> Expression:
     return a[0] * b[0] + a[1] * b[1]
 
 
-def _cross(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+def _cross(a: tuple[Expression, Expression], b: tuple[Expression, Expression]) -> Expression:
     return a[0] * b[1] - a[1] * b[0]
 
 
-def _pitch_normal(x: Any, place: tuple[Any, Any]) -> tuple[Any, Any]:
+def _pitch_normal(
+    x: Expression, place: tuple[Expression, Expression]
+) -> tuple[Expression, Expression]:
     """The normal outward of the curve that a point makes on the cam."""
     # At right angles to how the point moves on the cam.
     outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x)
@@ -284,7 +291,7 @@ def _pitch_normal(x: Any, place: tuple[Any, Any]) -> tuple[Any, Any]:
     return outward[0] / size, outward[1] / size
 
 
-def _translating(what: str, x: Any, rise: Any, layout: Layout) -> Design:
+def _translating(what: str, x: Expression, rise: Expression, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     seat = _sum(layout.away, _turned(layout.arm, layout.follower.angle))
@@ -356,7 +363,7 @@ def _swung(
 
 
 def _contact(
-    mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Any
+    mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Expression
 ) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     centre = mechanism.place(cam.child)
@@ -373,13 +380,13 @@ def _contact(
     )
 
 
-def _at(design: Design, angle: Any) -> Design:
+def _at(design: Design, angle: Expression) -> Design:
     """A design at an expression of the cam's angle."""
 
-    def put(value: Any) -> Any:
+    def put(value: Expression) -> Expression:
         return ca.substitute(value, design.angle, angle) if isinstance(value, ca.SX) else value
 
-    def both(pair: tuple[Any, Any]) -> tuple[Any, Any]:
+    def both(pair: tuple[Expression, Expression]) -> tuple[Expression, Expression]:
         return put(pair[0]), put(pair[1])
 
     turned = None if design.turned is None else both(design.turned)
@@ -389,7 +396,7 @@ def _at(design: Design, angle: Any) -> Design:
     return Design(angle, place, normal, put(design.moment), contact, way, turned, design.roller)
 
 
-def curvature(design: Design) -> Any:
+def curvature(design: Design) -> Expression:
     """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is
     straight.
     """
@@ -398,7 +405,7 @@ def curvature(design: Design) -> Any:
     return progress(design) / ca.jacobian(lean, x)
 
 
-def progress(design: Design) -> Any:
+def progress(design: Design) -> Expression:
     """Speed of the contact along the cam by its angle [m], counter-clockwise round it: undercut if
     it is not negative.
     """

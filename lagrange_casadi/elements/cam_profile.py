@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,9 @@ from ..arguments import public
 from ..base.arrays import Array
 from ..base.publish import check_writable, writing
 from ..errors import DeclarationError, LagrangeCasadiError, shown
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 _LEAST, _MOST = 16, 1 << 20
 _SAME = 1e-9
@@ -119,7 +122,7 @@ def turn_in(name: str, count: int) -> Array:
     return np.asarray(np.arange(count + 1) * (math.tau / count), float)
 
 
-def profile_of(name: str, function: Any, p: Sequence[float], count: int) -> CamProfile:
+def profile_of(name: str, function: ca.Function, p: Sequence[float], count: int) -> CamProfile:
     """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure
     angle, radius, progress.
     """

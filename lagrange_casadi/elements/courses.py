@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 
@@ -42,7 +41,7 @@ class Course:
     shifted: tuple[Expression, ...] = ()
     seen: Rotation = _AS_IT_IS
 
-    def way(self, mechanism: Mechanism) -> Any:
+    def way(self, mechanism: Mechanism) -> ca.SX:
         """The angle about its axis, or the way along it, as an expression of coordinates."""
         return sum((sign * mechanism.coordinate(joint) for sign, joint in self.turns), ca.SX(0))
 

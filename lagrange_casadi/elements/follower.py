@@ -21,7 +21,7 @@ from ..errors import DeclarationError
 _LOOKED_AT = 37
 
 
-def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: Any) -> Any:
+def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: ca.SX) -> ca.SX:
     """The lift as an expression of the symbol ``angle``.
 
     Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no
@@ -68,8 +68,13 @@ def stiffness_of(what: str, elastic: tuple[float, float]) -> float:
 
 
 def largest_pressure(
-    what: str, mechanism: Mechanism, force: Any, curvature: Any, width: Expression, stiffness: float
-) -> Any:
+    what: str,
+    mechanism: Mechanism,
+    force: ca.SX,
+    curvature: ca.SX,
+    width: Expression,
+    stiffness: float,
+) -> Expression:
     """The largest pressure [Pa] of two bodies, by force [N], width [m], the sum of their curvatures
     [1/m], and stiffness [Pa].
 

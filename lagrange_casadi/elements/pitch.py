@@ -281,9 +281,9 @@ def root(value: Any) -> Any:
     return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)
 
 
-def _tan(angle: Any) -> Any:
+def _tan(angle: float) -> float:
     return ca.tan(angle) if isinstance(angle, ca.SX) else math.tan(angle)
 
 
-def _cos(angle: Any) -> Any:
+def _cos(angle: float) -> float:
     return ca.cos(angle) if isinstance(angle, ca.SX) else math.cos(angle)

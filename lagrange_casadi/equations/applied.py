@@ -56,7 +56,7 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
 
 
 def held_by(
-    resting: Grown, name: str, expression: Any, of: LoopEquations | RowGraph
+    resting: Grown, name: str, expression: ca.SX, of: LoopEquations | RowGraph
 ) -> Iterator[Applied]:
     """Action of a multiplier on bodies, by the terms of its equation: a joint's coordinate, a
     place, a direction.

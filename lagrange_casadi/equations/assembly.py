@@ -15,6 +15,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.corners import smooth_constraint
 from ..declare.density import Density
 from ..declare.joints import Axis, Joint
@@ -186,7 +187,7 @@ def _refuse_unmeasured(
 
 
 def _loop_equations(
-    name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any
+    name: str, joint: Joint | None, gap: ca.SX, rate: ca.SX, acceleration: ca.SX
 ) -> LoopEquations:
     return LoopEquations(
         name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel())
@@ -217,7 +218,7 @@ def kinetic_energy(
     space: bool,
     spun: bool,
     slid: bool,
-) -> Any:
+) -> Expression:
     """The kinetic energy of a body that moves with a frame.
 
     Where a body of a plane is ``spun``, its velocities are split into that of its joint and that
@@ -240,7 +241,9 @@ def kinetic_energy(
     )
 
 
-def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool) -> Any:
+def _rigid(
+    matter: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool
+) -> Expression:
     """A rigid body, or a point mass."""
     if not isinstance(matter, RigidMass):
         return (
@@ -273,13 +276,13 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
 
 
 def _slender(
-    points: list[tuple[Any, Vector]],
-    inertia: Any,
+    points: list[tuple[float, Vector]],
+    inertia: Expression,
     frame: Frame,
     velocities: Velocities,
     *,
     slid: bool,
-) -> Any:
+) -> Expression:
     """A slender link, by the velocity of one of its points and of its axis: of the joint that holds
     it, or of its base.
     """
@@ -312,13 +315,13 @@ def _direction(frame: Frame, axis: Vector) -> tuple[Vector, Vector]:
 
 
 def _flat(
-    points: list[tuple[Any, Vector]],
-    inertia: Any,
+    points: list[tuple[Expression, Vector]],
+    inertia: Expression,
     frame: Frame,
     velocities: Velocities,
     *,
     spun: bool,
-) -> Any:
+) -> Expression:
     """A body of a plane: masses at points, and what is left of its inertia."""
     if not spun:
         energy = sum(

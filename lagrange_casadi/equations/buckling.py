@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Numeric, Positive, public
+from ..base.arrays import Array, Operand
 from ..beams.beam import SLIGHT
 from ..beams.properties import chosen, larger, smaller, symbolic
 from .stress import CrossSections
@@ -49,7 +50,7 @@ class Column:
     yielding: tuple[Any, Any]
 
     @classmethod
-    def of(cls, cross: CrossSections, length: Any, effective: tuple[float, float]) -> Column:
+    def of(cls, cross: CrossSections, length: Operand, effective: tuple[float, float]) -> Column:
         """A link of a length as a column.
 
         Raises :class:`.DeclarationError` where its material lacks elasticity or yield strength.
@@ -57,7 +58,7 @@ class Column:
         elasticity, strength = cross.beam.material.needs("buckling", "elasticity", "yield_strength")
         thinnest = cross.thinnest
 
-        def column(k: int) -> tuple[Any, ...]:
+        def column(k: int) -> tuple[Operand, ...]:
             own, second = effective[k] * length, thinnest.second[k]
             euler = math.pi**2 * elasticity * second / own**2
             slenderness = own * (thinnest.area / second) ** 0.5
@@ -71,7 +72,7 @@ class Column:
         return cls(*zip(column(0), column(1), strict=True))
 
 
-def used(column: Column, compression: Any, moments: Sequence[Any]) -> Any:
+def used(column: Column, compression: Array, moments: Sequence[Array]) -> Array:
     """Utilisation of a column by compression and moments, about z and in space about y: one over
     the factor of safety.
 
@@ -95,12 +96,12 @@ def used(column: Column, compression: Any, moments: Sequence[Any]) -> Any:
     return chosen(share, SLIGHT, found, 0.0)
 
 
-def _critical(euler: Any, crushing: Any) -> Any:
+def _critical(euler: Operand, crushing: Operand) -> Operand:
     """The critical load of Euler's load and the one at which all of the cross-section yields."""
     return chosen(crushing / 2, euler, euler, crushing * (1.0 - crushing / (4.0 * euler)))
 
 
-def _alone(a: Any, c: Any, b: Any) -> Any:
+def _alone(a: Array, c: Array, b: Array) -> Operand:
     """The larger u of a/u + b/(u - c) = 1."""
     total = a + b + c
     return (total + larger(total * total - 4.0 * a * c, 0.0) ** 0.5) / 2

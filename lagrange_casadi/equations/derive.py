@@ -14,6 +14,7 @@ import casadi as ca
 
 from ..arguments import Outputs, public
 from ..base import cache
+from ..base.arrays import Expression
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import Table, table_of
@@ -232,7 +233,7 @@ class _Borne:
     frictions: Mapping[str, Any]
 
     @classmethod
-    def of(cls, moving: Moving, columns: Mapping[Column, Any]) -> _Borne:
+    def of(cls, moving: Moving, columns: Mapping[Column, Expression]) -> _Borne:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
         want, links, coordinates = (
             moving.want,
@@ -329,7 +330,7 @@ def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
             raise DeclarationError(unaimed(bar.link.name))
 
 
-def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict[Column, Any]:
+def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, ca.SX]) -> dict[Column, Any]:
     """Stresses, utilisation and deflections of the links of which they are wanted."""
     found: dict[Column, Any] = {}
     for name in want.stressed:
@@ -360,8 +361,8 @@ def _felt_alone(key: Column, asked: Wanted) -> bool:
 
 
 def own_outputs(
-    body: Multibody, solved: Kinematics, found: Mapping[Column, Any]
-) -> dict[Column, Any]:
+    body: Multibody, solved: Kinematics, found: Mapping[Column, ca.SX]
+) -> dict[Column, ca.SX]:
     """The user's outputs as expressions of an instant, where ``found`` are the columns that they
     may be made of.
     """
@@ -385,8 +386,8 @@ def own_outputs(
 
 
 def _value(
-    links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table
-) -> Any:
+    links: Mapping[str, Link], asked: Asked, found: Mapping[Column, ca.SX], table: Table
+) -> Expression:
     if asked.output.group == "section":
         link = links[asked.output.part]
         assert isinstance(link.mass, Density)

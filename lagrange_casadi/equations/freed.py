@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from .balls import axes_of, turn
 from .iteration import place_roughly
 from .multibody import Coordinate, Multibody, column
@@ -56,7 +56,7 @@ class Freed:
         cls,
         multibody: Multibody,
         told: Mapping[Coordinate, float],
-        inputs: Sequence[Any],
+        inputs: Sequence[Expression],
         values: Sequence[Any],
         by: Sequence[Any],
     ) -> Freed:

@@ -25,6 +25,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression, Operand
 from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
 from .multibody import column
@@ -51,7 +52,7 @@ class Solved:
     lost: Mapping[str, Any]
 
 
-def solve(found: Sequence[Rubbing], open_: Any, signs: Mapping[str, Any] | None = None) -> Solved:
+def solve(found: Sequence[Rubbing], open_: ca.SX, signs: Mapping[str, Any] | None = None) -> Solved:
     """The forces of frictions, along their coordinates, from what presses on them, which is linear
     in the symbols of all.
 
@@ -104,7 +105,7 @@ class _Pressed:
     free: list[Any]
     slopes: list[list[Any]]
 
-    def at(self, values: Sequence[Any]) -> list[Any]:
+    def at(self, values: Sequence[ca.SX | None]) -> list[ca.SX]:
         """R for values of all frictions, None where they count as zero."""
         return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
 
@@ -115,7 +116,7 @@ class _Pressed:
         most = self.contact.arm if lean is None else self.contact.arm + ca.fabs(lean)
         return None if not column_ else most * self.contact.size(column_)
 
-    def push(self, pressing: Sequence[Any], sigma: Any) -> Any:
+    def push(self, pressing: Sequence[ca.SX], sigma: Expression) -> Expression:
         """The couple or force of a unit of mu where so much presses."""
         size, lean = self.contact.arm * self.contact.size(pressing), self.contact.lean
         return size if lean is None else size + sigma * (lean * pressing[0])
@@ -177,7 +178,7 @@ class _Law:
         sigma, rest, still = _way(one, sign, lever)
         return cls(friction.name, pressed, mu, sigma, steady, rest, still)
 
-    def pushed(self, values: Sequence[Any]) -> Any:
+    def pushed(self, values: Sequence[ca.SX | None]) -> Expression:
         """The force for values of all frictions."""
         dry = -self.sigma * (
             self.mu
@@ -211,7 +212,7 @@ class _Law:
         return not self.still and any(part.seen(k) is not None for part in self.pressed)
 
 
-def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
+def _way(one: Rubbing, sign: Any, lever: Operand = 1.0) -> tuple[Expression, Expression, bool]:
     """The sign of what slides, or its share of where it slides along two coordinates; whether it
     rests; and whether it always does, and has no ``sign`` given for that.
     """
@@ -258,7 +259,7 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
 
 
 def _solve_block(
-    laws: Sequence[_Law], block: Sequence[int], values: list[Any]
+    laws: Sequence[_Law], block: Sequence[int], values: list[Expression]
 ) -> dict[Column, Any]:
     """Put the values of frictions that depend on each other into ``values``; and the checks of
     them.
@@ -372,7 +373,7 @@ def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
     return [list(block) for block in sorted(found, key=lambda block: (found[block], block))]
 
 
-def needed(forces: Any, found: Mapping[str, Rubbing], wanted: Collection[str]) -> list[str]:
+def needed(forces: ca.SX, found: Mapping[str, Rubbing], wanted: Collection[str]) -> list[str]:
     """The frictions on which forces depend, or which are ``wanted``, and those on which these
     depend.
     """
@@ -395,7 +396,7 @@ def needed(forces: Any, found: Mapping[str, Rubbing], wanted: Collection[str]) -
         names = more
 
 
-def _sum(row: Sequence[Any], values: Sequence[Any], start: Any) -> Any:
+def _sum(row: Sequence[Any], values: Sequence[Expression], start: Expression) -> Expression:
     """A row of A times values, and R0."""
     total = None
     for slope, value in zip(row, values, strict=True):
@@ -404,6 +405,6 @@ def _sum(row: Sequence[Any], values: Sequence[Any], start: Any) -> Any:
     return start if total is None else start + total
 
 
-def _entry(matrix: Any, row: int, k: int) -> Any:
+def _entry(matrix: Expression, row: int, k: int) -> Any:
     entry = matrix[row, k]
     return None if not entry.nnz() or entry.is_zero() else entry

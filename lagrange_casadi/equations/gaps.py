@@ -4,12 +4,12 @@ is large.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.symbolic import symbolic
 from ..declare.mechanism import Mechanism
 from .joints import held_directions, off
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .blocks import Block, Equation
 
 
-def left(multibody: Multibody, block: Block, length: Any) -> Any:
+def left(multibody: Multibody, block: Block, length: ca.SX) -> ca.SX:
     """Residual of a block's equations in one number [m]: distances as they are, others over their
     slopes, times a ``length``.
     """
@@ -34,7 +34,7 @@ def left(multibody: Multibody, block: Block, length: Any) -> Any:
     return total
 
 
-def misfit(multibody: Multibody, block: Block) -> Any:
+def misfit(multibody: Multibody, block: Block) -> Expression:
     """The largest gap of a block, over the length of all links; and a direction is missed by a half
     turn, which has no sine.
     """
@@ -45,7 +45,7 @@ def misfit(multibody: Multibody, block: Block) -> Any:
     return found
 
 
-def reach(mechanism: Mechanism) -> Any:
+def reach(mechanism: Mechanism) -> ca.SX:
     """All links end to end [m], or one metre where there is none,
     as an expression in parameters.
     """
@@ -57,7 +57,7 @@ def reach(mechanism: Mechanism) -> Any:
 
 
 @symbolic
-def extent(mechanism: Mechanism) -> Any:
+def extent(mechanism: Mechanism) -> ca.SX:
     """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is
     small or large beside it.
     """
@@ -77,14 +77,14 @@ def units(loop: LoopEquations, size: float) -> Array:
     return np.array([size] * (loop.gap.numel() - held) + [1.0] * held)
 
 
-def _turned(multibody: Multibody, equation: Equation) -> Any:
+def _turned(multibody: Multibody, equation: Equation) -> Expression:
     """One less the cosine of what a direction is off."""
     joint = equation.loop.joint
     assert joint is not None
     return off(joint, *(multibody.frames[body.name] for body in joint.bodies))
 
 
-def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:
+def _slope(multibody: Multibody, equation: Equation, length: ca.SX) -> ca.SX:
     """Change of an equation with all coordinates: angles by a radian or their own size, slides by a
     length or theirs.
     """

@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
@@ -73,7 +74,7 @@ class Grown:
                 frame = frame.displaced(translation, turning)
         self.frames[branch.far.body.name] = frame
 
-    def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[Any, Any, Any]:
+    def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[ca.SX, ca.SX, ca.SX]:
         """Place a bar between its ends, with the mobilities of the named joints, and return the
         equation of its length.
         """
@@ -81,19 +82,19 @@ class Grown:
         self.frames[bar.link.name], gap = bar_frame(bar, self.frames, self.mobilities)
         return gap
 
-    def counted(self, expression: Any) -> Any:
+    def counted(self, expression: ca.SX) -> ca.SX:
         """An expression of what the user measures in the tree's own variables, angles counted by
         turns.
         """
         return self._measured(expression, turns=True)
 
-    def at_state(self, expression: Any) -> Any:
+    def at_state(self, expression: Expression) -> ca.SX:
         """Expression with rates; angles that are not driven are symbols of their own, for
         :mod:`.turns`.
         """
         return self._measured(expression, turns=False)
 
-    def _measured(self, expression: Any, *, turns: bool) -> Any:
+    def _measured(self, expression: Expression, *, turns: bool) -> ca.SX:
         symbols: list[Any] = []
         values: list[Any] = []
         for measure in self.mechanism.measures.asked:
@@ -127,7 +128,7 @@ class Grown:
                 ]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
 
-    def _seen(self, of: Joint | Link, axis: Axis | None = None) -> Any:
+    def _seen(self, of: Joint | Link, axis: Axis | None = None) -> Expression:
         """The symbol of an angle."""
         name = of.name if axis is None else axis.coordinate
         if name not in self.turned:

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..errors import DeclarationError
 
 _POINTS, _TRIALS = 3, 1000
@@ -35,11 +35,11 @@ class Course:
     drift: Any
 
     @property
-    def coordinate_rates(self) -> Any:
+    def coordinate_rates(self) -> Expression:
         """The total time derivative of the coordinates p."""
         return self.tangent @ self.rates + self.drift
 
-    def derivative(self, graphs: Any) -> Any:
+    def derivative(self, graphs: ca.SX) -> ca.SX:
         """The total time derivative of graphs over coordinates, rates and time."""
         state = ca.vertcat(self.coordinates, self.rates, self.time)
         change = ca.vertcat(
@@ -48,7 +48,9 @@ class Course:
         return ca.jtimes(graphs, state, change)
 
 
-def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) -> list[int]:
+def no_rates(
+    graphs: Expression, course: Course, mobilities: Expression, mobility_rates: Expression
+) -> list[int]:
     """The numbers of those ``graphs``, over coordinates, rates and time, that are no rates of
     places: found at random points.
 
@@ -158,7 +160,7 @@ def _circles(course: Course) -> list[tuple[int, int]]:
     return found
 
 
-def _others(graphs: Any, known: Any) -> Any:
+def _others(graphs: ca.SX, known: ca.SX) -> ca.SX:
     """The symbols of graphs that are not among those that are known, one column."""
     own = {symbol.element_hash() for symbol in _split(known)}
     return ca.vertcat(
@@ -166,5 +168,5 @@ def _others(graphs: Any, known: Any) -> Any:
     )
 
 
-def _split(symbols: Any) -> list[Any]:
+def _split(symbols: ca.SX) -> list[ca.SX]:
     return ca.vertsplit(symbols) if symbols.numel() else []

@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from .balls import Ball, axes_of, quaternion_of, turn
 from .linear import LinearSystem
 from .multibody import Coordinate, Multibody, column
@@ -73,11 +74,11 @@ class Iterated:
         return symbols
 
     @property
-    def symbols(self) -> Any:
+    def symbols(self) -> Expression:
         """All symbols, one column."""
         return column(self.parts)
 
-    def placed(self, expression: Any) -> Any:
+    def placed(self, expression: ca.SX) -> ca.SX:
         """An expression in axes of balls as one in the symbols."""
         if not self.balls:
             return expression

@@ -8,7 +8,6 @@ In each function ``parent`` and ``child`` are the frames of a joint's bodies.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import casadi as ca
 
@@ -97,7 +96,7 @@ def turning(
     return dot(rate, axis), dot(angular, axis) + dot(rate, cross(carrier.rate, axis))
 
 
-def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
+def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[ca.SX, ca.SX, ca.SX]:
     """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
 
     Phi are gaps in ground axes or across slides, and of directions where they are held; its
@@ -110,7 +109,9 @@ def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, A
     return phi, phi_rate, phi_acceleration
 
 
-def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tuple[Vector, Vector]:
+def reaction(
+    joint: Joint, parent: Frame, child: Frame, multipliers: ca.SX
+) -> tuple[Vector, Vector]:
     """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by
     its multipliers.
     """

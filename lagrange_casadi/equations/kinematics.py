@@ -77,7 +77,7 @@ class Kinematics:
     loose: frozenset[str]
     swings: dict[str, Any]
 
-    def evaluate(self, expression: Any) -> Any:
+    def evaluate(self, expression: ca.SX) -> ca.SX:
         """An expression in the multibody's symbols, as one in t, d, d',
         d'', z and the parameters.
         """
@@ -167,7 +167,7 @@ class _Solver:
             "values": [self.start.t, self.start.parameters],
         }
 
-    def _know(self, coordinate: Coordinate, value: Any) -> None:
+    def _know(self, coordinate: Coordinate, value: ca.SX) -> None:
         self.known[coordinate] = value
         self.found.note(coordinate.variables, value)
 
@@ -191,7 +191,7 @@ class _Solver:
             if closure is not None:
                 self._judge(block, closure)
 
-    def _solved(self, block: Block, form: ClosedForm) -> Any | None:
+    def _solved(self, block: Block, form: ClosedForm) -> ca.SX | None:
         """Take note of what one closed form of a block solves, on the branch that is nearest to the
         posture; its closure.
         """
@@ -217,7 +217,7 @@ class _Solver:
         """The coordinates known so far whose angles count turns."""
         return [c for c in self.known if c.kind == "angle" and c.name not in self.loose]
 
-    def _judge(self, block: Block, closure: Any) -> None:
+    def _judge(self, block: Block, closure: ca.SX) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that
         is nearest.
         """
@@ -282,7 +282,7 @@ class _Solver:
         return total
 
     @cached_property
-    def _told_of(self) -> dict[str, tuple[Any, set[Coordinate]]]:
+    def _told_of(self) -> dict[str, tuple[ca.SX, set[Coordinate]]]:
         return measured(self.multibody, self.posture)
 
     def _rough(

@@ -46,7 +46,7 @@ _SYMBOLS = (
 _TIMES = ("t", "time")
 
 
-def _none() -> Any:
+def _none() -> ca.SX:
     return ca.SX(0, 1)
 
 
@@ -299,7 +299,7 @@ class LagrangeSystem:
         return ca.substitute(ca.SX(expression), resting, ca.SX.zeros(resting.numel()))
 
 
-def _expect(name: str, value: Any, size: int) -> None:
+def _expect(name: str, value: ca.SX, size: int) -> None:
     if ca.SX(value).numel() != size:
         raise DeclarationError(f"{name} must have {size} entries, got {ca.SX(value).numel()}")
 

@@ -17,10 +17,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.joints import Joint
 from ..geometry.vectors import Vector, cross, dot, minus, times
 from .loops import ClosedForm, at_rest, held, solve_in_turn, solves
@@ -29,7 +29,7 @@ from .sampling import vanish
 
 
 def solve_leg(
-    phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody
+    phi: ca.SX, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody
 ) -> tuple[ClosedForm, ...]:
     """The closed forms, one after another, by which the two points of a joint meet; none where no
     pattern was verified.
@@ -84,8 +84,8 @@ def _leg(
 
 
 def in_fewest(
-    expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]
-) -> Any | None:
+    expression: Expression, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> Expression | None:
     """An expression with all coordinates at rest but as few of the ``later`` ones as change it;
     None where others change it too.
     """

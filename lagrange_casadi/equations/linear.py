@@ -9,6 +9,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
+
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
@@ -28,7 +30,7 @@ class LinearSystem:
     volume: Any
 
     @classmethod
-    def of(cls, matrix: Any) -> LinearSystem:
+    def of(cls, matrix: Expression) -> LinearSystem:
         """Factorize a matrix."""
         m, n = matrix.shape
         lengths = ca.SX(1)
@@ -62,7 +64,7 @@ class LinearSystem:
         """Number of free unknowns of the transposed system."""
         return int(self.matrix.shape[0] - self.matrix.shape[1])
 
-    def solve(self, right: Any) -> Any:
+    def solve(self, right: ca.SX) -> Expression:
         """x of ``matrix x = right``."""
         if self.inverse is not None:
             return self.inverse @ right
@@ -77,7 +79,7 @@ class LinearSystem:
             ) / self.triangle[i, i]
         return ca.vertcat(ca.SX(0, 1), *x)
 
-    def solve_transposed(self, right: Any, free: Any) -> Any:
+    def solve_transposed(self, right: ca.SX, free: ca.SX) -> Expression:
         """x of ``matrix' x = right``, for values of the free unknowns,
         a column of ``self.free``.
         """

@@ -27,6 +27,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from .linear import LinearSystem
 from .multibody import Coordinate, column
 from .sampling import vanish
@@ -60,7 +61,11 @@ class ClosedForm:
 
 
 def solve_loop(
-    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate], *, bar: bool = False
+    phi: ca.SX,
+    unknown: Sequence[Coordinate],
+    coordinates: Sequence[Coordinate],
+    *,
+    bar: bool = False,
 ) -> ClosedForm | None:
     """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is
     none that was verified.
@@ -76,7 +81,7 @@ def solve_loop(
 
 
 def solve_in_turn(
-    equations: Sequence[Any], unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    equations: Sequence[ca.SX], unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> tuple[ClosedForm, ...]:
     """The closed forms of equations, one after another, each of which holds one unknown more; none
     where they do not.
@@ -99,20 +104,20 @@ def solve_in_turn(
     return tuple(forms)
 
 
-def held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
+def held(expressions: Sequence[Expression], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
     """The coordinates that expressions hold."""
     parts = ca.veccat(*map(ca.SX, expressions))
     return [c for c in coordinates if ca.depends_on(parts, c.variables)]
 
 
-def at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
+def at_rest(expression: Expression, coordinates: Sequence[Coordinate]) -> Expression:
     """An expression with coordinates that are zero."""
     symbols = column(c.variables for c in coordinates)
     return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
 
 
 def _spanned(
-    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> ClosedForm | None:
     """A bar's end that turns about one axis, or slides along one: two points of a circle or a line
     are so far from another one.
@@ -146,7 +151,7 @@ def _spanned(
 
 
 def _askew(
-    phi: Any, angle: Coordinate, curvature: Any, coordinates: Sequence[Coordinate]
+    phi: ca.SX, angle: Coordinate, curvature: ca.SX, coordinates: Sequence[Coordinate]
 ) -> ClosedForm | None:
     """A square of a sine, or of a cosine, and that sine are known to be of one sum: of two signs,
     each with two ways round.
@@ -178,7 +183,7 @@ def _askew(
 
 
 def _matching(
-    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> ClosedForm | None:
     """The closed form of the pattern that the equations have; None where they have none."""
     kinds = "".join(sorted(c.kind[0] for c in unknown))
@@ -199,7 +204,7 @@ def _matching(
     return _slides(phi, unknown) if set(kinds) == {"s"} else None
 
 
-def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordinate]) -> bool:
+def solves(forms: Sequence[ClosedForm], phi: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
     """Return whether solutions, each of which may depend on those before, are ones of Phi = 0 on
     all branches.
     """
@@ -227,7 +232,7 @@ def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordina
     return vanish(column(way[:-1] for way in ways), coordinates, column(way[-1] for way in ways))
 
 
-def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
+def _affine(phi: ca.SX, symbols: ca.SX, all_unknown: ca.SX) -> tuple[ca.SX, ca.SX] | None:
     """Slope and rest of Phi = slope @ symbols + rest, or None where the slope depends on an
     unknown.
     """
@@ -237,15 +242,15 @@ def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
     return slope, ca.substitute(phi, symbols, ca.SX.zeros(symbols.numel()))
 
 
-def _one_direction(phi: Any, angle: Coordinate) -> ClosedForm | None:
+def _one_direction(phi: ca.SX, angle: Coordinate) -> ClosedForm | None:
     branch = ca.SX.sym("branch")
     solved = _direction_on_line(phi, angle, branch)
     return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
 
 
 def _direction_on_line(
-    phi: Any, angle: Coordinate, branch: Any, largest: Any = None
-) -> tuple[Any, Any] | None:
+    phi: ca.SX, angle: Coordinate, branch: ca.SX, largest: Any = None
+) -> tuple[ca.SX, ca.SX] | None:
     """The direction for which phi = 0, and the closure: beside the square of its slope, or beside
     the ``largest`` there may be.
     """
@@ -276,7 +281,7 @@ def _direction_on_line(
 
 
 def _two_circles(
-    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+    phi: ca.SX, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> ClosedForm | None:
     symbols = ca.vertcat(*(_pair(c) for c in unknown))
     affine = _affine(phi, symbols, symbols)
@@ -307,7 +312,7 @@ def _two_circles(
     return ClosedForm(directions, root / _square(2 * (l1 * l2)), (branch,))
 
 
-def _turns(columns: Any, coordinates: Sequence[Coordinate]) -> bool:
+def _turns(columns: ca.SX, coordinates: Sequence[Coordinate]) -> bool:
     """Return whether two columns, slopes by a cosine and a sine, are those of a rotating arm: (u,
     v) and (-v, u).
     """
@@ -356,7 +361,7 @@ def _direction_and_slide(
     return ClosedForm((_variables(direction), place), closure, (branch,))
 
 
-def _tied(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+def _tied(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     """Angles that count turns, and slides, that follow others, as in a train of gears; of several,
     by their volume.
     """
@@ -375,11 +380,11 @@ def _tied(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     )
 
 
-def _told(coordinate: Coordinate, value: Any) -> Any:
+def _told(coordinate: Coordinate, value: Expression) -> Expression:
     return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
 
 
-def _slides(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+def _slides(phi: ca.SX, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     """Slides along lines that none of them turns; of several, the closure is the square of the
     volume that their slopes span.
     """
@@ -394,13 +399,13 @@ def _slides(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     )
 
 
-def _norm(x: Any, y: Any) -> Any:
+def _norm(x: ca.SX, y: ca.SX) -> ca.SX:
     if x.is_zero() or y.is_zero():
         return ca.fabs(x if y.is_zero() else y)
     return ca.sqrt(_square(x) + _square(y))
 
 
-def _direction(vector: tuple[Any, Any], arm: tuple[Any, Any]) -> Any:
+def _direction(vector: tuple[ca.SX, ca.SX], arm: tuple[ca.SX, ca.SX]) -> ca.SX:
     """The direction that turns ``arm`` into ``vector``."""
     (x, y), (a, b) = vector, arm
     if b.is_zero():
@@ -408,13 +413,13 @@ def _direction(vector: tuple[Any, Any], arm: tuple[Any, Any]) -> Any:
     return ca.vertcat(a * x + b * y, a * y - b * x) / (_square(a) + _square(b))
 
 
-def _pair(angle: Coordinate) -> Any:
+def _pair(angle: Coordinate) -> Expression:
     return angle.variables[:2]
 
 
-def _variables(direction: Any) -> Any:
+def _variables(direction: ca.SX) -> ca.SX:
     return ca.vertcat(direction, ca.atan2(direction[1], direction[0]))
 
 
-def _square(x: Any) -> Any:
+def _square(x: ca.SX) -> ca.SX:
     return x * x

@@ -13,6 +13,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Point, Vector
@@ -52,7 +53,7 @@ def transmissions_of(mechanism: Mechanism) -> dict[str, Transmission]:
     return {name: transmission for name, transmission in found if transmission is not None}
 
 
-def pressing_apart(transmission: Transmission, multiplier: Any) -> Rubbing:
+def pressing_apart(transmission: Transmission, multiplier: Expression) -> Rubbing:
     """Separating force of a transmission, by its multiplier."""
     contacts = tuple(Contact(factor, (multiplier + slack,)) for factor, slack in transmission.parts)
     return Rubbing(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))

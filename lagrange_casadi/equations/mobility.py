@@ -26,6 +26,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output, force_members, law_members, own_members, station_members
 from ..declare.density import Density
 from ..declare.joints import Joint
@@ -105,7 +106,7 @@ def internal_forces(
     unknowns, values, free = multipliers_of(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
-    drives = {
+    drives: dict[str, Any] = {
         c.name: along[i]
         for i, c in enumerate(multibody.coordinates)
         if c.driven and c.name not in unaided
@@ -197,7 +198,7 @@ class Action:
     force: Vector = ZERO
     couple: Vector = ZERO
 
-    def member(self, name: str) -> Any:
+    def member(self, name: str) -> Expression:
         """A component by what files call it, as ``fx`` or ``mz``."""
         return (self.force if name[0] == "f" else self.couple)["xyz".index(name[1])]
 
@@ -222,7 +223,7 @@ class Reaction:
 
 def _section_law(
     multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Any
-) -> dict[Column, Any]:
+) -> dict[Column, Expression]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and
     stations from what acts there.
     """
@@ -268,7 +269,7 @@ def _section_law(
     )
 
 
-def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
+def _by_plane(acting: Action, space: bool) -> tuple[Expression, ...]:
     """The numbers of a station: what acts along and across the link's axis, and about it."""
     return (*acting.force, *acting.couple) if space else (*acting.force[:2], acting.couple[2])
 
@@ -289,7 +290,7 @@ def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
     return pins and set(ends) == {"base", "tip"}
 
 
-def _material(multibody: Multibody, name: str) -> Any:
+def _material(multibody: Multibody, name: str) -> Expression:
     """Force on the part of a link beyond a section, along the link and across, for a unit of its
     mass and of its first moment.
 
@@ -304,7 +305,7 @@ def _material(multibody: Multibody, name: str) -> Any:
 
 
 @functools.cache
-def _of_any_link(space: bool) -> tuple[Any, Any]:
+def _of_any_link(space: bool) -> tuple[Expression, Expression]:
     """Inertia terms with symbols for the velocity and acceleration of the link's base, its angular
     velocity, and its change; and these symbols.
     """
@@ -390,7 +391,7 @@ def _at_base(point: Point) -> bool:
     return isinstance(x, float) and x == 0.0
 
 
-def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Reaction:
+def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Expression]) -> Reaction:
     """Reaction of a joint's parent on its child, without efforts; the moment is about the child's
     point.
     """
@@ -402,7 +403,9 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) ->
     return Reaction(ground, ground.seen(rotation))
 
 
-def _in_ground_axes(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
+def _in_ground_axes(
+    multibody: Multibody, joint: Joint, actions: Mapping[str, Expression]
+) -> Action:
     parent, child = (multibody.frames[body.name] for body in joint.bodies)
     for loop in multibody.loop_equations:
         if loop.joint is joint:
@@ -438,7 +441,7 @@ def _branch(multibody: Multibody, joint: Joint) -> Branch:
 
 
 def _on_child(
-    multibody: Multibody, joint: Joint, actions: Mapping[str, Any]
+    multibody: Multibody, joint: Joint, actions: Mapping[str, Expression]
 ) -> tuple[Vector, Vector]:
     """Force and moment on a joint's child, from a mobility of the tree, in the axes of the
     mobility.
@@ -450,7 +453,7 @@ def _on_child(
     return (action[0], action[1], 0.0), (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
 
 
-def _on_own_axes(joint: Joint, own: Action) -> dict[Column, Any]:
+def _on_own_axes(joint: Joint, own: Action) -> dict[Column, Expression]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
     open lies along one of these.
     """

@@ -109,10 +109,10 @@ class ModelData(Graphs):
     laws: Laws
     timing: Timing
     span: tuple[float, float]
-    extent: Any
+    extent: ca.Function
     margins: Mapping[Precision, Margins]
     corners: Corners
-    masses: Any
+    masses: ca.Function
     partial: tuple[str, ...]
     jumps: Mapping[str, tuple[float, ...]]
     stated: Stated
@@ -199,14 +199,14 @@ class ModelData(Graphs):
 
     @property
     @symbolic
-    def symbols(self) -> Any:
+    def symbols(self) -> ca.SX:
         """The parameters' symbols, in a column."""
         return ca.vertcat(
             ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
         )
 
     @symbolic
-    def mass(self, part: str, p: Any) -> Any:
+    def mass(self, part: str, p: ca.SX) -> ca.SX:
         """Express the mass of a body, or of ``all`` of them [kg].
 
         Raises :class:`.UnknownNameError` for anything else.
@@ -222,7 +222,7 @@ class ModelData(Graphs):
         return materials_of(self.template.content)
 
     @symbolic
-    def matter(self, link: str, p: Any) -> tuple[Any, Density]:
+    def matter(self, link: str, p: ca.SX) -> tuple[ca.SX, Density]:
         """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters
         ``p``.
         """

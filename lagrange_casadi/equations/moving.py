@@ -11,6 +11,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..base.quantities import Output, force_members
 from ..base.tables import ANGLE
 from ..declare.description import kinds_of_described
@@ -72,7 +73,7 @@ class Moving:
         return cls(scene, want, body, laws, start, solved, swings)
 
     @property
-    def inputs(self) -> list[Any]:
+    def inputs(self) -> list[Expression]:
         """Arguments of every column."""
         solved, mechanism = self.solved, self.scene.mechanism
         return [
@@ -95,7 +96,7 @@ class Moving:
         )
         return ca.Function("start", self.inputs, [expression])(*at_start)
 
-    def columns(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
+    def columns(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
         """Columns that need no force: checks, motion and loads; and the sums of angles that loops
         determine.
         """
@@ -112,7 +113,7 @@ class Moving:
         placed = self.solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
         return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
 
-    def _checks(self) -> dict[Column, Any]:
+    def _checks(self) -> dict[Column, Expression]:
         """Checks that loops close, and that rows and curves are kept to."""
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
@@ -140,7 +141,7 @@ class Moving:
             Check("turned", name): swing for name, swing in {**solved.swings, **self.swings}.items()
         }
 
-    def _motions(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
+    def _motions(self) -> tuple[dict[Column, Expression], dict[Output, dict[Column, int]]]:
         """Motions and poses; and of angles that loops set, how often each coordinate's turns go
         into them.
         """
@@ -178,7 +179,7 @@ class Moving:
         return columns | dict(motions.items()) | _untold(body, motions), loop_angles
 
 
-def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
+def _seeing(body: Multibody, want: Wanted) -> dict[str, Expression]:
     """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
     parts = [
         part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads
@@ -200,7 +201,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     return found
 
 
-def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
+def _beyond(body: Multibody, seeing: Mapping[str, Expression]) -> dict[Column, Any]:
     """Distance of curves' arguments beyond their ends, by the constraint, load or row that uses the
     curve.
     """
@@ -270,7 +271,7 @@ def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
 
 def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
-) -> dict[Output, Any]:
+) -> dict[Output, Expression]:
     columns: dict[Output, Any] = {}
     for name, (joint, axis) in mechanism.coordinates.items():
         if name in driven:
@@ -329,7 +330,7 @@ def _known_by(coordinate: Coordinate) -> Output:
     )
 
 
-def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:
+def _turns(angle: Expression, parts: dict[Column, Expression]) -> dict[Column, int]:
     """Multiple with which each coordinate's angle enters another angle."""
     if not parts:
         return {}

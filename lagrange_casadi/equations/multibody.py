@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point, Row, Vector
@@ -73,7 +74,7 @@ class Coordinate:
         return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
     @property
-    def value(self) -> Any:
+    def value(self) -> Expression:
         """The symbol of the coordinate itself."""
         return self.variables[-1]
 
@@ -82,7 +83,7 @@ class Coordinate:
         """Name in a posture if it is not driven: the link whose direction it is, or its own."""
         return self.body if self.kind == "angle" and not self.relative else self.name
 
-    def placed(self, symbols: Any, values: Any) -> Any:
+    def placed(self, symbols: ca.SX, values: ca.SX) -> ca.SX:
         """Variables for values of the coordinates ``symbols``."""
         if self.kind == "slide":
             return ca.substitute(self.value, symbols, values)
@@ -147,7 +148,7 @@ class Applied:
     spread: tuple[Vector, ...] | None = None
 
     @property
-    def members(self) -> dict[str, Any]:
+    def members(self) -> dict[str, Expression]:
         """Force and couple by what files call them."""
         names = ("fx", "fy", "fz", "mx", "my", "mz")
         return dict(zip(names, (*self.force, *self.couple), strict=True))
@@ -229,26 +230,26 @@ class Multibody:
         return ThreeTurns(ball.joint, parent, child, ball.side)
 
     @property
-    def variables(self) -> Any:
+    def variables(self) -> Expression:
         """All coordinates' variables, one column."""
         return column(c.variables for c in self.coordinates)
 
     @property
-    def rates(self) -> Any:
+    def rates(self) -> Expression:
         """All coordinates' rates, one column."""
         return column(c.rate for c in self.coordinates)
 
     @property
-    def accelerations(self) -> Any:
+    def accelerations(self) -> Expression:
         """All coordinates' accelerations, one column."""
         return column(c.acceleration for c in self.coordinates)
 
     @property
-    def mobility_rates(self) -> Any:
+    def mobility_rates(self) -> Expression:
         """The rates of all extra mobilities, one column."""
         return column(self.mobilities.values())
 
-    def terms(self) -> tuple[Any, Any]:
+    def terms(self) -> tuple[ca.SX, ca.SX]:
         """Terms of the Lagrange system along the coordinates and along the mobilities.
 
         In space velocities are along axes that rest, and lie along the bodies' own at the instant:
@@ -277,7 +278,7 @@ class Multibody:
         along, across = (ca.substitute(ca.SX(term), still, moving) for term in system.terms())
         return along, across
 
-    def motion_along(self, joint: Joint, axis: Axis) -> tuple[Any, Any, Any]:
+    def motion_along(self, joint: Joint, axis: Axis) -> tuple[ca.SX, ca.SX, ca.SX]:
         """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or
         closing a loop.
 
@@ -289,7 +290,7 @@ class Multibody:
 
 def place_along(
     joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
-) -> Any:
+) -> Expression:
     """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up
     to them only.
     """
@@ -307,7 +308,7 @@ def place_along(
 
 def rates_along(
     joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
-) -> tuple[Any, Any]:
+) -> tuple[Expression, Expression]:
     """Rate and acceleration of a joint's coordinate along an axis."""
     own = own_coordinate(axis, coordinates)
     if own is not None:
@@ -354,7 +355,7 @@ def own_coordinate(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Coordinat
     return None
 
 
-def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> Any:
+def change(expression: ca.SX, coordinates: tuple[Coordinate, ...], time: ca.SX) -> ca.SX:
     """The total time derivative of an expression in coordinates' variables,
     their rates, and time.
     """
@@ -363,6 +364,6 @@ def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> A
     return ca.jtimes(ca.SX(expression), moving, speed)
 
 
-def column(parts: Any) -> Any:
+def column(parts: Any) -> Expression:
     """Parts one below the other; an empty column where there are none."""
     return ca.vertcat(ca.SX(0, 1), *parts)

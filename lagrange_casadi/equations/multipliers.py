@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from typing import Any
 
 import casadi as ca
 
@@ -16,8 +15,8 @@ from .multibody import LoopEquations, Multibody, column
 
 
 def multipliers_of(
-    multibody: Multibody, kinematics: Kinematics, along: Any
-) -> tuple[Any, Any, Any]:
+    multibody: Multibody, kinematics: Kinematics, along: ca.SX
+) -> tuple[ca.SX, ca.SX, ca.SX]:
     """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
 
     lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of
@@ -60,9 +59,9 @@ def _where_they_touch(
     multibody: Multibody,
     loops: Sequence[LoopEquations],
     touching: Sequence[LoopEquations],
-    found: Any,
-    values: Any,
-) -> tuple[Any, Any]:
+    found: ca.SX,
+    values: ca.SX,
+) -> tuple[ca.SX, ca.SX]:
     """Multipliers of a block in which transmissions are, and of those before: with forces where
     their parts touch.
 

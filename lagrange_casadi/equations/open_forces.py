@@ -30,7 +30,7 @@ class Forces:
     before: Mapping[Output, Any] | None = None
 
     @classmethod
-    def over(cls, acting: Mapping[Column, Any], free: Any) -> Forces:
+    def over(cls, acting: Mapping[Column, ca.SX], free: ca.SX) -> Forces:
         """Forces ``acting`` that are expressions of what is open, ``free``."""
         if not free.numel():
             return cls(acting, {})
@@ -69,7 +69,7 @@ class Forces:
         return replace(self, values=values, open={**self.open, **sums})
 
     @property
-    def columns(self) -> dict[Column, Any]:
+    def columns(self) -> dict[Column, ca.SX]:
         """The forces, and checks by which it is seen whether they are open."""
         return {
             **self.values,

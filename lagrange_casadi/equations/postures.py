@@ -26,7 +26,7 @@ def turns(multibody: Multibody, name: str) -> bool:
 
 def measured(
     multibody: Multibody, names: Collection[str]
-) -> dict[str, tuple[Any, set[Coordinate]]]:
+) -> dict[str, tuple[ca.SX, set[Coordinate]]]:
     """Expressions of the posture's names, and the coordinates of each."""
     owner = {key: c for c in multibody.coordinates for key in c.keys}
     told: dict[str, tuple[Any, set[Coordinate]]] = {}

@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..base.arrays import Expression
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Loss, Transmission
@@ -40,7 +41,7 @@ class Contact:
     lean: Any = None
     edges: bool = False
 
-    def size(self, components: Sequence[Any]) -> Any:
+    def size(self, components: Sequence[Expression]) -> Expression:
         """Size of components together."""
         if self.edges and len(components) == 2:
             one, other = both_edges(components)
@@ -79,7 +80,7 @@ class Rubbing:
     beside: tuple[Any, ...] = ()
 
     @property
-    def rows(self) -> list[Any]:
+    def rows(self) -> list[Expression]:
         """All its expressions, in an order that :meth:`of_rows` knows."""
         return [
             *(x for contact in self.contacts for x in contact.pressing),
@@ -89,7 +90,7 @@ class Rubbing:
             *self.beside,
         ]
 
-    def of_rows(self, rows: Sequence[Any]) -> Rubbing:
+    def of_rows(self, rows: Sequence[Expression]) -> Rubbing:
         """Contact with other expressions."""
         left = iter(rows)
         contacts = tuple(
@@ -157,7 +158,7 @@ def _size(vector: Vector) -> Any:
     return ca.sqrt(ca.SX(dot(vector, vector)))
 
 
-def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Any, Any]:
+def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Expression, Expression]:
     """The rate below which a coordinate rests, and the change of rate below which it goes on to:
     beside those of the drives.
     """

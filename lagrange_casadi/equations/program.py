@@ -42,7 +42,7 @@ class Program(Graphs):
 
     data: ModelData
     wanted: Wanted
-    instant: Any
+    instant: ca.Function
     newton: NewtonLoop | None
     columns: tuple[Column, ...]
     loop_angles: Mapping[Output, Mapping[Column, int]]
@@ -80,7 +80,7 @@ class Program(Graphs):
         return rules_of(self)
 
     @property
-    def status(self) -> Any:
+    def status(self) -> ca.Function:
         """The function ``status(checks, limits, beside, iterated)``: the number of the first of
         :attr:`rules` that is broken.
         """

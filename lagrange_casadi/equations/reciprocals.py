@@ -15,11 +15,12 @@ import casadi as ca
 
 from ..arithmetic.interpret import Step, expressed, followable, replay, steps
 from ..arithmetic.scalars import less, product
+from ..base.arrays import Expression
 from ..base.symbolic import symbolic
 
 
 @symbolic
-def share_reciprocals(function: Any, parameters: str) -> Any:
+def share_reciprocals(function: ca.Function, parameters: str) -> ca.Function:
     """Function of one output with divisions shared; ``parameters`` names the input whose
     reciprocals always pay.
 
@@ -33,7 +34,7 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
     uses = Counter(divisor for divisor, _ in divisors.values())
     inverses: dict[int, Any] = {}
 
-    def made(k: int, step: Step, operands: list[Any]) -> Any:
+    def made(k: int, step: Step, operands: list[Expression]) -> Expression:
         if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
             x = operands[-1]
             # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
@@ -49,7 +50,7 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
 
 
 @symbolic
-def differentiable(function: Any) -> Any:
+def differentiable(function: ca.Function) -> ca.Function:
     """A function of :func:`share_reciprocals` with plain divisions again.
 
     CasADi 3.7 differentiates copysign(a, b) as if a were positive.
@@ -57,7 +58,7 @@ def differentiable(function: Any) -> Any:
     if not followable(function):
         return function
 
-    def made(_k: int, step: Step, operands: list[Any]) -> Any:
+    def made(_k: int, step: Step, operands: list[ca.SX]) -> ca.SX:
         if (
             step.operation == ca.OP_COPYSIGN
             and operands[0].op() == ca.OP_INV
@@ -69,7 +70,7 @@ def differentiable(function: Any) -> Any:
     return _replayed(function, made)
 
 
-def _replayed(function: Any, made: Callable[[int, Step, list[Any]], Any]) -> Any:
+def _replayed(function: ca.Function, made: Callable[[int, Step, list[Any]], Any]) -> ca.Function:
     """The function of one output again, with what ``made`` makes of the number of a step, the step
     and its operands.
     """

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..base.arrays import Expression
 from .balls import Ball, axes_of
 from .multibody import Coordinate, column
 
@@ -26,7 +27,7 @@ Values = npt.NDArray[Any]
 """Array of doubles, or of complex numbers."""
 
 
-def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
+def drawn(expression: ca.SX, coordinates: Iterable[Coordinate]) -> Values:
     """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN
     where it has no value.
 
@@ -78,7 +79,9 @@ def _turned(quaternions: Values) -> Values:
     return np.asarray(ca.Function("axes", [symbols], [axes_of(symbols)])(quaternions).full())
 
 
-def vanish(expressions: Any, coordinates: Iterable[Coordinate], beside: Any = 1.0) -> bool:
+def vanish(
+    expressions: Expression, coordinates: Iterable[Coordinate], beside: Expression = 1.0
+) -> bool:
     """Return whether expressions are zero for all values of their symbols, within rounding relative
     to the largest of others.
     """

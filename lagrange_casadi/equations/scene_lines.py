@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..base.arrays import Expression
 from ..declare.motion import Motion, motion_function
 from ..declare.parts import Constraint, Force, Friction, LineLoad, Load, Torque
 from ..declare.scene import Scene
@@ -79,7 +80,7 @@ def _constraint(constraint: Constraint) -> str:
     return f"{told}; it acts where these touch: {pairs}"
 
 
-def _law(law: Motion, symbol: Any) -> str:
+def _law(law: Motion, symbol: ca.SX) -> str:
     if law.knots:
         return (
             f"a spline through {len(law.knots)} samples from {law.span[0]:g} to {law.span[1]:g} s"
@@ -190,7 +191,7 @@ def _components(load: Force | Torque, unit: str, space: bool) -> str:
     )
 
 
-def _short(expression: Any) -> str:
+def _short(expression: Expression) -> str:
     """An expression in words, cut where it is long."""
     text = " ".join(str(expression).split()) if isinstance(expression, ca.SX) else f"{expression:g}"
     return text if len(text) <= _LONG else f"{text[:_LONG]}..."

@@ -21,6 +21,7 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..base.arrays import Expression, Operand
 from ..base.quantities import Output
 from ..base.symbolic import symbolic
 from ..base.tables import PLANE, Table, Terms, table_of
@@ -34,7 +35,7 @@ Side = Literal["base", "tip"]
 SIDES: tuple[Side, ...] = ("tip", "base")
 
 
-def edge(ratio: Any, slack: float, side: Side = "tip") -> Any:
+def edge(ratio: Operand, slack: float, side: Side = "tip") -> Operand:
     """The ratio beyond which a section at a ``ratio`` feels what acts at load points; of numbers,
     arrays or expressions.
 
@@ -94,11 +95,11 @@ class Section:
         """The loads along it, and how many powers each has."""
         return spreads_of(self._outputs, self.link)
 
-    def at(self, name: str, place: Place, slack: float) -> Any:
+    def at(self, name: str, place: Place, slack: float) -> Expression:
         """A section force at a place."""
         return self.force(name, place.ratio, edge(place.ratio, slack, place.side))
 
-    def force(self, name: str, ratio: Any, beyond: Any) -> Any:
+    def force(self, name: str, ratio: ca.SX, beyond: ca.SX) -> Expression:
         """A section force at a ratio, with what acts at load points ``beyond`` a ratio."""
         if len(parts := self.table.parts("section", name)) > 1:
             return ca.sqrt(
@@ -113,7 +114,7 @@ class Section:
         total += sum(self._acting(terms, station, ratio, beyond) for station in self.stations)
         return sum(felt_along(self.columns, self.link, self.length, terms, ratio), total)
 
-    def _rows(self, terms: Terms, u: Any) -> list[Any]:
+    def _rows(self, terms: Terms, u: ca.SX) -> list[Expression]:
         """The functions along the link that go with the coefficients of a force."""
         t0, t1, t2 = self.density.tails(u, self.length)
         l = self.length
@@ -142,7 +143,7 @@ class Section:
     def _outputs(self) -> Iterator[Output]:
         return (column for column in self.columns if isinstance(column, Output))
 
-    def _of(self, group: str, member: str, station: str = "") -> Any:
+    def _of(self, group: str, member: str, station: str = "") -> Expression:
         return self.columns[Output(group, self.link, member, station)]
 
 
@@ -212,7 +213,7 @@ def section(
     slack: float,
     side: Side = "tip",
     name: str = "section",
-) -> Any:
+) -> ca.Function:
     """``section(law, acting, matter, xi) -> forces`` of a link, whose density has so many
     coefficients in each cell.
 
@@ -243,7 +244,7 @@ def section(
 @symbolic
 def along(
     breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool
-) -> Any:
+) -> ca.Function:
     """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a
     moment, go with.
 

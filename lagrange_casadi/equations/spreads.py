@@ -115,7 +115,7 @@ def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
 
 
 def felt_along(
-    outputs: Mapping[Column, Any], link: str, length: Any, terms: Terms, ratio: Any
+    outputs: Mapping[Column, ca.SX], link: str, length: ca.SX, terms: Terms, ratio: ca.SX
 ) -> Iterator[Any]:
     """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by
     their arms, couples of slices.

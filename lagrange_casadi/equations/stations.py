@@ -44,11 +44,11 @@ place written in two ways.
 
 
 def gathered(
-    columns: Mapping[Column, Any],
-    free: Any,
+    columns: Mapping[Column, ca.SX],
+    free: ca.SX,
     links: Iterable[Link],
     coordinates: Sequence[Coordinate],
-) -> dict[Column, Any]:
+) -> dict[Column, ca.SX]:
     """The columns of forces, those stations of ``links`` put together that are at one place and
     have shares that may be open.
 

@@ -121,7 +121,7 @@ def rules_of(program: Program) -> tuple[Rule, ...]:
 
 @functools.lru_cache(maxsize=64)
 @symbolic
-def status_of(program: Program) -> Any:
+def status_of(program: Program) -> ca.Function:
     """Return the function ``status(checks, limits, beside, iterated)``."""
     many = len(bounds_of(program))
     checks, limits, beside = (ca.SX.sym(name, many) for name in ("checks", "limits", "beside"))
@@ -148,11 +148,11 @@ What is no number breaks some rules, and not others.
 """
 
 
-def _above(x: Any, limit: Any, _: Any) -> Any:
+def _above(x: ca.SX, limit: ca.SX, _: ca.SX) -> ca.SX:
     return limit < x
 
 
-def _not_above(x: Any, limit: Any, _: Any) -> Any:
+def _not_above(x: ca.SX, limit: ca.SX, _: ca.SX) -> ca.SX:
     return ca.logic_not(limit < x)
 
 

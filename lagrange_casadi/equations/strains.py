@@ -9,8 +9,9 @@ is held adds nothing. In a planar mechanism bending is in its plane.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
+from ..base.arrays import Array, Operand
 from ..beams.beam import Beam
 from ..beams.properties import Properties
 from ..errors import DeclarationError
@@ -36,8 +37,8 @@ def moduli_of(beam: Beam, what: str, *, space: bool) -> Moduli:
 
 
 def resultants(
-    p: Properties, force: Mapping[str, Any], moduli: Moduli
-) -> dict[str, tuple[Any, Any]]:
+    p: Properties, force: Mapping[str, Array], moduli: Moduli
+) -> dict[str, tuple[Array, Operand]]:
     """Section forces put together so that each strains alone, with how much: a unit of length has
     half their squares' energy.
 
@@ -61,7 +62,7 @@ def resultants(
     }
 
 
-def strains(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, Any]:
+def strains(p: Properties, force: Mapping[str, Array], moduli: Moduli) -> dict[str, Array]:
     """Strain of each section force, by its name, for a unit of the link's length."""
     found = dict.fromkeys(force, 0.0) | {
         name: value * soft for name, (value, soft) in resultants(p, force, moduli).items()

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..beams.beam import Beam, Notch
 from ..beams.properties import Properties, smaller
 from ..beams.shape import between
@@ -45,9 +45,9 @@ class Thinnest:
     along z.
     """
 
-    area: Any
-    second: tuple[Any, Any]
-    modulus: tuple[Any, Any]
+    area: float
+    second: tuple[float, float]
+    modulus: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class CrossSections:
         """The names of the section forces that stresses are made of."""
         return FORCES[self.space]
 
-    def properties(self, cell: int, u: Any) -> Properties:
+    def properties(self, cell: int, u: Operand) -> Properties:
         """The properties between two breaks, at ratios ``u``."""
         course = self.beam.course
         first, last = course.cells[cell]
@@ -98,7 +98,7 @@ class CrossSections:
                     found[part, k, force] = number
         return found
 
-    def _row(self, numbers: Sequence[Any]) -> list[Any]:
+    def _row(self, numbers: Sequence[Operand]) -> list[Operand]:
         return [numbers[place] for place in _PLACES[self.space]]
 
     @cached_property
@@ -159,7 +159,7 @@ class CrossSections:
         return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
 
 
-def squared(stresses: Any, weights: tuple[float, float]) -> Any:
+def squared(stresses: Operand, weights: tuple[float, float]) -> Operand:
     """The square of a kind of stress by its ``weights``, of normal stress and shear stresses along
     y and along z.
     """
@@ -180,7 +180,7 @@ def concentration(notch: Notch | None, force: str) -> float:
     )
 
 
-def _least(values: Sequence[Any]) -> Any:
+def _least(values: Sequence[float]) -> float:
     found = values[0]
     for value in values[1:]:
         found = smaller(found, value)

@@ -11,6 +11,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.scalars import as_expression
+from ..base.arrays import Expression
 
 
 class Expressions:
@@ -19,12 +20,12 @@ class Expressions:
     def __init__(self) -> None:
         self._known: dict[int, tuple[Any, Any]] = {}
 
-    def note(self, symbols: Any, values: Any) -> None:
+    def note(self, symbols: Expression, values: Expression) -> None:
         """Let expressions stand for symbols, entry by entry."""
         for symbol, value in zip(_entries(symbols), _entries(values), strict=True):
             self._known[symbol.element_hash()] = symbol, value
 
-    def and_of(self, symbols: Any, values: Any) -> Expressions:
+    def and_of(self, symbols: ca.SX, values: ca.SX) -> Expressions:
         """Substitution with more symbols."""
         more = Expressions()
         more._known = dict(self._known)
@@ -41,7 +42,7 @@ class Expressions:
             more.note(symbols, of(values))
         return more
 
-    def put_into(self, expression: Any) -> Any:
+    def put_into(self, expression: ca.SX) -> ca.SX:
         """An expression with what is known in the place of its symbols."""
         expression = as_expression(expression)
         there = [
@@ -61,14 +62,14 @@ class Numbers:
     def __init__(self) -> None:
         self._known: dict[int, float] = {}
 
-    def note(self, symbols: Any, values: Sequence[float]) -> None:
+    def note(self, symbols: Expression, values: Sequence[float]) -> None:
         """Let numbers stand for symbols, entry by entry."""
         self._known |= {
             symbol.element_hash(): value
             for symbol, value in zip(_entries(symbols), values, strict=True)
         }
 
-    def of(self, expression: Any) -> list[float]:
+    def of(self, expression: Expression) -> list[float]:
         """The entries of an expression all of whose symbols are known."""
         expression = as_expression(expression)
         symbols = ca.symvar(expression)
@@ -83,6 +84,6 @@ class Numbers:
         ]
 
 
-def _entries(column: Any) -> list[Any]:
+def _entries(column: ca.SX) -> list[ca.SX]:
     column = as_expression(column)
     return ca.vertsplit(column) if column.numel() else []

@@ -50,10 +50,10 @@ _HALF_TURN = math.pi - 1e-9
 def count_turns(
     multibody: Multibody,
     solved: Kinematics,
-    motion: Any,
+    motion: ca.Function,
     span: tuple[float, float],
     start: Start,
-    used: Mapping[str, Any],
+    used: Mapping[str, ca.SX],
 ) -> tuple[Kinematics, dict[str, Any]]:
     """The kinematics with the angles that ``used`` expressions of loads and rows see, by their
     names; and swings, by angle.
@@ -141,11 +141,11 @@ def _sums(many: int) -> Iterator[tuple[int, ...]]:
 def _rules(
     multibody: Multibody,
     solved: Kinematics,
-    motion: Any,
+    motion: ca.Function,
     span: tuple[float, float],
     start: Start,
     open_: Sequence[Turned],
-    counted: Any,
+    counted: ca.SX,
 ) -> list[_Rule | None]:
     """The rules of some angles, by what they do along the motion of the scene, and as its one drive
     goes all the way round.

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,8 +20,8 @@ _STEPS, _DIGITS = 256, 2
 
 
 def wound(
-    screw: Coordinate, variables: Any, counting: Sequence[Coordinate], numbers: Numbers
-) -> tuple[Any, Any]:
+    screw: Coordinate, variables: ca.SX, counting: Sequence[Coordinate], numbers: Numbers
+) -> tuple[ca.SX, ca.SX]:
     """The variables of a screw's angle with its turns, of those that a loop tells; and how far it
     swings.
 
@@ -41,7 +40,7 @@ def wound(
     return ca.vertcat(c, s, about + swing), swing
 
 
-def _turns(angle: Any, other: Coordinate, numbers: Numbers) -> int:
+def _turns(angle: ca.SX, other: Coordinate, numbers: Numbers) -> int:
     """Revolutions of an angle for one of another angle; none if that cannot go round."""
     turn = ca.SX.sym("turn")
     start = numbers.of(other.value)[0]

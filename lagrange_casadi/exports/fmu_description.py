@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
@@ -24,6 +24,9 @@ from ..portable.contract import Contract, Member, Setting
 from ..portable.source import Source
 from ..version import __version__
 from .units import BASE, base_unit
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 LOGGED = {
     "logStatusDiscard": "instants without a result, and why",
@@ -231,7 +234,7 @@ def reached(graph: Program) -> dict[str, frozenset[str]]:
     return {name: frozenset(names) for name, names in zip(graph.names, found, strict=True)}
 
 
-def _entries(function: Any, place: int) -> list[tuple[int, int]]:
+def _entries(function: ca.Function, place: int) -> list[tuple[int, int]]:
     """Rows and columns of what is not zero in the derivative of a function's first output by an
     input.
     """

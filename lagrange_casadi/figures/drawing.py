@@ -216,7 +216,7 @@ def _draw_instant(
 
 
 def _draw_body(
-    axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, Any], label: str
+    axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, float], label: str
 ) -> None:
     """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by
     which one sees it turn.

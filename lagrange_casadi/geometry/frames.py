@@ -181,7 +181,7 @@ class Velocities:
     rates: list[Any] = field(default_factory=list)
     forces: list[Any] = field(default_factory=list)
 
-    def vector(self, motion: tuple[Vector, Vector], force: Vector = ZERO) -> Any:
+    def vector(self, motion: tuple[Vector, Vector], force: Vector = ZERO) -> Expression:
         """The symbols of a velocity that moves so, of a point or of a direction, with the force
         that works along it.
         """
@@ -190,11 +190,11 @@ class Velocities:
             *(self._add(*entry) for entry in zip(speed, acceleration, force, strict=True))
         )
 
-    def number(self, rate: Expression, angular: Expression, couple: Expression = 0.0) -> Any:
+    def number(self, rate: Expression, angular: Expression, couple: Expression = 0.0) -> Expression:
         """The symbol of a rate, with what works along it."""
         return self._add(rate, angular, couple)
 
-    def _add(self, graph: Any, rate: Any, force: Any) -> Any:
+    def _add(self, graph: Expression, rate: Expression, force: Expression) -> Expression:
         if nil(graph) and nil(rate):
             return ca.SX(0)
         self.symbols.append(ca.SX.sym(f"w{len(self.symbols)}"))

@@ -5,12 +5,8 @@ What is zero by structure is the number 0, so that graphs hold nothing of it.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..arithmetic.scalars import added, as_expression, less, product, products_added, products_less
-
-Expression = Any
-"""A number, or a ``casadi.SX`` scalar."""
+from ..base.arrays import Expression as Expression
 
 Vector = tuple[Expression, Expression, Expression]
 
@@ -47,6 +43,6 @@ def cross(a: Vector, b: Vector) -> Vector:
     )
 
 
-def nil(value: Any) -> bool:
+def nil(value: Expression) -> bool:
     """Return whether a value is zero by structure."""
     return bool(as_expression(value).is_zero())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from ..base.arrays import Array
 from ..base.quantities import Output
@@ -17,7 +16,7 @@ from .section_law import SectionLaw
 def law_of(
     link: str,
     outputs: Mapping[Output, Array],
-    length: Any,
+    length: float,
     density: NumericDensity,
     precision: str = "double",
 ) -> SectionLaw:

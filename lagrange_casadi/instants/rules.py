@@ -5,13 +5,12 @@ are evaluated.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import ROUNDING
-from ..base.arrays import Array
+from ..base.arrays import Array, Expression
 from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
 from ..declare.ends import BEYOND
@@ -44,7 +43,9 @@ EXTENSIVE = ("GAP", "OPEN_MOMENT")
 """Kinds whose limit is a share of the mechanism's extent."""
 
 
-def limits(graph: Program, precision: Precision, newton: int | None, extent: Any) -> list[Any]:
+def limits(
+    graph: Program, precision: Precision, newton: int | None, extent: Expression
+) -> list[Expression]:
     """The limits of a graph's bounds, in their order, for its ``extent``; ``newton`` as in
     :class:`.Rung`.
     """

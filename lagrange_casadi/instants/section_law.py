@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..base.brief import Brief
 from ..base.quantities import Output
 from ..base.room import cores, require
@@ -105,7 +105,7 @@ class SectionLaw(Brief):
         spreads = tuple(spread.during(instants) for spread in self.spreads)
         return replace(self, coefficients=coefficients, loads=loads, spreads=spreads)
 
-    def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
+    def at(self, force: str, xi: Operand, side: Side = "tip") -> Array:
         """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is
         meant at a station.
         """
@@ -233,7 +233,7 @@ class SectionLaw(Brief):
                 found = found + spread.here(couple, u, middle)
         return found
 
-    def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
+    def rate(self, force: str, rates: SectionLaw, xi: Array, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a
         station, move with it.
 
@@ -443,7 +443,7 @@ class SectionLaw(Brief):
             terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length,
         )
 
-    def _beyond(self, force: str, load: AnyStationLoad, u: Array, seen: Any) -> Array:
+    def _beyond(self, force: str, load: AnyStationLoad, u: Array, seen: Operand) -> Array:
         station, constant, slope = (_column(values, u) for values in self._acting(force, load))
         return np.where(seen, constant + slope * (station - u), 0.0)
 

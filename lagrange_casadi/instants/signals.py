@@ -7,12 +7,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..base.quantities import Output
 from ..base.status import Status
 from ..base.tables import table_of
@@ -184,7 +184,7 @@ class Signals:
             )
         return Samples(values, places, watched)
 
-    def inputs(self, t: Array, z: Array) -> tuple[Any, ...]:
+    def inputs(self, t: Array, z: Array) -> tuple[Operand, ...]:
         """Arguments of the graph's columns at times."""
         return t[None], *self.graph.motion(t[None], self.p), z, self.p
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from .sizes import largest
 
 
@@ -66,7 +66,7 @@ class Statistics:
         return cls(name, unit, None, None, *ends)
 
 
-def _ends(low: Array, high: Array) -> tuple[Any, Any]:
+def _ends(low: Array, high: Array) -> tuple[Operand, Operand]:
     """Places of the smallest and largest values; NaN is neither."""
     return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(
         np.where(np.isnan(high), -np.inf, high)

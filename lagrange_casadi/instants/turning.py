@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +73,9 @@ def _between(function: Callable[[Array], Array], places: Array, ends: Array) -> 
     return np.asarray(nearer)
 
 
-def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: Any) -> list[Array]:
+def zeros_of_uniform_shear(
+    f0: Array, f1: Array, f2: Array, mass: float, length: float
+) -> list[Array]:
     """Zeros of the shear force of a link of even mass without load points: f0 + b v + a v^2 = 0
     with v = 1 - u.
 

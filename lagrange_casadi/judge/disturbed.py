@@ -32,7 +32,7 @@ from ..arithmetic.interpret import (
     interpret,
     numpy_arithmetic,
 )
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..codegen.stages import Stages
 from .roundings import left
 
@@ -86,7 +86,7 @@ class Instants:
             )
         )
 
-    def at(self, which: Any) -> Instants:
+    def at(self, which: Operand) -> Instants:
         """Some of them."""
         return replace(self, t=self.t[which], z=self.z[:, which])
 
@@ -222,7 +222,7 @@ def _followed(instants: Instants, taken: Mapping[int, Array]) -> _Course:
     """
     kind, steps = instants.kind, list[_Step]()
 
-    def apply(k: int, code: int, values: tuple[Any, ...]) -> Any:
+    def apply(k: int, code: int, values: tuple[Operand, ...]) -> Array:
         result, decision = np.asarray(_operation(code, values), kind), None
         if code in _DECIDING or code == _HANDED:
             decision = taken.get(k, _decision(code, values, result))
@@ -242,12 +242,14 @@ def _followed(instants: Instants, taken: Mapping[int, Array]) -> _Course:
     return _Course(instants, steps, found)
 
 
-def _quiet(instants: Instants, decisions: Sequence[Any], z: Sequence[Array] | None = None) -> Array:
+def _quiet(
+    instants: Instants, decisions: Sequence[Array | None], z: Sequence[Array] | None = None
+) -> Array:
     """The columns in doubles, by parameters and constants as given, with decisions (..., n) taken
     before: (columns, ..., n).
     """
 
-    def apply(k: int, code: int, values: tuple[Any, ...]) -> Any:
+    def apply(k: int, code: int, values: tuple[Operand, ...]) -> Operand:
         return (
             _operation(code, values)
             if decisions[k] is None
@@ -274,7 +276,7 @@ def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
     instants, shape = course.instants, (TRIALS, course.instants.t.size)
     noise, sizes, sides = _Noise(instants, shape), _sizes(course), dict[int, Array]()
 
-    def apply(k: int, code: int, values: tuple[Any, ...]) -> Any:
+    def apply(k: int, code: int, values: tuple[Operand, ...]) -> Operand:
         step = course.steps[k]
         if step.decision is not None:
             decision = _decision(code, values, _operation(code, values))
@@ -304,7 +306,7 @@ def _columns(
     instants: Instants,
     apply: Callable[[int, int, tuple[Any, ...]], Any],
     constant: Callable[[float], Any],
-    p: Sequence[Any],
+    p: Sequence[float],
     z: Any,
     handed: Sequence[Array] | None = None,
     shape: tuple[int, ...] | None = None,
@@ -363,11 +365,11 @@ def _taken(
     return taken if best.any() else {}
 
 
-def _operation(code: int, values: tuple[Any, ...]) -> Any:
+def _operation(code: int, values: tuple[Operand, ...]) -> Operand:
     return values[0] if code == _HANDED else _KNOWN[code](*values)
 
 
-def _decision(code: int, operands: tuple[Any, ...], result: Any) -> Any:
+def _decision(code: int, operands: tuple[Operand, ...], result: Operand) -> Operand:
     """Decision of an operation: a truth, a sign, a whole number; or a number on the side of a jump
     on which it is.
     """
@@ -380,7 +382,7 @@ def _decision(code: int, operands: tuple[Any, ...], result: Any) -> Any:
     )
 
 
-def _following(code: int, values: tuple[Any, ...], decision: Any) -> Any:
+def _following(code: int, values: tuple[Operand, ...], decision: Operand) -> Operand:
     """A deciding operation's result, its decision being taken."""
     if code in _WHOLE or code == _HANDED:
         return decision
@@ -393,7 +395,7 @@ def _following(code: int, values: tuple[Any, ...], decision: Any) -> Any:
     return result - period * np.rint((result - decision) / period)
 
 
-def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
+def _differs(step: _Step, decision: Operand, unit: float) -> npt.NDArray[np.bool_]:
     """Return whether a decision differs from the one that was taken."""
     own = step.decision
     if step.code == _HANDED:
@@ -411,7 +413,7 @@ def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
     )
 
 
-def _sizes(course: _Course) -> list[Any]:
+def _sizes(course: _Course) -> list[Array | None]:
     """Largest rounding of each operation, (n,); None if it rounds nothing at any instant.
 
     An error may be half a unit in the last place. Where it happened to be next to nothing, it may
@@ -454,7 +456,7 @@ class _Noise:
         self.pool = self.generator.uniform(-MAGNIFIED, MAGNIFIED, (shape[0], shape[1] + _POOL))
         self.starts = itertools.cycle(self.generator.permutation(_POOL).tolist())
 
-    def put(self, value: Any, size: Any) -> Any:
+    def put(self, value: Operand, size: Operand) -> Operand:
         """A value with an error of up to a size."""
         start = next(self.starts)
         return value + self.pool[:, start : start + self.n] * size
@@ -465,7 +467,7 @@ class _Noise:
             value, np.spacing(np.abs(value).astype(self.instants.kind)) * (roundings / 2)
         )
 
-    def handed(self, value: Any) -> Any:
+    def handed(self, value: Array) -> Operand:
         """A value with the error that it gets where pairs end, or a double becomes a single."""
         single = self.instants.kind is np.float32
         return (

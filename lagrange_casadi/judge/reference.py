@@ -27,7 +27,7 @@ _STEPS = 30
 def reference(
     graph: Program,
     t: Sequence[Any],
-    p: Sequence[Any],
+    p: Sequence[float],
     *,
     z: Array | None = None,
     digits: int = DIGITS,

@@ -135,7 +135,7 @@ def _status(
     newton: int | None,
     gapped: bool,
     p: Array | None,
-) -> Any:
+) -> ca.Function:
     """``status(y, matter, iterated)``, with the limits as numbers, of all columns; the extent is
     the first of matter if ``gapped``.
 
@@ -175,7 +175,7 @@ def _fixed(function: Any, p: Array) -> Any:
     )
 
 
-def _matter(graph: Program, symbols: Any, *, extent_first: bool) -> Any:
+def _matter(graph: Program, symbols: ca.SX, *, extent_first: bool) -> ca.Function:
     """``matter(p)``: of each link with sections its length, and the coefficients of its density per
     unit of the ratio.
 
@@ -190,8 +190,8 @@ def _matter(graph: Program, symbols: Any, *, extent_first: bool) -> Any:
 
 
 def _sections(
-    graph: Program, symbols: Any, precision: Precision
-) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
+    graph: Program, symbols: ca.SX, precision: Precision
+) -> tuple[dict[str, ca.Function], dict[str, tuple[str, SectionInputs]]]:
     """The functions that give section forces, by name; and of each link which of them does, and
     what that takes.
     """
@@ -209,7 +209,7 @@ def _sections(
     return functions, found
 
 
-def _sound(graph: Program, symbols: Any, precision: Precision) -> tuple[Any, int]:
+def _sound(graph: Program, symbols: ca.SX, precision: Precision) -> tuple[ca.Function, int]:
     """``sound(p)``: what parameters change and must not be negative for the parts to be possible;
     and how many must be positive.
 
@@ -221,5 +221,5 @@ def _sound(graph: Program, symbols: Any, precision: Precision) -> tuple[Any, int
     return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)
 
 
-def _changes(value: Any) -> bool:
+def _changes(value: ca.SX) -> bool:
     return isinstance(value, ca.SX) and not value.is_constant()

@@ -191,7 +191,7 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     return page(solution, Live.of(scene, timing, wanted, command, design))
 
 
-def _bounds(asked: list[Any]) -> tuple[Any, ...]:
+def _bounds(asked: list[float]) -> tuple[float, ...]:
     return tuple(asked[:3])
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import h5py
 import numpy as np
@@ -66,7 +65,7 @@ def opened_file(
             yield file
 
 
-def _refuse_other(path: str | os.PathLike[str], found: Any, schema: str, kind: str) -> None:
+def _refuse_other(path: str | os.PathLike[str], found: str, schema: str, kind: str) -> None:
     """Raise :class:`StoreError` for a file of another schema."""
     if not isinstance(found, str) or found != schema:
         what = (

@@ -55,7 +55,7 @@ def check_shape(value: Any, shape: Shape, what: str) -> None:
         raise ValueError(f"{place} is not what it should be")
 
 
-def shown(value: Any) -> str:
+def shown(value: str) -> str:
     """A text that can be shown. Raises ``ValueError`` for anything else."""
     if not isinstance(value, str):
         raise ValueError(f"{value!r:.40} is not a text")
@@ -80,7 +80,7 @@ def check_links(file: h5py.File) -> None:
         raise ValueError(f"{place.decode(errors='replace')} is a link to elsewhere, or not a name")
 
 
-def check_dataset(dataset: Any, shape: Sequence[int] | None = None) -> None:
+def check_dataset(dataset: h5py.Dataset, shape: Sequence[int] | None = None) -> None:
     """Raise ``ValueError`` for what is no dataset of numbers that the file itself holds, or has
     another shape.
     """
@@ -161,7 +161,7 @@ def _is_shown(value: str) -> bool:
         return False
 
 
-def _is_real(value: Any) -> bool:
+def _is_real(value: float) -> bool:
     try:
         return type(value) in (int, float) and isinstance(float(value), float)
     except OverflowError:

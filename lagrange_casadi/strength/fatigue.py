@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import Numeric, public
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..beams.beam import Notch
 from ..beams.material import Material
 from ..beams.properties import larger
@@ -93,7 +93,7 @@ def factor(
         return 1.0 / used(np.asarray(amplitude), np.asarray(mean), material, criterion)
 
 
-def used(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
+def used(amplitude: Array, mean: Array, material: Material, criterion: str = "goodman") -> Operand:
     """Utilisation of a material by amplitude and mean, one over :func:`factor`; of numbers, arrays
     or expressions.
     """
@@ -185,7 +185,7 @@ def loaded(values: Array) -> Loaded:
     return Loaded(amplitude, mean, np.array(counts), pairs)
 
 
-def swing_squares(first: Any, last: Any) -> tuple[Any, Any]:
+def swing_squares(first: Operand, last: Operand) -> tuple[Operand, Operand]:
     """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and
     z, to others.
 

@@ -17,13 +17,12 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..arguments import Share, public
-from ..base.arrays import Array
+from ..base.arrays import Array, Operand
 from ..beams.beam import Notch
 from ..equations.stress import KINDS, concentration, squared
 from ..errors import DeclarationError, UnknownNameError, shown
@@ -314,7 +313,9 @@ class _Part:
         factor = (1.0 + 1.0 / math.cos(math.pi * self.degree / (places.size - 2))) / 2
         return np.moveaxis(squared(values, weights), 0, 1), factor
 
-    def summits(self, t: Any, f: Any, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
+    def summits(
+        self, t: Operand, f: Operand, weights: tuple[float, float]
+    ) -> tuple[Array, Array, Array]:
         """The largest squares at some instants and fibres, their ratios, and the sign of the normal
         stress there.
         """

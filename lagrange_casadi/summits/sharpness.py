@@ -70,7 +70,7 @@ class Sharpness:
     ``knots`` are the times at which the second derivative of a motion by samples has a kink.
     """
 
-    watched: Any
+    watched: ca.Function
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
 
@@ -174,7 +174,7 @@ class _Found:
     The time's own ``knots`` are known beforehand, and are not watched.
     """
 
-    def __init__(self, inputs: Sequence[Any], knots: Set[float]) -> None:
+    def __init__(self, inputs: Sequence[ca.SX], knots: Set[float]) -> None:
         self.knots = knots
         t, d, rate, acceleration, z, _ = inputs
         self.moving = ca.vertcat(t, d, rate, acceleration, z)
@@ -183,7 +183,7 @@ class _Found:
         self.kept: dict[tuple[Kind, int], tuple[Any, Watch]] = {}
         self.held: list[Any] = []
 
-    def look(self, function: Any, inputs: Sequence[Any]) -> None:
+    def look(self, function: ca.Function, inputs: Sequence[ca.SX]) -> None:
         """Go through the operations of a function of ``inputs``."""
         for operation, operands in operations(function, inputs):
             self.held += (
@@ -192,7 +192,7 @@ class _Found:
             for kind, argument, at in _watched(operation, operands):
                 self.add(kind, argument, at)
 
-    def add(self, kind: Kind, argument: Any, at: tuple[float, ...]) -> None:
+    def add(self, kind: Kind, argument: ca.SX, at: tuple[float, ...]) -> None:
         """Watch an argument, unless parameters alone set it."""
         argument = self.bare(argument) if kind in (Kind.POLE, Kind.ROOT) else argument
         if not self.moves(argument):
@@ -217,10 +217,10 @@ class _Found:
         known = self.kept[key][1].at if key in self.kept else ()
         self.kept[key] = row, Watch(kind, tuple(sorted({*known, *at})))
 
-    def moves(self, expression: Any) -> bool:
+    def moves(self, expression: ca.SX) -> bool:
         return not expression.is_constant() and bool(ca.depends_on(expression, self.moving))
 
-    def bare(self, divisor: Any) -> Any:
+    def bare(self, divisor: ca.SX) -> ca.SX:
         """A divisor without what is zero where it is, or nowhere: roots, squares, signs, and what
         parameters alone set.
         """
@@ -251,7 +251,7 @@ _ALIKE = {
 
 
 def _watched(
-    operation: int, operands: Sequence[Any]
+    operation: int, operands: Sequence[ca.SX]
 ) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
     """Watched functions of an operation."""
     x, y = operands[0], operands[-1]

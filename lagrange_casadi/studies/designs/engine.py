@@ -13,7 +13,6 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -213,7 +212,7 @@ class DesignEngine:
         """Bytes of memory that a core takes while it evaluates."""
         return 8 * self.kept.reduction.rows * self.count
 
-    def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+    def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with
         ``histories``, its series too.
 

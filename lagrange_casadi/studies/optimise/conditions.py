@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base.arrays import Array
+
+if TYPE_CHECKING:
+    import casadi as ca
 
 _ACTIVE, _COUNTS = 1e-7, 1e-6
 """Distance from zero within which a row is active; and the least relative multiplier, of the
@@ -53,7 +56,7 @@ class Conditions:
 
 
 def conditions(
-    slopes: Any,
+    slopes: ca.Function,
     at: Array,
     objective: float,
     by_g: Array,

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...base.vocabulary import Backend
 from ...declare.scene import Scene
 from ...declare.times import Times, Timing
@@ -42,7 +42,7 @@ class Box:
     def of(
         cls,
         scene: Scene,
-        over: Mapping[str, tuple[Any, Any]],
+        over: Mapping[str, tuple[Operand, Operand]],
         parameters: Mapping[str, float] | None,
     ) -> Box:
         """Bounds by parameter.
@@ -151,7 +151,7 @@ class Question:
         cls,
         scene: Scene,
         minimise: str | Sequence[str],
-        over: Mapping[str, tuple[Any, Any]],
+        over: Mapping[str, tuple[Operand, Operand]],
         subject_to: Sequence[str],
         *,
         transmission: float,

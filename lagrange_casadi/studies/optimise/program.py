@@ -232,7 +232,7 @@ class NonlinearProgram:
         rows: list[Any] = []
         places: list[slice] = []
 
-        def points(function: Any, size: int, *, moved: bool) -> tuple[Any, Any]:
+        def points(function: ca.Function, size: int, *, moved: bool) -> tuple[Any, Any]:
             """Values at as many points as there is room for, and their signs."""
             symbol = ca.MX.sym("points", _NUMBERS + n + size + nz, room)
             given.append(ca.vec(symbol))

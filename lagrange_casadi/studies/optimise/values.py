@@ -17,7 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Expression
 from ...base.quantities import Output
 from ...base.symbolic import symbolic, symbolic_property
 from ...base.tables import table_of
@@ -203,7 +203,7 @@ class PointValues:
     def _instant(self) -> Any:
         return differentiable(self.graph.instant)
 
-    def _at_time(self, inputs: list[Any], value: Any) -> Any:
+    def _at_time(self, inputs: list[Expression], value: Expression) -> Any:
         """The function with its drives and loops inside."""
         graph = self.graph
         at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...arguments import public
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...base.numerals import real
 from ...base.units import typed
 from ...errors import DeclarationError, check_kind
@@ -163,8 +163,8 @@ def chosen(
             raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
 
     def met(
-        numbers: npt.NDArray[np.int64], values: dict[str, Any]
-    ) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
+        numbers: npt.NDArray[np.int64], values: dict[str, Operand]
+    ) -> tuple[npt.NDArray[np.int64], dict[str, Operand]]:
         there = np.ones(numbers.size, bool)
         for condition in conditions:
             there &= condition.holds(values[condition.name])

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from ...base.arrays import Operand
+
 FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
 """Options of HDF5 for such chunks."""
 
@@ -26,7 +28,7 @@ _STORED = 0xFFFF
 _HEAD, _LAST = b"\x78\x01", b"\x03\x00"
 
 
-def encoded(values: Any) -> bytes:
+def encoded(values: Operand) -> bytes:
     """A chunk's numbers shuffled, deflated, and with a Fletcher-32 after them, as :data:`FILTERS`
     say.
     """

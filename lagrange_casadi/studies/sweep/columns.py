@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...base.quantities import Output
 from ...base.status import Status
 from ...base.tables import Table, table_of
@@ -186,7 +186,7 @@ class Harvest:
         self._look_closely(p, whole)
         return [encoded(values) for values in whole]
 
-    def _look_closely(self, p: Array, whole: Sequence[Any]) -> None:
+    def _look_closely(self, p: Array, whole: Sequence[Operand]) -> None:
         """Take one of the designs that have a result, and mark it
         where it fails its certificate.
         """
@@ -199,7 +199,7 @@ class Harvest:
             for column in whole[1:]:
                 column[chosen] = np.nan
 
-    def evaluate(self, p: Array) -> list[Any]:
+    def evaluate(self, p: Array) -> list[Operand]:
         """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own
         axes).
         """

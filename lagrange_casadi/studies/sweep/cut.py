@@ -6,12 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from .axes import DESIGN
 from .reading import Sweep
 from .sheet import value
@@ -77,7 +76,7 @@ class Cut:
         """Numbers of a list's designs."""
         return self.sweep.chosen[DESIGN]
 
-    def __getitem__(self, column: str) -> Any:
+    def __getitem__(self, column: str) -> Operand:
         """A column over the axes that are drawn, in their order, and its own."""
         values, dimensions = self.sweep[column], list(self.sweep.dimensions)
         if self.names:

@@ -152,13 +152,13 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
 
 
 def _stream(
-    group: Any,
+    group: h5py.Group,
     name: str,
     shape: tuple[int, ...],
     values: Callable[..., Any],
     dtype: Any,
     breathe: Callable[[], None],
-) -> Any:
+) -> h5py.Dataset:
     """A dataset over one axis, filled in pieces."""
     chunk = chunk_of(shape, _CHUNK)
     dataset = group.create_dataset(
@@ -170,12 +170,12 @@ def _stream(
     return dataset
 
 
-def _nothing(dtype: Any) -> Any:
+def _nothing(dtype: Any) -> float:
     """Value of a dataset that was never written: no number, or one without a meaning."""
     return np.nan if np.dtype(dtype).kind == "f" else np.iinfo(dtype).min
 
 
-def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> Any:
+def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> h5py.Dataset:
     """The dataset of a column, empty."""
     shape, chunk = (*plan.dims, *column.lengths), (*plan.chunk, *column.lengths)
     dataset = file.create_dataset(

@@ -403,7 +403,7 @@ def _ties(values: Array) -> str:
     return f" and\N{NO-BREAK SPACE}{others} more" if others else ""
 
 
-def _star(axes: Any, x: Any, y: Any, legend: dict[str, Any]) -> None:
+def _star(axes: Any, x: float, y: float, legend: dict[str, Any]) -> None:
     (legend["smallest of those drawn"],) = axes.plot(x, y, clip_on=False, zorder=5, **_STAR)
 
 

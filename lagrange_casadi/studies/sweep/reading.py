@@ -451,7 +451,7 @@ def identity_of(path: Path) -> dict[str, Any]:
     return dict(Sweep.open(path).identity)
 
 
-def _taken(dataset: Any, where: Any = ()) -> Values:
+def _taken(dataset: h5py.Dataset, where: Any = ()) -> Values:
     """Contents of a dataset. Raises :class:`StoreError` that names its column."""
     try:
         return np.asarray(dataset[where])
@@ -488,7 +488,7 @@ def names_in(given: str | Sequence[str]) -> list[str]:
 
 
 def _along(
-    dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]
+    dataset: h5py.Dataset, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]
 ) -> Array:
     """A parameter's values of the designs of a slab, flat."""
     if name not in axes:

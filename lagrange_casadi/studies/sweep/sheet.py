@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...base.arrays import Array
+from ...base.arrays import Array, Operand
 from ...declare.wanted_names import SENSITIVITY
 from .reading import Sweep
 from .scale import Scale, tick
@@ -58,7 +58,7 @@ class Gaps:
     words: tuple[str, ...]
 
     @classmethod
-    def of(cls, sweep: Sweep, status: Any) -> Gaps:
+    def of(cls, sweep: Sweep, status: Operand) -> Gaps:
         """Make them from the statuses of the designs that are drawn; the most frequent reasons have
         marks of their own.
         """
