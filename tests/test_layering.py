@@ -315,6 +315,42 @@ def test_a_leaf_can_be_taken_away(leaf, tmp_path):
     )
 
 
+def for_users() -> set[str]:
+    """Functions and classes that the façade or a command imports."""
+    facade = ast.walk(tree_of(PACKAGE / "__init__.pyi"))
+    commands = ast.walk(tree_of(modules()["cli.commands"]))
+    told = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
+    return {
+        f"{package}{node.module}.{alias.name}"
+        for node, package in told
+        if isinstance(node, ast.ImportFrom) and node.level == 1
+        for alias in node.names
+    }
+
+
+@pytest.mark.quick
+def test_no_function_takes_more_than_eight_arguments():
+    """Public functions and commands have as many keywords as users need. Inside, what belongs
+    together is one object.
+    """
+    users = for_users()
+    for name, path in modules().items():
+        tree = tree_of(path)
+        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        owners = {member: owner.name for owner in classes for member in owner.body}
+        for node in ast.walk(tree):
+            if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+                continue
+            taken = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            count = sum(one.arg not in ("self", "cls") for one in taken)
+            called = getattr(node, "name", "lambda")
+            marks = {ast.unparse(mark) for mark in getattr(node, "decorator_list", ())}
+            own = f"{name}.{owners.get(node, called)}" in users and not called.startswith("_")
+            assert count <= 8 or own or marks & {"public", "overload"}, (
+                f"{name}:{node.lineno} {called} takes {count}"
+            )
+
+
 @pytest.mark.quick
 def test_the_engine_knows_no_mechanism():
     """Nothing under the cases may know the words of one."""

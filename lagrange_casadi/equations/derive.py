@@ -237,16 +237,7 @@ class _Borne:
             moving.scene.mechanism.links.values(),
             moving.body.coordinates,
         )
-        forces = internal_forces(
-            moving.body,
-            moving.solved,
-            effort=want.effort,
-            reactions=want.reactions,
-            multipliers=want.multipliers,
-            sections=want.sections,
-            frictions=want.frictions,
-            weights=moving.scene.weights,
-        )
+        forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
         rubbed = forces.rubbed
         told = {
             key: value
