@@ -380,6 +380,12 @@ class _Asked:
         return 0
 
 
+_LEVEL = "-O2"
+"""How far the search is optimized: -O3 takes half as long again to compile, and no shipped case is
+searched faster.
+"""
+
+
 @functools.lru_cache(maxsize=8)
 def load_search(
     compiler: Compiler, extra: tuple[str, ...] = (), precision: Precision = "double"
@@ -389,7 +395,7 @@ def load_search(
 
     Raises :class:`CompilerError`.
     """
-    library = loaded(packed(source(precision), compiler), compiler, extra)
+    library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
     try:
         return Search(
             CALL.declare(getattr(library, FUNCTION)),
