@@ -242,7 +242,7 @@ class _Borne:
         told = {
             key: value
             for key, value in columns.items()
-            if ca.depends_on(ca.SX(value), rubbed.symbols)
+            if rubbed.symbols.numel() and ca.depends_on(ca.SX(value), rubbed.symbols)
         }
         placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
         pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))
