@@ -33,17 +33,17 @@ class SpreadLoad:
 
     @property
     def powers(self) -> int:
-        """How many powers it has."""
+        """Number of powers."""
         return max(map(len, self.terms.values()))
 
     @property
     def sound(self) -> bool:
-        """Whether it acts on some part of the link."""
+        """True if the load acts on some part of the link."""
         return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
 
     @property
     def marks(self) -> list[Array]:
-        """Where it begins and ends, those places left out that are the ends of the link."""
+        """Begin and end of the load, except those that are ends of the link."""
         return [
             place
             for place in (self.end - self.width, self.end)
@@ -51,7 +51,7 @@ class SpreadLoad:
         ]
 
     def during(self, instants: slice) -> SpreadLoad:
-        """The same at some of the instants."""
+        """Load at some of the instants."""
         terms = {
             member: tuple(values[instants] for values in rows)
             for member, rows in self.terms.items()
@@ -59,7 +59,7 @@ class SpreadLoad:
         return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SpreadLoad:
-        """The same load of a link with other numbers in it, (..., t)."""
+        """Load of a link with other numbers, (..., t)."""
 
         def value(member: str, power: int | None = None) -> Array:
             return outputs[Output("spread", link, member, self.name, power)]
@@ -85,8 +85,8 @@ class SpreadLoad:
     def moved(
         self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool
     ) -> Array:
-        """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose
-        changes are (..., t).
+        """Change of a force or moment at ratios ``u`` (t, n) with width and end, whose changes are
+        (..., t).
         """
         width, end = self.width[..., :1], self.end[..., :1]
         # x, L and a of equations/spreads.py.
@@ -152,22 +152,24 @@ _Load = TypeVar("_Load", bound="_AtStation")
 
 @dataclass(frozen=True, eq=False)
 class _AtStation:
-    """What acts on a link at a ``station``: the ratio xi/l, (t,). It moves where something slides
-    along the link.
+    """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
+    something slides along the link.
     """
 
     name: str
     station: Array
 
     def during(self: _Load, instants: slice) -> _Load:
-        """The same at some of the instants."""
+        """Load at some of the instants."""
         arrays = (entry.name for entry in fields(self) if entry.name != "name")
         return replace(self, **{name: getattr(self, name)[instants] for name in arrays})
 
 
 @dataclass(frozen=True, eq=False)
 class StationLoad(_AtStation):
-    """Force along ``n`` and across ``f`` the link's axis [N], moment ``m`` [N m], each (t,)."""
+    """Action in the plane: force along ``n`` and across ``f`` the link's axis [N], moment ``m``
+    [N m], each (t,).
+    """
 
     n: Array
     f: Array
@@ -176,7 +178,7 @@ class StationLoad(_AtStation):
 
 @dataclass(frozen=True, eq=False)
 class SpatialStationLoad(_AtStation):
-    """The same in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
+    """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
     ``mx``, ``my``, ``mz`` [N m].
     """
 
@@ -192,5 +194,7 @@ AnyStationLoad = StationLoad | SpatialStationLoad
 
 
 def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
-    """What acts at a station, by the names of its members: those of the plane or those of space."""
+    """Make the action at a load point by the names of its members: those of the plane or those of
+    space.
+    """
     return StationLoad(name, **members) if "f" in members else SpatialStationLoad(name, **members)

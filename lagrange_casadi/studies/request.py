@@ -1,4 +1,4 @@
-"""Requests: which instants, values and outputs of a scene, and by what method."""
+"""Request for instants, values and outputs of a scene, by a method."""
 
 from __future__ import annotations
 
@@ -12,9 +12,7 @@ from ..instants.rung import Rung
 
 @dataclass(frozen=True)
 class Request:
-    """What an evaluation is asked for; where it says nothing, the scene does: see
-    :func:`.evaluate`.
-    """
+    """Options of an evaluation; where it says nothing, the scene does: see :func:`.evaluate`."""
 
     parameters: Mapping[str, float] | None = None
     t: Times | None = None
