@@ -13,6 +13,7 @@ import pytest
 from lagrange_casadi import load_case
 from lagrange_casadi.cluster import sweeps as cluster
 from lagrange_casadi.errors import ClusterError
+from lagrange_casadi.studies.request import Request
 from lagrange_casadi.studies.sweep.axes import designs_of
 from lagrange_casadi.studies.sweep.plan import Plan, signature
 
@@ -45,8 +46,8 @@ def test_a_worker_needs_no_file_of_the_case(tmp_path):
     plan = Plan.of(
         load_case(tmp_path / "here").scene,
         designs_of({"l": [0.4, 0.5]}),
-        xi=(0.0, 1.0, 3),
-        keep="histories",
+        Request(xi=(0.0, 1.0, 3)),
+        "histories",
     )
     shutil.rmtree(tmp_path / "here")
     told, p = signature(plan.graph, plan.task, plan.harvest.engine.provenance), plan.block(0, 2)
@@ -64,7 +65,8 @@ def test_a_worker_needs_no_file_of_the_case(tmp_path):
 
 def asked(scene):
     """A plan of the paper's mechanism, what is sent of it, and what it is told by."""
-    plan = Plan.of(scene, designs_of({"l": [0.2, 0.3]}), t=(0.0, 0.08, 9), wanted=["effort"])
+    request = Request(t=(0.0, 0.08, 9), wanted=["effort"])
+    plan = Plan.of(scene, designs_of({"l": [0.2, 0.3]}), request)
     told = signature(plan.graph, plan.task, plan.harvest.engine.provenance)
     return plan, pickle.dumps((plan.graph, plan.harvest.whole)), told
 

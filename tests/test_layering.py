@@ -140,6 +140,19 @@ def test_every_module_has_its_place():
 
 
 @pytest.mark.quick
+def test_the_map_shows_the_rooms_and_files_that_are_there():
+    page = (Path(__file__).parents[1] / "docs" / "architecture.md").read_text()
+    rooms = [name for name in ORDER if (PACKAGE / name).is_dir()]
+    assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE) == rooms
+    here = {
+        *(path.name for path in modules().values()),
+        *(path.relative_to(PACKAGE).as_posix() for path in modules().values()),
+    }
+    for named in re.findall(r"[\w/]+\.py\b", page):
+        assert named in here or (PACKAGE.parent / named).exists(), named
+
+
+@pytest.mark.quick
 def test_imports_run_downward_only():
     for name in modules():
         for other, line in imported(name):
@@ -313,6 +326,42 @@ def test_a_leaf_can_be_taken_away(leaf, tmp_path):
     assert done.stderr.count(f"needs lagrange_casadi.{leaf}, which this installation lacks") == len(
         commands
     )
+
+
+def for_users() -> set[str]:
+    """Functions and classes that the façade or a command imports."""
+    facade = ast.walk(tree_of(PACKAGE / "__init__.pyi"))
+    commands = ast.walk(tree_of(modules()["cli.commands"]))
+    told = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
+    return {
+        f"{package}{node.module}.{alias.name}"
+        for node, package in told
+        if isinstance(node, ast.ImportFrom) and node.level == 1
+        for alias in node.names
+    }
+
+
+@pytest.mark.quick
+def test_no_function_takes_more_than_eight_arguments():
+    """Public functions and commands have as many keywords as users need. Inside, what belongs
+    together is one object.
+    """
+    users = for_users()
+    for name, path in modules().items():
+        tree = tree_of(path)
+        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        owners = {member: owner.name for owner in classes for member in owner.body}
+        for node in ast.walk(tree):
+            if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+                continue
+            taken = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            count = sum(one.arg not in ("self", "cls") for one in taken)
+            called = getattr(node, "name", "lambda")
+            marks = {ast.unparse(mark) for mark in getattr(node, "decorator_list", ())}
+            own = f"{name}.{owners.get(node, called)}" in users and not called.startswith("_")
+            assert count <= 8 or own or marks & {"public", "overload"}, (
+                f"{name}:{node.lineno} {called} takes {count}"
+            )
 
 
 @pytest.mark.quick

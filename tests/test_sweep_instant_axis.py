@@ -16,6 +16,7 @@ from lagrange_casadi import Sweep, derive, evaluate, sweep
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
+from lagrange_casadi.studies.request import Request
 from lagrange_casadi.studies.sweep.axes import designs_of
 from lagrange_casadi.studies.sweep.checking import check_sweep
 from lagrange_casadi.studies.sweep.plan import Plan, signature
@@ -160,7 +161,7 @@ def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
     scene = press(uneven, wanted=["effort"])
     rpm = scene.mechanism.parameters["rpm"].symbol
     words = {"t": {"t": (0, 60 / rpm, 31)}, "over": {"over": ("O", rpm / 6000, TURN, 31)}}[asked]
-    plan = Plan.of(scene, designs_of({"rpm": [60.0, 600.0]}), keep="histories", **words)
+    plan = Plan.of(scene, designs_of({"rpm": [60.0, 600.0]}), Request(**words), "histories")
     other, p = press(uneven, wanted=["effort"]), plan.block(0, 2)
     task = pickle.loads(pickle.dumps(plan.task))
     graph = derive(other)

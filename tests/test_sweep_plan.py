@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 import sweeps
 
+from lagrange_casadi.studies.request import Request
 from lagrange_casadi.studies.sweep import Grid
 from lagrange_casadi.studies.sweep.plan import Plan, difference
 
@@ -15,8 +16,8 @@ def test_another_posture_is_told_with_what_else_a_scene_is(monkeypatch):
     """A scene's fingerprint holds them all, and does not tell one from another."""
     sweeps.use(monkeypatch)
     scene, designs = sweeps.scene(), Grid({"l": [0.2, 0.3]})
-    before = Plan.of(scene, designs).identity
-    now = Plan.of(replace(scene, posture={"rod": 0.5}), designs).identity
+    before = Plan.of(scene, designs, Request()).identity
+    now = Plan.of(replace(scene, posture={"rod": 0.5}), designs, Request()).identity
     assert difference(before, before) is None
     assert (
         difference(before, now)

@@ -39,6 +39,7 @@ from lagrange_casadi.strength.fatigue import (
 from lagrange_casadi.strength.fibres import FibreStresses
 from lagrange_casadi.strength.worst import worst
 from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.studies.request import Request
 from lagrange_casadi.studies.sweep.axes import designs_of
 from lagrange_casadi.studies.sweep.checking import check_sweep
 from lagrange_casadi.studies.sweep.plan import Plan
@@ -289,9 +290,8 @@ def test_strength_is_kept_beside_all():
     scene = Scene(
         m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 9), wanted=["all", "safety", "deflection:arm"]
     )
-    kept = {
-        column.name for column in Plan.of(scene, designs_of({"l": [0.4]}), rung=Rung("vm")).columns
-    }
+    plan = Plan.of(scene, designs_of({"l": [0.4]}), Request(rung=Rung("vm")))
+    kept = {column.name for column in plan.columns}
     for name in evaluate(scene, backend="vm", certificate=False).names():
         assert (f"peak:{name}" in kept) == (not name.startswith(("motion:", "pose:"))), name
     assert "least:yield:arm" in kept

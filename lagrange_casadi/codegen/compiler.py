@@ -40,9 +40,10 @@ _COMMON = (
     "-shared",
     "-nostartfiles",
 )
+LEVEL = "-O3"
 FLAGS: dict[Language, tuple[str, ...]] = {
-    "c": ("-std=c99", "-O3", *_COMMON),
-    "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
+    "c": ("-std=c99", LEVEL, *_COMMON),
+    "c++": ("-std=c++11", LEVEL, "-march=native", *_COMMON),
 }
 """No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an
 instruction, no call. No start files: those that gcc links in where -ffast-math is asked for make
@@ -77,12 +78,10 @@ class Compiler:
     command: tuple[str, ...]
     version: str
 
-    def flags(self, source: str) -> tuple[str, ...]:
-        """The flags for a source."""
-        flags = FLAGS[self.language]
-        if statements(source) < LARGE:
-            return flags
-        return tuple("-O1" if flag.startswith("-O") else flag for flag in flags)
+    def flags(self, source: str, level: str = LEVEL) -> tuple[str, ...]:
+        """The flags for a source, at a level of optimization where it is not large."""
+        level = level if statements(source) < LARGE else "-O1"
+        return tuple(level if flag == LEVEL else flag for flag in FLAGS[self.language])
 
 
 def statements(source: str) -> int:
@@ -184,7 +183,9 @@ def packed(text: str, compiler: Compiler) -> str:
     )
 
 
-def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctypes.CDLL:
+def loaded(
+    source: str, compiler: Compiler, extra: tuple[str, ...] = (), level: str = LEVEL
+) -> ctypes.CDLL:
     """The shared library of a source, from the cache or newly built.
 
     ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where
@@ -192,7 +193,7 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
     whose whole message is kept beside the source in the cache, does not end in time, or builds what
     does not load.
     """
-    flags = (*compiler.flags(source), *extra)
+    flags = (*compiler.flags(source, level), *extra)
     machine = _machine() if "-march=native" in flags else platform.machine()
     identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])
     name = hashlib.sha256(identity.encode()).hexdigest()[:32]

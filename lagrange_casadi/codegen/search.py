@@ -384,6 +384,10 @@ class _Asked:
         return 0
 
 
+_LEVEL = "-O2"
+"""Optimization of the search: -O3 takes half as long again to compile, and searches no faster."""
+
+
 @functools.lru_cache(maxsize=8)
 def load_search(
     compiler: Compiler, extra: tuple[str, ...] = (), precision: Precision = "double"
@@ -393,7 +397,7 @@ def load_search(
 
     Raises :class:`CompilerError`.
     """
-    library = loaded(packed(source(precision), compiler), compiler, extra)
+    library = loaded(packed(source(precision), compiler), compiler, extra, _LEVEL)
     try:
         return Search(
             CALL.declare(getattr(library, FUNCTION)),

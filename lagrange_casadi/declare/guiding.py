@@ -30,6 +30,7 @@ def laws_of(
     :class:`DeclarationError` for what cannot move so.
     """
     found: dict[str, Motion] = {}
+    coordinates = mechanism.coordinates
     for name, laws in motion.items():
         given = (
             (laws,)
@@ -43,7 +44,7 @@ def laws_of(
                 found |= _along_axes(joint, given)
                 continue
             expected, what = 1, "joint"
-        elif name in mechanism.coordinates:
+        elif name in coordinates:
             expected, what = 1, "joint"
         elif mechanism.space and (name in mechanism.paths or name in mechanism.bodies):
             raise DeclarationError(

@@ -267,7 +267,8 @@ class Scene(Graphs):
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
             object.__setattr__(self, what, MappingProxyType(dict(mapping)))
-        guides = [name for name in self.laws if name not in self.mechanism.coordinates]
+        coordinates = self.mechanism.coordinates
+        guides = [name for name in self.laws if name not in coordinates]
         if guides and self.drives is None:
             raise DeclarationError(
                 f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints"

@@ -148,14 +148,14 @@ class EquationGraph(Graphs):
         )
 
     @classmethod
-    def driven(cls, mechanism: Mechanism, coordinate: str, law: Motion) -> EquationGraph:
-        """A prescribed motion, of a joint, a point or a body, as the equation that what moves is
-        where its law says.
+    def driven(
+        cls, mechanism: Mechanism, coordinate: str, moved: _Measured, law: Motion
+    ) -> EquationGraph:
+        """A prescribed motion, of a joint, a point or a body, as the equation that what is
+        ``moved`` is where its law says.
         """
-        one = _moved(mechanism, coordinate)
-        return cls._over(
-            mechanism, coordinate, one.place - law.graph(mechanism.time), [one], False, None
-        )
+        gap = moved.place - law.graph(mechanism.time)
+        return cls._over(mechanism, coordinate, gap, [moved], False, None)
 
     @classmethod
     def _over(
@@ -357,10 +357,14 @@ class Stated:
             *mechanism.constraints.values(),
             *mechanism.rows.values(),
         )
+        coordinates = mechanism.coordinates
         return cls(
             equations=tuple(EquationGraph.of(mechanism, one) for one in stated),
             motions=tuple(
-                EquationGraph.driven(mechanism, name, law) for name, law in motions.items()
+                EquationGraph.driven(
+                    mechanism, name, _moved(mechanism, name, joint=name in coordinates), law
+                )
+                for name, law in motions.items()
             ),
             laws=tuple(
                 LoadGraph.of(mechanism, load)
@@ -412,9 +416,9 @@ def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
             yield _Measured("direction", of.name, _ORIGIN, measure.places[0], measure.rates[0])
 
 
-def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
+def _moved(mechanism: Mechanism, coordinate: str, *, joint: bool) -> _Measured:
     """Coordinate that a motion moves: of a joint, or, for a guide, of a point or of a body."""
-    if coordinate in mechanism.coordinates:
+    if joint:
         return _Measured("coordinate", coordinate)
     name, _, what = coordinate.rpartition(".")
     if what == "angle":

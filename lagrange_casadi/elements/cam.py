@@ -141,7 +141,9 @@ def disc_cam(
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
-    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base_radius)
+    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
+    base = own.expression(f"{what}: base_radius", base_radius, "m")
+    base = _positive(f"{what}: base_radius", base)
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     make = (
@@ -149,7 +151,7 @@ def disc_cam(
         if follower.kind == "prismatic"
         else (_swinging_flat if flat else _swinging)
     )
-    design = make(what, x, rise, layout)
+    design = make(base, x, rise, layout)
     touched = follower.child if flat and follower.kind == "revolute" else layout.held
     constraint = _contact(mechanism, name, cam, touched, design, rise)
     made = Cam(name, mechanism, constraint, design)
@@ -174,7 +176,6 @@ class Layout:
     cam: Joint
     follower: Joint
     held: Point
-    base: Expression
     roller: Expression
     side: int
 
@@ -205,7 +206,6 @@ def layout_of(
     roller: Expression | None,
     flat: bool,
     side: int,
-    base: Expression,
 ) -> Layout:
     """Check the arguments of :func:`disc_cam` on a cam and its follower.
 
@@ -238,14 +238,7 @@ def layout_of(
         if roller is None
         else _positive(f"{what}: roller", own.expression(f"{what}: roller", roller, "m"))
     )
-    return Layout(
-        cam,
-        follower,
-        held,
-        _positive(f"{what}: base_radius", own.expression(f"{what}: base_radius", base, "m")),
-        radius,
-        side,
-    )
+    return Layout(cam, follower, held, radius, side)
 
 
 def _positive(what: str, radius: Expression) -> Expression:
@@ -291,12 +284,12 @@ def _pitch_normal(
     return outward[0] / size, outward[1] / size
 
 
-def _translating(what: str, x: Expression, rise: Expression, layout: Layout) -> Design:
+def _translating(base: Expression, x: Expression, rise: Expression, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     seat = _sum(layout.away, _turned(layout.arm, layout.follower.angle))
     offset = _dot(seat, aside)
-    height = ca.sqrt((layout.base + layout.roller) ** 2 - offset * offset) + rise
+    height = ca.sqrt((base + layout.roller) ** 2 - offset * offset) + rise
     place = _sum((offset * aside[0], offset * aside[1]), up, height)
     normal = _pitch_normal(x, place)
     return Design(
@@ -304,26 +297,26 @@ def _translating(what: str, x: Expression, rise: Expression, layout: Layout) -> 
     )
 
 
-def _translating_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
+def _translating_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     offset = _dot(_sum(layout.away, _turned(layout.arm, layout.follower.angle)), aside)
-    place = _sum((offset * aside[0], offset * aside[1]), up, layout.base + rise)
+    place = _sum((offset * aside[0], offset * aside[1]), up, base + rise)
     # It touches beside the line through the cam's centre by the slope of the lift.
     beside = ca.jacobian(rise, x)
-    contact = _sum((beside * aside[0], beside * aside[1]), up, layout.base + rise)
+    contact = _sum((beside * aside[0], beside * aside[1]), up, base + rise)
     moment = _cross(_sum(contact, place, -1.0), up)
     return Design(
         x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0
     )
 
 
-def _swinging(what: str, x: Any, rise: Any, layout: Layout) -> Design:
+def _swinging(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
     away, arm = layout.away, layout.arm
     length, distance, prime = (
         ca.sqrt(ca.SX(_dot(arm, arm))),
         ca.sqrt(ca.SX(_dot(away, away))),
-        layout.base + layout.roller,
+        base + layout.roller,
     )
     along, across = _swung(
         layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
@@ -335,10 +328,10 @@ def _swinging(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     )
 
 
-def _swinging_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
+def _swinging_flat(base: Any, x: Any, rise: Any, layout: Layout) -> Design:
     away = layout.away
     distance = ca.sqrt(ca.SX(_dot(away, away)))
-    sine = layout.base / distance
+    sine = base / distance
     along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
     # The normal passes through the point at which both turn alike.
     reach = -_dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x))

@@ -121,7 +121,7 @@ def profile_lift(
     do; :class:`.PathError` for a file that cannot be read.
     """
     what = "profile"
-    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base=1.0)
+    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side)
     values = mechanism.values()
 
     def number(expression: Any) -> float:

@@ -240,21 +240,12 @@ class _Borne:
             moving.scene.mechanism.links.values(),
             moving.body.coordinates,
         )
-        forces = internal_forces(
-            moving.body,
-            moving.solved,
-            effort=want.effort,
-            reactions=want.reactions,
-            multipliers=want.multipliers,
-            sections=want.sections,
-            frictions=want.frictions,
-            weights=moving.scene.weights,
-        )
+        forces = internal_forces(moving.body, moving.solved, want, moving.scene.weights)
         rubbed = forces.rubbed
         told = {
             key: value
             for key, value in columns.items()
-            if ca.depends_on(ca.SX(value), rubbed.symbols)
+            if rubbed.symbols.numel() and ca.depends_on(ca.SX(value), rubbed.symbols)
         }
         placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
         pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))

@@ -33,6 +33,7 @@ from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
+from ..declare.scene import Wanted
 from ..geometry.frames import Frame, Velocities
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
@@ -85,21 +86,15 @@ def needed_reactions(
 def internal_forces(
     multibody: Multibody,
     kinematics: Kinematics,
-    *,
-    effort: bool,
-    reactions: Sequence[str],
-    multipliers: Sequence[str],
-    sections: Sequence[str],
-    frictions: Sequence[str],
+    want: Wanted,
     weights: Mapping[str, Any] | None,
     signs: Mapping[str, Any] | None = None,
 ) -> InternalForces:
-    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows,
-    and the laws of links.
+    """Derive the efforts, reactions, multipliers of constraints and rows, laws of links and
+    frictions that are wanted.
 
     ``weights`` are those of the drives, where these are others than the joints whose motion is
-    given; ``frictions`` those that are wanted themselves. ``signs`` are those of frictions at rest,
-    which are open without: see :func:`.solve`.
+    given. ``signs`` are those of frictions at rest, which are open without: see :func:`.solve`.
     """
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
@@ -136,12 +131,12 @@ def internal_forces(
     )
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
-    borne_by = needed_reactions(multibody.mechanism, reactions, sections)
+    borne_by = needed_reactions(multibody.mechanism, want.reactions, want.sections)
     found = {name: _reaction(multibody, joints[name], by_joint) for name in borne_by}
     columns: dict[Column, Any] = (
-        {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
+        {Output("effort", joint): force for joint, force in drives.items()} if want.effort else {}
     )
-    for name in reactions:
+    for name in want.reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
         columns |= {
             Output("reaction", name, member): found[name].ground.member(member)
@@ -151,14 +146,14 @@ def internal_forces(
             columns |= _on_own_axes(joints[name], found[name].own)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
-    columns |= {Output("multiplier", name): tying[name] for name in multipliers}
-    if reactions:
+    columns |= {Output("multiplier", name): tying[name] for name in want.multipliers}
+    if want.reactions:
         columns |= {
             Check("multiplier", name): multiplier
             for name, multiplier in tying.items()
-            if name not in multipliers
+            if name not in want.multipliers
         }
-    for name in sections:
+    for name in want.sections:
         columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
@@ -179,11 +174,13 @@ def internal_forces(
     columns = {name: next(every) for name in columns}
     rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
     acting = solve(
-        [rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free, signs
+        [rubbed[name] for name in needed(column(columns.values()), rubbed, want.frictions)],
+        free,
+        signs,
     )
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
     columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
-    for name in frictions:
+    for name in want.frictions:
         columns |= {
             Output("friction", name, "along"): acting.forces[name],
             Output("friction", name, "loss"): acting.lost[name],

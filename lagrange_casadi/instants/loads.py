@@ -147,33 +147,41 @@ def spread_load(
     return SpreadLoad(name, members["width"], members["end"], powers)
 
 
-@dataclass(frozen=True, eq=False)
-class StationLoad:
-    """Action on a link at a load point: force along ``n`` and across ``f`` the axis [N], moment
-    ``m`` [N m], each (t,).
+_Load = TypeVar("_Load", bound="_AtStation")
 
-    ``station`` is the ratio xi/l, (t,): it moves where something slides along the link.
+
+@dataclass(frozen=True, eq=False)
+class _AtStation:
+    """Action on a link at a load point, whose ``station`` is the ratio xi/l, (t,): it moves where
+    something slides along the link.
     """
 
     name: str
     station: Array
+
+    def during(self: _Load, instants: slice) -> _Load:
+        """Load at some of the instants."""
+        arrays = (entry.name for entry in fields(self) if entry.name != "name")
+        return replace(self, **{name: getattr(self, name)[instants] for name in arrays})
+
+
+@dataclass(frozen=True, eq=False)
+class StationLoad(_AtStation):
+    """Action in the plane: force along ``n`` and across ``f`` the link's axis [N], moment ``m``
+    [N m], each (t,).
+    """
+
     n: Array
     f: Array
     m: Array
 
-    def during(self, instants: slice) -> StationLoad:
-        """Load at some of the instants."""
-        return _cut(self, instants)
-
 
 @dataclass(frozen=True, eq=False)
-class SpatialStationLoad:
+class SpatialStationLoad(_AtStation):
     """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
     ``mx``, ``my``, ``mz`` [N m].
     """
 
-    name: str
-    station: Array
     n: Array
     fy: Array
     fz: Array
@@ -181,13 +189,8 @@ class SpatialStationLoad:
     my: Array
     mz: Array
 
-    def during(self, instants: slice) -> SpatialStationLoad:
-        """Load at some of the instants."""
-        return _cut(self, instants)
-
 
 AnyStationLoad = StationLoad | SpatialStationLoad
-_Load = TypeVar("_Load", StationLoad, SpatialStationLoad)
 
 
 def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
@@ -195,14 +198,3 @@ def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
     space.
     """
     return StationLoad(name, **members) if "f" in members else SpatialStationLoad(name, **members)
-
-
-def _cut(load: _Load, instants: slice) -> _Load:
-    return replace(
-        load,
-        **{
-            entry.name: getattr(load, entry.name)[instants]
-            for entry in fields(load)
-            if entry.name != "name"
-        },
-    )

@@ -60,19 +60,17 @@ def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Any]]:
         peak = stress.peak("von_mises")
         chosen = _instants(solution, peak.t)
         grid = Stress(stress.member.during(chosen)).grid("von_mises", _ratios())
-        top = mark(solution, peak.value, peak.t, peak.xi)
-        yield _entry(
-            f"stress:{link}",
-            link,
-            "von Mises' stress",
-            "Pa",
-            False,
-            top,
-            peak.fibre,
-            chosen,
-            grid,
-            solution,
-            arrays,
+        yield asdict(
+            Map(
+                name=f"stress:{link}",
+                link=link,
+                what="von Mises' stress",
+                unit="Pa",
+                signed=False,
+                **_numbers(solution, chosen, grid, arrays),
+                peak=mark(solution, peak.value, peak.t, peak.xi),
+                where=peak.fibre,
+            )
         )
     for link in bending_of(solution):
         bent = solution.deflection(link)
@@ -86,26 +84,18 @@ def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Any]]:
             solution.during(most >= _BESIDE * float(np.fmax.reduce(most))).deflection(link).peak()
         )
         chosen = _instants(solution, largest.t)
-        grid = sizes[chosen]
-        top = mark(solution, largest.value, largest.t, largest.xi)
-        from_where = (
-            "from the line between its ends"
-            if bent.against == "ends"
-            else "from its axis at the base"
-        )
-        words, signed = "deflection across the link", not bent.member.space
-        yield _entry(
-            f"deflection:{link}",
-            link,
-            words,
-            "m",
-            signed,
-            top,
-            from_where,
-            chosen,
-            grid,
-            solution,
-            arrays,
+        line = "the line between its ends" if bent.against == "ends" else "its axis at the base"
+        yield asdict(
+            Map(
+                name=f"deflection:{link}",
+                link=link,
+                what="deflection across the link",
+                unit="m",
+                signed=not bent.member.space,
+                **_numbers(solution, chosen, sizes[chosen], arrays),
+                peak=mark(solution, largest.value, largest.t, largest.xi),
+                where=f"from {line}",
+            )
         )
 
 
@@ -119,23 +109,11 @@ def _instants(solution: Solution, t: float) -> Array:
     return np.unique(np.append(spread, int(np.argmax(solution.t == t))))
 
 
-def _entry(
-    name: str,
-    link: str,
-    what: str,
-    unit: str,
-    signed: bool,
-    peak: Mark,
-    where: str,
-    chosen: Array,
-    grid: Array,
-    solution: Solution,
-    arrays: Arrays,
-) -> dict[str, Any]:
-    over = arrays.add(solution.over.values[chosen]) if solution.over else None
-    times, ratios, values = (
-        arrays.add(solution.t[chosen]),
-        arrays.add(_ratios()),
-        arrays.add(grid.ravel()),
-    )
-    return asdict(Map(name, link, what, unit, signed, times, over, ratios, values, peak, where))
+def _numbers(solution: Solution, chosen: Array, grid: Array, arrays: Arrays) -> dict[str, Any]:
+    """Numbers of the arrays of a map, of the instants that are chosen."""
+    return {
+        "over": arrays.add(solution.over.values[chosen]) if solution.over else None,
+        "t": arrays.add(solution.t[chosen]),
+        "xi": arrays.add(_ratios()),
+        "values": arrays.add(grid.ravel()),
+    }

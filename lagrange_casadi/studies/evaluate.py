@@ -12,6 +12,7 @@ from ..declare.giving import Elastic
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..instants.rung import Rung
+from .request import Request
 
 if TYPE_CHECKING:
     from ..instants.solution import Solution
@@ -70,17 +71,7 @@ def evaluate(
     the arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
     """
     rung = Rung(backend, precision, newton, table, flags)
+    request = Request(parameters, t, over, xi, wanted, rung)
     from .solving import solve
 
-    return solve(
-        scene,
-        rung,
-        parameters=parameters,
-        t=t,
-        over=over,
-        xi=xi,
-        wanted=wanted,
-        threads=threads,
-        certificate=certificate,
-        elastic=elastic,
-    )
+    return solve(scene, request, threads=threads, certificate=certificate, elastic=elastic)

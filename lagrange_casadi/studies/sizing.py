@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import casadi as ca
 
@@ -28,7 +27,8 @@ from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, Unkno
 from ..instants.solution import Solution
 from ..strength.member import Member
 from ..strength.safety import Safety, Verdict, as_column, judged
-from .evaluate import evaluate
+from .request import Request
+from .solving import solve
 
 _TURNS = 100
 """Largest number of evaluations of loads before a search is given up."""
@@ -124,18 +124,8 @@ def size(
     :class:`NoDesignError` where no profile is safe; and what :func:`.evaluate` and
     :func:`.strength.safety` do.
     """
-    search = _Search.of(
-        scene,
-        profiles,
-        links,
-        parameters or {},
-        float(safety),
-        t,
-        over,
-        criterion,
-        yielding,
-        deflection,
-    )
+    enough = _Enough(float(safety), criterion, yielding, deflection)
+    search = _Search.of(scene, profiles, links, Request(parameters, t, over), enough)
     choice = search.lightened(search.safe())
     return search.told(choice)
 
@@ -154,18 +144,28 @@ class _Slot:
         return {self.parameters[name]: value for name, value in profile.dimensions.items()}
 
 
+@dataclass(frozen=True)
+class _Enough:
+    """Factor of safety that is enough, by which criteria, and the largest deflection over a
+    link's length.
+    """
+
+    factor: float
+    criterion: str
+    yielding: str
+    deflection: float | None
+
+
 @dataclass(eq=False)
 class _Search:
     evaluated: Callable[..., Solution]
+    request: Request
     template: Template
     slots: dict[str, _Slot]
-    fixed: dict[str, float]
-    wanted: float
+    enough: _Enough
     left: Mapping[str, str]
     outputs: Sequence[str]
     sections: Sequence[str]
-    judging: dict[str, Any]
-    bent: float | None = None
     evaluations: int = 0
 
     @classmethod
@@ -174,13 +174,8 @@ class _Search:
         scene: Scene,
         profiles: Sequence[Profile],
         links: Sequence[str] | None,
-        parameters: Mapping[str, float],
-        wanted: float,
-        t: Times | None,
-        over: Over | None,
-        criterion: str,
-        yielding: str,
-        bent: float | None,
+        request: Request,
+        enough: _Enough,
     ) -> _Search:
         if not profiles:
             raise DeclarationError("size: expected at least one profile")
@@ -190,7 +185,7 @@ class _Search:
             raise UnknownNameError("link with a beam", unknown, having)
         slots: dict[str, _Slot] = {}
         left: dict[str, str] = {}
-        defaults = scene.values(parameters)
+        defaults = scene.values(request.parameters)
         spinning = [
             name for name in content.get("bars", ()) if name not in content.get("beside", ())
         ]
@@ -214,30 +209,20 @@ class _Search:
                         f"size: links '{other}' and '{name}' share parameter '{parameter}'; give"
                         " each its own"
                     )
-        evaluated, judging = (
-            partial(evaluate, scene, t=t, over=over),
-            {"criterion": criterion, "yielding": yielding},
-        )
         sections = [f"section:{name}" for name in having]
-        return cls(
-            evaluated,
-            described,
-            slots,
-            dict(parameters),
-            wanted,
-            left,
-            scene.wanted,
-            sections,
-            judging,
-            bent,
-        )
+        evaluated = partial(solve, scene)
+        return cls(evaluated, request, described, slots, enough, left, scene.wanted, sections)
+
+    @property
+    def fixed(self) -> Mapping[str, float]:
+        """Values that were given."""
+        return self.request.parameters or {}
 
     def solve(self, choice: Mapping[str, int]) -> Solution:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
-        return self.evaluated(
-            parameters=self.values(choice), wanted=self.sections, certificate=False
-        )
+        asked = replace(self.request, parameters=self.values(choice), wanted=self.sections)
+        return self.evaluated(asked, certificate=False)
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -253,23 +238,34 @@ class _Search:
         slot, values = self.slots[name], values_of(solution.description)
         values |= slot.values(slot.profiles[k])
         other = replace(member, beam=beam_at(self.template, name, list(values.values())))
-        enough = 0.0 if whole else self.wanted
-        found = judged(other, as_column(solution.description, other), **self.judging, enough=enough)
-        if self.bent is None or found.factor < enough:
+        criterion, yielding = self.enough.criterion, self.enough.yielding
+        enough = 0.0 if whole else self.enough.factor
+        found = judged(
+            other,
+            as_column(solution.description, other),
+            criterion=criterion,
+            yielding=yielding,
+            enough=enough,
+        )
+        if self.enough.deflection is None or found.factor < enough:
             return found
         against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
         peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
-        allowed = self.bent * member.law.length
+        allowed = self.enough.deflection * member.law.length
         where = (
             f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l ="
             f" {peak.xi:.4f}"
         )
         verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
-        return StiffSafety(found.link, (*found.verdicts, verdict), found.is_open, self.wanted)
+        return StiffSafety(
+            found.link, (*found.verdicts, verdict), found.is_open, self.enough.factor
+        )
 
     def suffices(self, found: Safety) -> bool:
         """Return whether a link is safe, and stiff if that is asked for."""
-        return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.wanted
+        return (
+            found.suffices if isinstance(found, StiffSafety) else found.factor >= self.enough.factor
+        )
 
     def safe(self) -> dict[str, int]:
         """Numbers of profiles that are safe under the loads that they bring, each the first that is
@@ -297,10 +293,11 @@ class _Search:
         most = f"the most, '{profile}', has {found.factor:.4g} against {found.governs.against}"
         stiff = (
             ""
-            if self.bent is None
-            else f", and a deflection of {self.bent:g} of its length at most"
+            if self.enough.deflection is None
+            else f", and a deflection of {self.enough.deflection:g} of its length at most"
         )
-        return f"size: link '{name}': no profile has a factor of {self.wanted:g}{stiff}; {most}"
+        factor = self.enough.factor
+        return f"size: link '{name}': no profile has a factor of {factor:g}{stiff}; {most}"
 
     def lightened(self, choice: dict[str, int]) -> dict[str, int]:
         """The same, each link as light as the others allow."""
@@ -321,9 +318,9 @@ class _Search:
 
     def told(self, choice: Mapping[str, int]) -> Sizing:
         """Result of a choice, evaluated anew with its certificate."""
-        solution = self.evaluated(
-            parameters=self.values(choice), wanted=[*self.outputs, *self.sections]
-        )
+        wanted = [*self.outputs, *self.sections]
+        asked = replace(self.request, parameters=self.values(choice), wanted=wanted)
+        solution = self.evaluated(asked)
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description["bodies"][name]["mass"]

@@ -9,16 +9,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arguments import Outputs, ThreadCount
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import cores, in_words, require
 from ..declare.ends import BEYOND
-from ..declare.even_points import EvenPoints, checked_ratios, points
+from ..declare.even_points import checked_ratios, points
 from ..declare.giving import Elastic
 from ..declare.laws import Laws
 from ..declare.scene import Scene
-from ..declare.times import Over, Times, Timing, instants_of, span_of
+from ..declare.times import Timing, instants_of, span_of
 from ..declare.wanted_names import by_parameters
 from ..equations.checks import Check
 from ..equations.derive import compile_scene
@@ -38,6 +37,7 @@ from ..instants.solution import Solution
 from ..judge.accuracy import estimate, explained
 from ..judge.certificate import certify, failure, tolerance
 from ..sensitivity.series import series_slopes
+from .request import Request
 
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""
@@ -49,22 +49,17 @@ _LONG = 60.0
 
 def solve(
     scene: Scene,
-    rung: Rung,
+    request: Request,
     *,
-    parameters: Mapping[str, float] | None,
-    t: Times | None,
-    over: Over | None,
-    xi: EvenPoints | None,
-    wanted: Outputs | None,
-    threads: ThreadCount | None,
-    certificate: bool,
-    elastic: Elastic | None,
+    threads: int | None = None,
+    certificate: bool = True,
+    elastic: Elastic | None = None,
 ) -> Solution:
-    """Evaluate a scene by one method: see :func:`.evaluate`."""
-    values = scene.values(parameters)
-    timing = scene.timing(t, over)
+    """Evaluate a scene: see :func:`.evaluate`."""
+    rung, values = request.rung, scene.values(request.parameters)
+    timing = scene.timing(request.t, request.over)
     scene.checked(values)
-    ratios = checked_ratios(scene.xi if xi is None else xi)
+    ratios = checked_ratios(scene.xi if request.xi is None else request.xi)
     scene = scene.giving(elastic)
     gives = scene.elastic
     if gives and rung.table is not None:
@@ -72,7 +67,7 @@ def solve(
             "elastic: a table has no place for what equilibrium leaves open; evaluate without a"
             " table"
         )
-    names = scene.wanted if wanted is None else wanted
+    names = scene.wanted if request.wanted is None else request.wanted
     graph = compile_scene(scene, names, parameters=values)
     rung.check(graph)
     checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Annotated, Any, TypeAlias
 
@@ -22,11 +22,11 @@ from ...declare.description import fitted_of
 from ...declare.scene import Scene
 from ...declare.times import Over, Times
 from ...declare.wanted_names import without_fitted, without_life
-from ...equations.derive import compile_scene
+from ...equations.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.rung import Rung
 from ...instants.solution import Solution
-from ..evaluate import evaluate
+from ..request import Request
 from .engine import DesignEngine
 from .gradients import MeanSlopes
 from .outcome import KEPT, Outcome
@@ -410,24 +410,14 @@ def prepare(
     """
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")
-    without_fitted(
-        fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes"
-    )
-    engine = DesignEngine.of(
-        scene,
-        wanted,
-        rung=Rung(backend, precision, newton, None, flags),
-        timing=scene.timing(t, over),
-    )
-    asked: dict[str, Any] = {
-        "t": t,
-        "over": over,
-        "wanted": wanted,
-        "backend": backend,
-        "precision": precision,
-        "newton": newton,
-    }
-    return Prepared(
-        engine,
-        lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False),
-    )
+    without_fitted(fitted_of(template(scene).content), named, "prepared scenes")
+    rung = Rung(backend, precision, newton, None, flags)
+    request = Request(t=t, over=over, wanted=wanted, rung=rung)
+
+    def explain(values: Mapping[str, float]) -> Solution:
+        from ..solving import solve
+
+        return solve(scene, replace(request, parameters=values), certificate=False)
+
+    engine = DesignEngine.of(scene, wanted, rung=rung, timing=scene.timing(t, over))
+    return Prepared(engine, explain)

@@ -21,7 +21,7 @@ from ...base.vocabulary import Keep
 from ...declare.description import Description, beams_of, fitted_of, shape_of
 from ...declare.even_points import EvenPoints, checked_ratios, points
 from ...declare.scene import STRENGTH, Scene
-from ...declare.times import Over, Times, Timing
+from ...declare.times import Timing
 from ...declare.wanted_names import SENSITIVITY, among, by_parameters, without_fitted
 from ...equations.derive import compile_scene
 from ...equations.fingerprint import sources
@@ -31,6 +31,7 @@ from ...instants.rung import Rung
 from ...instants.solution import Provenance
 from ..designs.engine import DesignEngine
 from ..designs.witness import wanted_whole
+from ..request import Request
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .column import Column
@@ -137,28 +138,19 @@ class Plan:
         cls,
         scene: Scene,
         designs: Designs,
-        *,
-        fixed: Mapping[str, float] | None = None,
-        t: Times | None = None,
-        over: Over | None = None,
-        xi: EvenPoints | None = None,
-        wanted: Sequence[str] | None = None,
+        request: Request,
         keep: Keep = "peaks",
-        rung: Rung | None = None,
+        *,
         many: bool = False,
     ) -> Plan:
         """Check everything that can be before anything is evaluated.
 
         Raises what :func:`.sweep` does.
         """
-        fixed, rung = fixed or {}, rung or Rung()
-        if rung.table is not None:
-            raise DeclarationError(
-                "a sweep reads no tables: every design would need one of its own"
-            )
+        fixed, rung = request.parameters or {}, request.rung
         check_keep(keep)
         check_designs(designs, scene.parameters, fixed)
-        values, timing = scene.values(fixed), scene.timing(t, over)
+        values, timing = scene.values(fixed), scene.timing(request.t, request.over)
         if designs.size > MOST:
             raise DeclarationError(
                 f"the grid has {counted(designs.size)}, and a sweep at most 10^12"
@@ -168,8 +160,8 @@ class Plan:
                 f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say"
                 " many=True"
             )
-        names = _wanted(scene, wanted)
-        ratios = None if xi is None else checked_ratios(xi)
+        names = _wanted(scene, request.wanted)
+        ratios = None if request.xi is None else checked_ratios(request.xi)
         assembly = _assembly(scene, designs, values, names)
         graph = compile_scene(scene, names, parameters=assembly)
         content, named = graph.data.template.content, [name for name in names if name != "all"]

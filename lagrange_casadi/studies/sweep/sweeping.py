@@ -20,6 +20,7 @@ from ...declare.times import Over, Times
 from ...errors import DeclarationError
 from ...instants.rung import Rung
 from ...methods import method
+from ..request import Request
 from .axes import designs_of
 from .carrying_out import Progress, carry_out
 from .plan import Plan
@@ -97,18 +98,10 @@ def sweep(
     where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
-    plan = Plan.of(
-        scene_of(scene),
-        designs_of(grid),
-        fixed=parameters,
-        t=t,
-        over=over,
-        xi=xi,
-        wanted=wanted,
-        keep=keep,
-        rung=Rung(backend, precision, newton, None, flags),
-        many=many,
-    )
+    one, designs = scene_of(scene), designs_of(grid)
+    rung = Rung(backend, precision, newton, None, flags)
+    request = Request(parameters, t, over, xi, wanted, rung)
+    plan = Plan.of(one, designs, request, keep, many=many)
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     hands = hired(workers, dask)

@@ -1,0 +1,22 @@
+"""Request for instants, values and outputs of a scene, by a method."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over, Times
+from ..instants.rung import Rung
+
+
+@dataclass(frozen=True)
+class Request:
+    """Options of an evaluation; where it says nothing, the scene does: see :func:`.evaluate`."""
+
+    parameters: Mapping[str, float] | None = None
+    t: Times | None = None
+    over: Over | None = None
+    xi: EvenPoints | None = None
+    wanted: Sequence[str] | None = None
+    rung: Rung = field(default_factory=Rung)
