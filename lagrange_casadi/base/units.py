@@ -13,7 +13,6 @@ import casadi as ca
 import numpy as np
 
 from ..errors import DeclarationError, NumberError, shown
-from .arrays import Operand
 from .numerals import real
 
 UNITS: dict[str, dict[str, float]] = {
@@ -146,7 +145,7 @@ def is_whole(value: object) -> TypeGuard[int]:
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
-def double(value: Operand) -> float | None:
+def double(value: Any) -> float | None:
     """Number of Python; None for anything else, such as truth values, texts, arrays, dates and
     symbols.
     """
