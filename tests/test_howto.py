@@ -20,7 +20,8 @@ PAGES = sorted(page.stem for page in HOWTO.glob("*.md") if page.stem != "index")
 
 def blocks(page):
     """Yield the language, the text and the stated result of each fenced block, but for results."""
-    fences = re.findall(r"^```(\w+)\n(.*?)^```$", (HOWTO / f"{page}.md").read_text(), re.DOTALL | re.M)
+    text = (HOWTO / f"{page}.md").read_text()
+    fences = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
     for (language, text), following in zip(fences, [*fences[1:], ("", "")], strict=True):
         if language != "text":
             yield language, text, following[1] if following[0] == "text" else ""
@@ -44,7 +45,7 @@ def run_commands(text):
 
 
 def missing(stated, printed):
-    """Return the first stated piece that is not printed; an ellipsis stands for anything, a break for a space."""
+    """Return the first stated piece that is not printed; an ellipsis stands for anything."""
     rest = " ".join(printed.split())
     for piece in filter(None, (" ".join(part.split()) for part in stated.split("..."))):
         _, found, rest = rest.partition(piece)
@@ -62,7 +63,7 @@ def test_guides_run_and_print_what_they_say(page, tmp_path, monkeypatch):
     for language, text, stated in found:
         if language == "python":
             printed = run_python(text, names)
-        elif language != "sh":  # a source that a command below compiles; its first line has its name
+        elif language != "sh":  # a source that a command compiles; its first line is its name
             Path(text.partition("\n")[0].removeprefix("// ")).write_text(text)
             continue
         elif (tool := re.match(r"# needs (\S+)", text)) and not shutil.which(tool[1]):
