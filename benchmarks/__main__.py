@@ -1,4 +1,6 @@
-"""``python -m benchmarks [PATTERN ...]``: measure on this machine; tables to read, JSON lines, and a plot."""
+"""``python -m benchmarks [PATTERN ...]``: measure on this machine; tables to read, JSON lines, and
+a plot.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,22 @@ from .definitions import COMPARISONS, PROGRAMS
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("patterns", nargs="*", default=["*"], help="names, with wildcards; default: all, for about half an hour")
+    parser.add_argument(
+        "patterns",
+        nargs="*",
+        default=["*"],
+        help="names, with wildcards; default: all, for about half an hour",
+    )
     parser.add_argument("--list", action="store_true", help="say which there are")
     parser.add_argument("--json", type=Path, metavar="FILE", help="append JSON lines to this file")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw what was compared")
     arguments = parser.parse_args()
     names = {b.name: b.what for b in PROGRAMS} | {b.name: b.what for b in COMPARISONS}
-    chosen = {name for name in names if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.patterns)}
+    chosen = {
+        name
+        for name in names
+        if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.patterns)
+    }
     if arguments.list:
         print("\n".join(f"{name:<26}{what}" for name, what in names.items()))
         return 0
@@ -45,7 +56,8 @@ def main() -> int:
         parser.error(f"--plot {arguments.plot}: expected a name that ends in .png, .svg or .pdf")
     machine = describe_machine()
     print(" | ".join(f"{key} {value}" for key, value in machine.items()))
-    # Numerical libraries of the peers would else share the cores among themselves while one thread is timed.
+    # Numerical libraries of the peers would else share the cores among themselves while one thread
+    # is timed.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     rows = [*run_programs(chosen), *run_comparisons(chosen)]
     if arguments.json:
@@ -84,8 +96,14 @@ def describe_machine() -> dict[str, str]:
     return {
         "package": __version__,
         "python": platform.python_version(),
-        "machine": f"{platform.machine()}, {psutil.cpu_count()} cores, {psutil.virtual_memory().total / 2**30:.0f} GiB",
-        **{language: f"{c.version}: {' '.join(c.flags(''))}" if c else "none" for language, c in compilers.items()},
+        "machine": (
+            f"{platform.machine()}, {psutil.cpu_count()} cores,"
+            f" {psutil.virtual_memory().total / 2**30:.0f} GiB"
+        ),
+        **{
+            language: f"{c.version}: {' '.join(c.flags(''))}" if c else "none"
+            for language, c in compilers.items()
+        },
     }
 
 

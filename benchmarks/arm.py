@@ -1,4 +1,6 @@
-"""An arm of six revolute joints in space with slender links: the package's own ways to do each piece of work."""
+"""An arm of six revolute joints in space with slender links: the package's own ways to do each
+piece of work.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,10 @@ LINK = "link2"
 def graph(wanted: tuple[str, ...]) -> Program:
     """The arm, every joint driven."""
     m = SpatialMechanism("arm")
-    links = [m.link(f"link{k}", length=l, mass=mass) for k, (l, mass) in enumerate(zip(LENGTHS, MASSES, strict=True), 1)]
+    links = [
+        m.link(f"link{k}", length=l, mass=mass)
+        for k, (l, mass) in enumerate(zip(LENGTHS, MASSES, strict=True), 1)
+    ]
     for k, (link, axis) in enumerate(zip(links, AXES, strict=True)):
         turned = [("y", "-90 deg")] if k == 0 else []
         m.revolute(f"joint{k}", links[k - 1].tip if k else m.ground, link, axis=axis, turned=turned)
@@ -38,7 +43,9 @@ def arm_efforts(t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
 
 
 def arm_sections(t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
-    """Six section forces of the second link, (6, t, xi): the law at every instant, and the grids from it."""
+    """Six section forces of the second link, (6, t, xi): the law at every instant, and the grids
+    from it.
+    """
     work, law = _law(t, backend, threads)
     fill = _fills(law, FORCES, t, xi, threads)
 
@@ -71,4 +78,6 @@ def _law(t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     work = columns_of(found, np.zeros(0), t, backend, threads)
     description = found.data.at(found.data.defaults)
     outputs = in_order(dict(zip(found.outputs, work(), strict=True)), description)
-    return work, Solution("arm", t, t, outputs, description, Provenance("", "", "", "", "", {})).section(LINK).law
+    return work, Solution(
+        "arm", t, t, outputs, description, Provenance("", "", "", "", "", {})
+    ).section(LINK).law

@@ -1,4 +1,6 @@
-"""The same work by several methods, side by side in one run, with the error of each beside its time."""
+"""The same work by several methods, side by side in one run, with the error of each beside its
+time.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ DURATION = 0.08
 
 
 def measure(comparison: Comparison) -> Iterator[dict[str, Any]]:
-    """One row a method: time a unit [ns], its ratio to the base's of the same round, error, or why there is none."""
+    """One row a method: time a unit [ns], its ratio to the base's of the same round, error, or why
+    there is none.
+    """
     works: dict[str, Work] = {}
     rows: dict[str, dict[str, Any]] = {}
     for name in comparison.methods:
@@ -53,7 +57,9 @@ def measure(comparison: Comparison) -> Iterator[dict[str, Any]]:
     for name, samples in times.items():
         rows[name]["ns"] = statistics.median(samples) / comparison.units * 1e9
         rows[name]["min_ns"] = min(samples) / comparison.units * 1e9
-        rows[name]["ratio"] = statistics.median(a / b for a, b in zip(samples, times[base], strict=True))
+        rows[name]["ratio"] = statistics.median(
+            a / b for a, b in zip(samples, times[base], strict=True)
+        )
         rows[name]["base"] = base
     yield from rows.values()
 
@@ -63,12 +69,18 @@ def row(found: dict[str, Any]) -> str:
     what = METHODS[found["method"]].what
     if "ns" not in found:
         return f"  {found['method']:<18}{'':>12}{'':>10}{'':>10}  {found['why']}"
-    return f"  {found['method']:<18}{found['ns']:>12.4g}{found['ratio']:>10.3g}{found['error']:>10.1e}  {what}"
+    return (
+        f"  {found['method']:<18}{found['ns']:>12.4g}{found['ratio']:>10.3g}{found['error']:>10.1e}"
+        f"  {what}"
+    )
 
 
 def header(comparison: Comparison) -> str:
     """What the table of a comparison is headed by."""
-    return f"\n{comparison.name}: {comparison.what}\n  {'method':<18}{comparison.unit:>12}{'ratio':>10}{'error':>10}"
+    return (
+        f"\n{comparison.name}: {comparison.what}\n "
+        f" {'method':<18}{comparison.unit:>12}{'ratio':>10}{'error':>10}"
+    )
 
 
 class _TooLargeError(Exception):
@@ -120,7 +132,9 @@ def _error(comparison: Comparison, found: Array) -> float:
     if comparison.work.startswith("arm_"):
         xi = _ratios(comparison)
         places = np.unique(np.linspace(0, xi.size - 1, _SAMPLE).astype(int))
-        expected = getattr(arm_reference, comparison.work.removeprefix("arm_"))(t[instants], xi[places])
+        expected = getattr(arm_reference, comparison.work.removeprefix("arm_"))(
+            t[instants], xi[places]
+        )
         return _worst(found[:, instants[:, None], places], expected)
     if comparison.work == "efforts":
         return _worst(found[:, instants], reference.chain(comparison.links, t[instants]))
@@ -137,12 +151,17 @@ def _error(comparison: Comparison, found: Array) -> float:
 
 def _worst(found: Array, expected: Array) -> float:
     rest = tuple(range(1, expected.ndim))
-    return float(np.max(np.max(np.abs(found - expected), axis=rest) / np.max(np.abs(expected), axis=rest)))
+    return float(
+        np.max(np.max(np.abs(found - expected), axis=rest) / np.max(np.abs(expected), axis=rest))
+    )
 
 
 def _times(works: dict[str, Work]) -> dict[str, list[float]]:
     """Seconds a call, one sample a round; in a round every method has its turn."""
-    repeats = {name: max(1, math.ceil(_ROUND / max(_sample(work, 1), 1e-9))) for name, work in works.items()}
+    repeats = {
+        name: max(1, math.ceil(_ROUND / max(_sample(work, 1), 1e-9)))
+        for name, work in works.items()
+    }
     times: dict[str, list[float]] = {name: [] for name in works}
     start = time.perf_counter()
     for number in range(_ROUNDS):

@@ -14,8 +14,8 @@ CHAINS = (1, 2, 4, 8, 16, 32, 64)
 class Program:
     """Python that a fresh interpreter runs ``repeat`` times.
 
-    Where it ``reports``, the last line that it prints is shown; ``cold`` empties the compiler's cache before every run.
-    ``bytes_returned`` is the size of its result, to set its memory against.
+    Where it ``reports``, the last line that it prints is shown; ``cold`` empties the compiler's
+    cache before every run. ``bytes_returned`` is the size of its result, to set its memory against.
     """
 
     name: str
@@ -29,7 +29,8 @@ class Program:
 
 @dataclass(frozen=True)
 class Method:
-    """A module of this folder whose functions, named as the work is, make it ready and return what does it.
+    """A module of this folder whose functions, named as the work is, make it ready and return what
+    does it.
 
     ``largest`` is how many values it can be waited for.
     """
@@ -42,7 +43,10 @@ class Method:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Work that several methods do: ``t`` instants, ``xi`` ratios, of so many designs or links. Ratios are to ``base``."""
+    """Work that several methods do: ``t`` instants, ``xi`` ratios, of so many designs or links.
+
+    Ratios are to ``base``.
+    """
 
     name: str
     what: str
@@ -63,7 +67,14 @@ class Comparison:
     @property
     def values(self) -> int:
         """How many numbers the result has."""
-        own = {"instants": 40, "designs": 40, "efforts": self.links, "arm_efforts": 6, "arm_sections": 6, "arm_resultants": 2}
+        own = {
+            "instants": 40,
+            "designs": 40,
+            "efforts": self.links,
+            "arm_efforts": 6,
+            "arm_sections": 6,
+            "arm_resultants": 2,
+        }
         each = own.get(self.work, 3)
         return self.units * each
 
@@ -74,9 +85,9 @@ _LAW = (
     f"evaluate(load_case('{CASE}').scene, t=(0, 0.08, 1_000_000), wanted=['section:rod'])"
 )
 _GRID = (
-    "from lagrange_casadi import load_case, evaluate; "
-    f"s = evaluate(load_case('{CASE}').scene, t=(0, 0.08, 100_000), xi=(0, 1, 101), wanted=['section:rod'])"
-    ".section('rod'); s.axial, s.shear, s.bending"
+    f"from lagrange_casadi import load_case, evaluate; s = evaluate(load_case('{CASE}').scene,"
+    " t=(0, 0.08, 100_000), xi=(0, 1, 101), wanted=['section:rod']).section('rod'); s.axial,"
+    " s.shear, s.bending"
 )
 _STAGES = """
 import time
@@ -86,7 +97,8 @@ start = time.perf_counter()
 graph = compile_scene(scene)
 derived = time.perf_counter()
 source = codegen.emit(graph)
-said = f"{{sum(graph.instructions.values())}} instructions; derive {{1e3 * (derived - start):.0f}} ms, "
+said = f"{{sum(graph.instructions.values())}} instructions; "
+said += f"derive {{1e3 * (derived - start):.0f}} ms, "
 said += f"emit {{1e3 * (time.perf_counter() - derived):.0f}} ms"
 for language in ("c", "c++"):
     compiler = codegen.find_compiler(language)
@@ -104,64 +116,107 @@ _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
     Program("import", "import lagrange_casadi", "import lagrange_casadi"),
-    Program("run-cold", "run the paper's case with figures, nothing compiled", _RUN.format(""), cold=True, repeat=3),
+    Program("run-cold", "run the paper's case with figures, nothing compiled", _RUN.format(""),
+        cold=True, repeat=3),
     Program("run-warm", "the same, compiled before", _RUN.format("")),
-    Program("run-warm-plain", "the same without figures: 801 x 101 values of each force", _RUN.format(", '--no-figures'")),
+    Program("run-warm-plain", "the same without figures: 801 x 101 values of each force",
+        _RUN.format(", '--no-figures'")),
     Program(
         "run-1e8",
         "10^8 section forces of one link, streamed to the file",
         _RUN.format(", '--no-figures', '--want', 'section:rod', '--t', '0:0.08:330034'"),
         repeat=1,
     ),
-    Program("memory-law", "a million instants of one link's law", _LAW, bytes_returned=8 * 1_000_000 * 8),
-    Program("memory-grid", "grids of 100 000 x 101 values of each force", _GRID, bytes_returned=3 * 8 * 100_000 * 101),
+    Program("memory-law", "a million instants of one link's law", _LAW,
+        bytes_returned=8 * 1_000_000 * 8),
+    Program("memory-grid", "grids of 100 000 x 101 values of each force", _GRID,
+        bytes_returned=3 * 8 * 100_000 * 101),
     *(
-        Program(f"stages-{case}", f"{case}, everything", _STAGES.format(case), cold=True, repeat=3, reports=True)
+        Program(f"stages-{case}", f"{case}, everything", _STAGES.format(case), cold=True, repeat=3,
+            reports=True)
         for case in ("slider_crank", "six_bar", "andrews_squeezer", "rrr3")
     ),
-    Program("stages-sympy", "SymPy derives and lambdifies the same three forces", "from benchmarks.peers.sympy_lambdify import *\n"
-            "from benchmarks.peers.paper_case import SliderCrank\nsections(SliderCrank(), np.zeros(1), np.zeros(1))", repeat=3),
+    Program("stages-sympy", "SymPy derives and lambdifies the same three forces",
+        "from benchmarks.peers.sympy_lambdify import *\n"
+        "from benchmarks.peers.paper_case import SliderCrank\n"
+        "sections(SliderCrank(), np.zeros(1), np.zeros(1))", repeat=3),
     *(
-        Program(f"exported-{case}", f"{case}, everything, by exported C", _EXPORTED.format(case), repeat=1, reports=True)
+        Program(f"exported-{case}", f"{case}, everything, by exported C", _EXPORTED.format(case),
+            repeat=1, reports=True)
         for case in ("slider_crank", "four_bar", "andrews_squeezer")
     ),
-    Program("sweep-1e5", "10^5 designs of the slider-crank", _SWEPT.format(10**5, 128, 5), repeat=1, reports=True),
-    Program("sweep-1e6", "10^6 designs of the slider-crank", _SWEPT.format(10**6, 128, 2), repeat=1, reports=True),
-    Program("sweep-801", "10^5 designs at the case's own instants", _SWEPT.format(10**5, 801, 2), repeat=1, reports=True),
-    Program("optimum", "the least peak torque of the slider-crank under a limit, two parameters", _OPTIMUM, repeat=1, reports=True),
-    Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone", _GRADIENTS, repeat=1, reports=True),
+    Program("sweep-1e5", "10^5 designs of the slider-crank", _SWEPT.format(10**5, 128, 5), repeat=1,
+        reports=True),
+    Program("sweep-1e6", "10^6 designs of the slider-crank", _SWEPT.format(10**6, 128, 2), repeat=1,
+        reports=True),
+    Program("sweep-801", "10^5 designs at the case's own instants", _SWEPT.format(10**5, 801, 2),
+        repeat=1, reports=True),
+    Program("optimum", "the least peak torque of the slider-crank under a limit, two parameters",
+        _OPTIMUM, repeat=1, reports=True),
+    Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone",
+        _GRADIENTS, repeat=1, reports=True),
     *(
-        Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n), cold=True, repeat=1, reports=True)
+        Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n),
+            cold=True, repeat=1, reports=True)
         for n in (16, 64, 256, 750)
     ),
 )  # fmt: skip
 
 METHODS = {
     "memcpy": Method("a copy of the result, from one place in memory to another", "peers.memory"),
-    "lanes x cores": Method("this package: packs of instants, a thread a core", "engine", {"backend": "lanes", "threads": 0}),
+    "lanes x cores": Method(
+        "this package: packs of instants, a thread a core",
+        "engine",
+        {"backend": "lanes", "threads": 0},
+    ),
     "lanes": Method("this package: packs of instants, one thread", "engine", {"backend": "lanes"}),
     "c": Method("this package: scalar C, one thread", "engine", {"backend": "c"}),
-    "vm": Method("this package: CasADi's virtual machine", "engine", {"backend": "vm"}, largest=4e6),
+    "vm": Method(
+        "this package: CasADi's virtual machine", "engine", {"backend": "vm"}, largest=4e6
+    ),
     "fill": Method("this package: the grids, one thread", "engine"),
     "fill x cores": Method("this package: the grids, a thread a core", "engine", {"threads": 0}),
     "by hand": Method("scalar C for this one mechanism, written by hand", "peers.handwritten"),
     "by hand, vectors": Method(
-        "the same, as the compiler vectorises it: -O3 -march=native", "peers.handwritten", {"flags": ("-O3", "-march=native")}
+        "the same, as the compiler vectorises it: -O3 -march=native",
+        "peers.handwritten",
+        {"flags": ("-O3", "-march=native")},
     ),
-    "numpy": Method("NumPy of the closed form, written by hand", "peers.numpy_closed", largest=1.2e7),
+    "numpy": Method(
+        "NumPy of the closed form, written by hand", "peers.numpy_closed", largest=1.2e7
+    ),
     "sympy": Method("SymPy's lambdify with cse, to NumPy", "peers.sympy_lambdify", largest=1.2e7),
-    "pinocchio": Method("Pinocchio's rnea, the rod in as many pieces as ratios and one", "peers.pinocchio_split", largest=3e6),
-    "mujoco": Method("MuJoCo's inverse dynamics, the same pieces", "peers.mujoco_split", largest=3e6),
-    "exudyn": Method("Exudyn's residual, a rod split once for each ratio", "peers.exudyn_split", largest=3e5),
+    "pinocchio": Method(
+        "Pinocchio's rnea, the rod in as many pieces as ratios and one",
+        "peers.pinocchio_split",
+        largest=3e6,
+    ),
+    "mujoco": Method(
+        "MuJoCo's inverse dynamics, the same pieces", "peers.mujoco_split", largest=3e6
+    ),
+    "exudyn": Method(
+        "Exudyn's residual, a rod split once for each ratio", "peers.exudyn_split", largest=3e5
+    ),
     "pinocchio rnea": Method("Pinocchio's rnea", "peers.pinocchio_chain"),
-    "arm x cores": Method("this package: packs of instants, a thread a core", "arm", {"backend": "lanes", "threads": 0}),
+    "arm x cores": Method(
+        "this package: packs of instants, a thread a core",
+        "arm",
+        {"backend": "lanes", "threads": 0},
+    ),
     "arm": Method("this package: packs of instants, one thread", "arm", {"backend": "lanes"}),
     "arm c": Method("this package: scalar C, one thread", "arm", {"backend": "c"}),
     "arm fill": Method("this package: the grids, one thread", "arm"),
     "arm fill x cores": Method("this package: the grids, a thread a core", "arm", {"threads": 0}),
-    "rnea x cores": Method("Pinocchio's rneaInParallel, two threads", "peers.pinocchio_arm", {"threads": 2}, largest=3e6),
+    "rnea x cores": Method(
+        "Pinocchio's rneaInParallel, two threads",
+        "peers.pinocchio_arm",
+        {"threads": 2},
+        largest=3e6,
+    ),
     "rnea": Method("Pinocchio's rneaInParallel, one thread", "peers.pinocchio_arm", largest=3e6),
-    "pinocchio casadi": Method("Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"),
+    "pinocchio casadi": Method(
+        "Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"
+    ),
 }
 
 _ENGINE = ("lanes x cores", "lanes", "c", "vm")
@@ -170,28 +225,39 @@ _RATIOS = 32
 
 COMPARISONS = (
     *(
-        Comparison(f"instants-{n}", f"{n} instants of the slider-crank, all 40 outputs", "instants", (*_ENGINE, *_HAND),
+        Comparison(f"instants-{n}", f"{n} instants of the slider-crank, all 40 outputs", "instants",
+            (*_ENGINE, *_HAND),
                    "by hand", "ns/instant", t=n)
         for n in (1, 1000, 20_000, 1_000_000)
     ),
     *(
-        Comparison(f"grid-1e{e}", f"the law and its grids of (t, xi), 10^{e} values, {_RATIOS} ratios", "sections",
-                   (*_ENGINE, *_HAND, "sympy", "pinocchio", "mujoco", "exudyn"), "lanes", "ns/(t, xi)",
+        Comparison(f"grid-1e{e}",
+            f"the law and its grids of (t, xi), 10^{e} values, {_RATIOS} ratios", "sections",
+                   (*_ENGINE, *_HAND, "sympy", "pinocchio", "mujoco", "exudyn"), "lanes",
+                       "ns/(t, xi)",
                    t=max(2, round(10**e / 3 / _RATIOS)), xi=_RATIOS)
         for e in range(3, 9)
     ),
     *(
-        Comparison(f"fill-1e{e}", f"grids filled from a law that is there, 10^{e} values, 101 ratios", "fill",
-                   ("memcpy", "fill x cores", "fill"), "memcpy", "ns/(t, xi)", t=max(2, round(10**e / 3 / 101)), xi=101)
+        Comparison(f"fill-1e{e}",
+            f"grids filled from a law that is there, 10^{e} values, 101 ratios", "fill",
+                   ("memcpy", "fill x cores", "fill"), "memcpy", "ns/(t, xi)", t=max(2,
+                       round(10**e / 3 / 101)), xi=101)
         for e in range(5, 9)
     ),
-    Comparison("arm-efforts", "efforts of an arm in space of six slender links, 10 000 instants", "arm_efforts",
-               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/instant", t=10_000),
-    Comparison("arm-sections", "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
-               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/(t, xi)", t=2_000, xi=_RATIOS),
+    Comparison("arm-efforts", "efforts of an arm in space of six slender links, 10 000 instants",
+        "arm_efforts",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/instant",
+                   t=10_000),
+    Comparison("arm-sections",
+        "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/(t, xi)",
+                   t=2_000, xi=_RATIOS),
     *(
-        Comparison(f"arm-fill-1e{e}", f"grids of two resultants from a law that is there, 10^{e} values, 101 ratios",
-                   "arm_resultants", ("memcpy", "arm fill x cores", "arm fill"), "memcpy", "ns/(t, xi)",
+        Comparison(f"arm-fill-1e{e}",
+            f"grids of two resultants from a law that is there, 10^{e} values, 101 ratios",
+                   "arm_resultants", ("memcpy", "arm fill x cores", "arm fill"), "memcpy",
+                       "ns/(t, xi)",
                    t=max(2, round(10**e / 2 / 101)), xi=101)
         for e in range(5, 9)
     ),
@@ -199,7 +265,8 @@ COMPARISONS = (
                ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
     *(
         Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
-                   (*_ENGINE, "pinocchio rnea", "pinocchio casadi"), "pinocchio rnea", "ns/instant", t=1000, links=n)
+                   (*_ENGINE, "pinocchio rnea", "pinocchio casadi"), "pinocchio rnea", "ns/instant",
+                       t=1000, links=n)
         for n in CHAINS
     ),
 )  # fmt: skip

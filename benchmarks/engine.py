@@ -1,4 +1,6 @@
-"""The package's own ways to do each piece of work, into arrays that are made once; ``threads`` is 0 for one a core."""
+"""The package's own ways to do each piece of work, into arrays that are made once; ``threads`` is 0
+for one a core.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,9 @@ def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: i
     return columns_of(compile_scene(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
 
 
-def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
+def designs(
+    case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1
+) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     p = np.array(case.parameters)
     work = columns_of(compile_scene(SCENE, ["all"]), p, t, backend, threads)
@@ -56,8 +60,12 @@ def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lan
     return call
 
 
-def sections(case: SliderCrank, t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
-    """Axial, shear and bending of the rod, (3, t, xi): the law at every instant, and the grids from it."""
+def sections(
+    case: SliderCrank, t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1
+) -> Work:
+    """Axial, shear and bending of the rod, (3, t, xi): the law at every instant, and the grids from
+    it.
+    """
     work, law = _law(case, t, backend, threads)
     fills = _fills(law, t, xi, threads)
 
@@ -120,4 +128,6 @@ def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[W
     work = columns_of(graph, np.array(case.parameters), t, backend, threads)
     description = graph.data.at(case.parameters)
     outputs = in_order(dict(zip(graph.outputs, work(), strict=True)), description)
-    return work, Solution("slider_crank", t, t, outputs, description, Provenance("", "", "", "", "", {})).section("rod").law
+    return work, Solution(
+        "slider_crank", t, t, outputs, description, Provenance("", "", "", "", "", {})
+    ).section("rod").law

@@ -1,4 +1,6 @@
-"""Exported C beside the package's own scalar C: the same instants of a case, one after another, in one process."""
+"""Exported C beside the package's own scalar C: the same instants of a case, one after another, in
+one process.
+"""
 
 from __future__ import annotations
 
@@ -39,14 +41,29 @@ def report(case: str) -> str:
                 call()
                 best[k] = min(best[k], time.perf_counter() - start)
     package, exported = (1e9 * seconds / N for seconds in best)
-    return f"exported C {exported:.1f} ns an instant, the package's scalar C {package:.1f} ns, ratio {exported / package:.2f}"
+    return (
+        f"exported C {exported:.1f} ns an instant, the package's scalar C {package:.1f} ns, ratio"
+        f" {exported / package:.2f}"
+    )
 
 
-def _batch(scene: Any, compiler: codegen.Compiler, folder: Path, t: np.ndarray[Any, Any]) -> Callable[[], Any]:
-    """A call that evaluates the instants by exported C, compiled with the flags of the package's own."""
+def _batch(
+    scene: Any, compiler: codegen.Compiler, folder: Path, t: np.ndarray[Any, Any]
+) -> Callable[[], Any]:
+    """A call that evaluates the instants by exported C, compiled with the flags of the package's
+    own.
+    """
     made = export(scene, folder)
     target = folder / "exported.so"
-    command = [*compiler.command, *FLAGS["c"], "-fvisibility=default", str(folder / f"{made.prefix}.c"), "-o", str(target), "-lm"]
+    command = [
+        *compiler.command,
+        *FLAGS["c"],
+        "-fvisibility=default",
+        str(folder / f"{made.prefix}.c"),
+        "-o",
+        str(target),
+        "-lm",
+    ]
     subprocess.run(command, check=True)
     loaded = ctypes.CDLL(str(target))
     model, inputs = ctypes.create_string_buffer(1 << 16), np.empty((t.size, len(made.inputs)))

@@ -1,4 +1,6 @@
-"""What the gradient of all peaks by all parameters costs beside the peaks themselves, of every case that has parameters."""
+"""What the gradient of all peaks by all parameters costs beside the peaks themselves, of every case
+that has parameters.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ from lagrange_casadi.shipped_cases import shipped_cases
 
 
 def report(rounds: int) -> str:
-    """Of each case how many times as long as ``f.peaks()`` a gradient takes, both turn by turn, and the largest of them."""
+    """Of each case how many times as long as ``f.peaks()`` a gradient takes, both turn by turn, and
+    the largest of them.
+    """
     found: dict[str, float] = {}
     for name, folder in shipped_cases().items():
         scene = load_case(folder).scene
@@ -27,6 +31,11 @@ def report(rounds: int) -> str:
         times = [(seconds(f.peaks), seconds(f.gradient)) for _ in range(rounds)]
         peaks, gradient = (min(column) for column in zip(*times, strict=True))
         found[name] = gradient / peaks
-        print(f"{name}: {len(f.quantities)} peaks {1e6 * peaks:.0f} us, by {len(f.parameters)} parameters {found[name]:.2f} times")
-    said = ", ".join(f"{name} {ratio:.1f}" for name, ratio in sorted(found.items(), key=lambda one: -one[1]))
+        print(
+            f"{name}: {len(f.quantities)} peaks {1e6 * peaks:.0f} us, by {len(f.parameters)}"
+            f" parameters {found[name]:.2f} times"
+        )
+    said = ", ".join(
+        f"{name} {ratio:.1f}" for name, ratio in sorted(found.items(), key=lambda one: -one[1])
+    )
     return f"gradients, of the time of all peaks: {said}"

@@ -12,7 +12,12 @@ from lagrange_casadi.codegen.compiler import Language
 
 from .engine import chain
 
-LEVELS: tuple[tuple[Language, str], ...] = (("c", "-O1"), ("c", "-O3"), ("c++", "-O1"), ("c++", "-O3"))
+LEVELS: tuple[tuple[Language, str], ...] = (
+    ("c", "-O1"),
+    ("c", "-O3"),
+    ("c++", "-O1"),
+    ("c++", "-O3"),
+)
 
 
 def report(links: int) -> str:
@@ -22,7 +27,8 @@ def report(links: int) -> str:
     derived = time.perf_counter()
     source = codegen.emit(graph)
     said = (
-        f"{graph.instructions['instant']} instructions, derive {derived - start:.2f} s, emit {time.perf_counter() - derived:.2f} s"
+        f"{graph.instructions['instant']} instructions, derive {derived - start:.2f} s, emit"
+        f" {time.perf_counter() - derived:.2f} s"
     )
     for language, level in LEVELS:
         compiler = codegen.find_compiler(language)
@@ -31,13 +37,20 @@ def report(links: int) -> str:
         start = time.perf_counter()
         library = codegen.load(source, compiler, (level,))
         compiled = time.perf_counter() - start
-        said += f"; {language} {level} {compiled:.2f} s, {_instant(library, len(graph.columns)) * 1e6:.2f} us/instant"
+        said += (
+            f"; {language} {level} {compiled:.2f} s,"
+            f" {_instant(library, len(graph.columns)) * 1e6:.2f} us/instant"
+        )
     return said
 
 
 def _instant(library: codegen.Library, columns: int, n: int = 1024) -> float:
     t, p = np.linspace(0.0, 1.0, n), np.zeros(0)
-    out, status, z = np.empty((columns, n + 8))[:, :n], np.zeros(n, dtype=np.int32), np.empty((0, n))
+    out, status, z = (
+        np.empty((columns, n + 8))[:, :n],
+        np.zeros(n, dtype=np.int32),
+        np.empty((0, n)),
+    )
     times = []
     for _ in range(5):
         start = time.perf_counter()

@@ -1,4 +1,6 @@
-"""The least peak torque of the slider-crank under a limit of its rod's bending, by this package and by others."""
+"""The least peak torque of the slider-crank under a limit of its rod's bending, by this package and
+by others.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +27,15 @@ Way = Callable[[], tuple[float, Mapping[str, float]]]
 
 
 def report(rounds: int) -> str:
-    """Milliseconds of each way from one start, turn by turn, and how far its peak torque is from this package's."""
+    """Milliseconds of each way from one start, turn by turn, and how far its peak torque is from
+    this package's.
+    """
     scene = load_case("slider_crank").scene
-    asked: dict[str, Any] = {"minimise": f"peak:{_EFFORT}", "over": BOUNDS, "subject_to": [f"peak:{_BENDING} <= {LIMIT}"]}
+    asked: dict[str, Any] = {
+        "minimise": f"peak:{_EFFORT}",
+        "over": BOUNDS,
+        "subject_to": [f"peak:{_BENDING} <= {LIMIT}"],
+    }
     f = prepare(scene, wanted=_WANTED)
     effort, bending = (f.quantities.index(name) for name in (_EFFORT, _BENDING))
 
@@ -95,5 +103,9 @@ def report(rounds: int) -> str:
                 continue
             times[name] = min(times[name], time.perf_counter() - start)
     least = found["optimise"]
-    said = [f"{name} {1e3 * times[name]:.0f} ms ({found[name] / least - 1:+.1e})" for name in ways if name in found]
+    said = [
+        f"{name} {1e3 * times[name]:.0f} ms ({found[name] / least - 1:+.1e})"
+        for name in ways
+        if name in found
+    ]
     return "; ".join([*said, *(f"{name} {reason}" for name, reason in why.items())])

@@ -11,8 +11,18 @@ from .definitions import COMPARISONS, METHODS
 
 MARKERS = "osv^D<>Xph*8PHd1"
 PANELS = (
-    ("grid-", "values", "section forces of the slider-crank's rod: values of a grid", "ns a (t, xi): axial, shear, bending"),
-    ("fill-", "values", "grids filled from a law that is there: values", "ns a (t, xi): axial, shear, bending"),
+    (
+        "grid-",
+        "values",
+        "section forces of the slider-crank's rod: values of a grid",
+        "ns a (t, xi): axial, shear, bending",
+    ),
+    (
+        "fill-",
+        "values",
+        "grids filled from a law that is there: values",
+        "ns a (t, xi): axial, shear, bending",
+    ),
     ("instants-", "t", "all 40 outputs of the slider-crank: instants", "ns an instant"),
     ("chain-", "links", "efforts of an open chain: links", "ns an instant"),
 )
@@ -24,7 +34,11 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     import matplotlib.pyplot as plt
 
     sizes = {c.name: c for c in COMPARISONS}
-    panels = [panel for panel in PANELS if any(row["name"].startswith(panel[0]) and "ns" in row for row in rows)]
+    panels = [
+        panel
+        for panel in PANELS
+        if any(row["name"].startswith(panel[0]) and "ns" in row for row in rows)
+    ]
     if not panels:
         return
     across, down = min(2, len(panels)), -(-len(panels) // 2)
@@ -34,8 +48,16 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
         found = [row for row in rows if row["name"].startswith(family) and "ns" in row]
         for method in dict.fromkeys(row["method"] for row in found):
             number = list(METHODS).index(method)
-            looks = {"marker": MARKERS[number], "color": mpl.colormaps["tab20"](number), "markersize": 4}
-            points = [(getattr(sizes[row["name"]], size), row["ns"]) for row in found if row["method"] == method]
+            looks = {
+                "marker": MARKERS[number],
+                "color": mpl.colormaps["tab20"](number),
+                "markersize": 4,
+            }
+            points = [
+                (getattr(sizes[row["name"]], size), row["ns"])
+                for row in found
+                if row["method"] == method
+            ]
             style = "-" if method in ("lanes x cores", "lanes", "c", "vm") else "--"
             axis.loglog(*zip(*points, strict=True), style, label=method, **looks)
         axis.set_xlabel(along)

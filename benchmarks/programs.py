@@ -19,7 +19,9 @@ ROOT = Path(__file__).parent.parent
 
 
 def measure(program: Program) -> dict[str, Any]:
-    """Times of whole runs, and the process's own peak memory over that of one that imports the package and no more."""
+    """Times of whole runs, and the process's own peak memory over that of one that imports the
+    package and no more.
+    """
     with tempfile.TemporaryDirectory() as work:
         (Path(work) / "cases").symlink_to(ROOT / "cases")
         environment = os.environ | {"XDG_CACHE_HOME": f"{work}/cache", "PYTHONPATH": str(ROOT)}
@@ -47,7 +49,10 @@ def row(program: Program, found: dict[str, Any]) -> str:
     if program.bytes_returned:
         memory += f" = result {(found['over_import'] - program.bytes_returned) / 1e6:+.0f}"
     says = f": {found['says']}" if found["says"] else ""
-    return f"{program.name:<26}{found['median']:>9.3f}{found['min']:>9.3f}{memory:<24}  {program.what}{says}"
+    return (
+        f"{program.name:<26}{found['median']:>9.3f}{found['min']:>9.3f}{memory:<24} "
+        f" {program.what}{says}"
+    )
 
 
 HEADER = f"{'program':<26}{'median s':>9}{'min s':>9}{'MB over import':>15}"
@@ -60,7 +65,13 @@ def _floor() -> int:
 
 def _once(program: Program, work: str, environment: dict[str, str]) -> tuple[float, int, str]:
     start = time.perf_counter()
-    process = subprocess.Popen([sys.executable, "-c", program.text], cwd=work, env=environment, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", program.text],
+        cwd=work,
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     assert process.stdout is not None
     with process.stdout as printed:
         lines = printed.read().splitlines()
@@ -69,4 +80,8 @@ def _once(program: Program, work: str, environment: dict[str, str]) -> tuple[flo
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise SystemExit(f"benchmark {program.name} failed with status {process.returncode}")
-    return seconds, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024), lines[-1] if lines else ""
+    return (
+        seconds,
+        usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024),
+        lines[-1] if lines else "",
+    )

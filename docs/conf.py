@@ -37,9 +37,41 @@ extensions = [
 ]
 exclude_patterns = ["_*"]
 UNLISTED = [
-    *("Axis", "Backend", "Between", "Deflection", "Derivatives", "Design", "Figure", "Listed", "Over", "Progress", "Quantity"),
-    *("Range", "RigidMass", "Spread", "Starts", "StiffSafety", "Times", "Timetable", "Transmission", "Vibration", "View"),
-    *("IN_SPACE", "check_picture", "elastic.deflection.deflection", "fingerprint", "outputs", "read_rows", "time", r"Wanted\.of"),
+    *(
+        "Axis",
+        "Backend",
+        "Between",
+        "Deflection",
+        "Derivatives",
+        "Design",
+        "Figure",
+        "Listed",
+        "Over",
+        "Progress",
+        "Quantity",
+    ),
+    *(
+        "Range",
+        "RigidMass",
+        "Spread",
+        "Starts",
+        "StiffSafety",
+        "Times",
+        "Timetable",
+        "Transmission",
+        "Vibration",
+        "View",
+    ),
+    *(
+        "IN_SPACE",
+        "check_picture",
+        "elastic.deflection.deflection",
+        "fingerprint",
+        "outputs",
+        "read_rows",
+        "time",
+        r"Wanted\.of",
+    ),
     *(r"_pickle\.PicklingError", r"h5py\._hl\..*"),
 ]
 """Names that docstrings and signatures mention, and that have no page."""
@@ -58,7 +90,8 @@ templates_path = ["_templates"]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 4
 
-# Links into other projects. Their inventories are kept here, as text, with the names that are used and no others.
+# Links into other projects. Their inventories are kept here, as text, with the names that are used
+# and no others.
 intersphinx_mapping = {
     name: (address, f"_inventories/{name}.inv")
     for name, address in (
@@ -73,10 +106,19 @@ intersphinx_mapping = {
 
 # The reference is made from docstrings, and the gallery from the cases.
 autosummary_generate = True
-doors = [lagrange_casadi, *(thing for name in lagrange_casadi.__all__ if inspect.ismodule(thing := getattr(lagrange_casadi, name)))]
+doors = [
+    lagrange_casadi,
+    *(
+        thing
+        for name in lagrange_casadi.__all__
+        if inspect.ismodule(thing := getattr(lagrange_casadi, name))
+    ),
+]
 names = [f"{door.__name__}.{name}" for door in doors for name in dir(door)]
 twins = Counter(map(str.lower, names))
-autosummary_filename_map = {name: f"{name}_class" for name in names if not name.islower() and twins[name.lower()] > 1}
+autosummary_filename_map = {
+    name: f"{name}_class" for name in names if not name.islower() and twins[name.lower()] > 1
+}
 autodoc_default_options = {"members": True, "inherited-members": True, "show-inheritance": False}
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
@@ -90,11 +132,17 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_title = "lagrange_casadi"
 html_show_sphinx = False
-html_theme_options = {"show_prev_next": False, "secondary_sidebar_items": ["page-toc"], "navigation_with_keys": False}
+html_theme_options = {
+    "show_prev_next": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "navigation_with_keys": False,
+}
 
 
 def gallery(_app):
-    """Write a page for each case: its picture, its README, its code; and a card with the first line of its code for each."""
+    """Write a page for each case: its picture, its README, its code; and a card with the first line
+    of its code for each.
+    """
     folder = HERE / "gallery" / "generated"
     folder.mkdir(exist_ok=True)
     cards = []
@@ -102,16 +150,22 @@ def gallery(_app):
         name, code = case.parent.name, case.read_text()
         picture = f"![{name} in motion](../{name}.svg)"
         title, rest = case.with_name("README.md").read_text().split("\n", 1)
-        write(folder / f"{name}.md", f"{title}\n\n{picture}\n{rest}\n## The case\n\n```python\n{code}```\n")
+        write(
+            folder / f"{name}.md",
+            f"{title}\n\n{picture}\n{rest}\n## The case\n\n```python\n{code}```\n",
+        )
         purpose = ast.get_docstring(ast.parse(code)).split("\n\n")[0]
         cards.append(
-            f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-bottom: {name}.svg\n\n{purpose}\n:::\n"
+            f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n:img-bottom:"
+            f" {name}.svg\n\n{purpose}\n:::\n"
         )
     write(folder / "cards.txt", f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{''.join(cards)}::::\n")
 
 
 def write(path, text):
-    """Write a file that is made, if it is to be another; what is unchanged is not read again by the build."""
+    """Write a file that is made, if it is to be another; what is unchanged is not read again by the
+    build.
+    """
     if not path.is_file() or path.read_text() != text:
         path.write_text(text)
 
@@ -145,17 +199,24 @@ class Names(dict):
 
 
 def without_marks(_app, thing, _bound):
-    """Leave out of annotations what only looks at arguments: ``Annotated[float, ...]`` is a float to a reader."""
+    """Leave out of annotations what only looks at arguments: ``Annotated[float, ...]`` is a float
+    to a reader.
+    """
     function = inspect.unwrap(thing.__init__ if isinstance(thing, type) else thing)
     if inspect.isfunction(function):
-        with suppress(AttributeError, NameError, TypeError):  # of what a type checker imports: it stays as it is written
-            function.__annotations__.update(typing.get_type_hints(function, localns=Names(function.__globals__)))
+        with suppress(
+            AttributeError, NameError, TypeError
+        ):  # of what a type checker imports: it stays as it is written
+            function.__annotations__.update(
+                typing.get_type_hints(function, localns=Names(function.__globals__))
+            )
 
 
 def short_arrays(_app, _what, _name, _thing, _options, signature, returned):
     """Write an array as ``ndarray``; all are of doubles."""
     return tuple(
-        text and re.sub(r"(numpy\.)?ndarray\[.*?, (numpy\.)?dtype\[[\w.]*\]\]", "ndarray", text) for text in (signature, returned)
+        text and re.sub(r"(numpy\.)?ndarray\[.*?, (numpy\.)?dtype\[[\w.]*\]\]", "ndarray", text)
+        for text in (signature, returned)
     )
 
 
@@ -164,7 +225,10 @@ def by_last_name(_app, env, node, shown):
     if node.get("refdomain") != "py":
         return None
     domain = env.get_domain("py")
-    found = {entry.node_id: entry for _, entry in domain.find_obj(env, None, None, node["reftarget"].lstrip("."), None, 1)}
+    found = {
+        entry.node_id: entry
+        for _, entry in domain.find_obj(env, None, None, node["reftarget"].lstrip("."), None, 1)
+    }
     if len(found) != 1:
         return None
     (entry,) = found.values()
@@ -172,14 +236,21 @@ def by_last_name(_app, env, node, shown):
 
 
 def out_of_the_pages(app, tree):
-    """Lead links to cases into the gallery; leave folders of the source, which are links on GitHub, as text."""
+    """Lead links to cases into the gallery; leave folders of the source, which are links on GitHub,
+    as text.
+    """
     here = (HERE / app.env.docname).parent
     for node in list(tree.findall(addnodes.pending_xref)):
         place = (here / node["reftarget"]).resolve()
         if place.is_relative_to(CASES):
             case = place.relative_to(CASES).parts[:1]
-            link = addnodes.pending_xref("", *node.children, refdomain="std", reftype="doc", refexplicit=True, refwarn=True)
-            link["reftarget"], link["refdoc"] = f"/gallery/{'/'.join(('generated', *case)) if case else 'index'}", app.env.docname
+            link = addnodes.pending_xref(
+                "", *node.children, refdomain="std", reftype="doc", refexplicit=True, refwarn=True
+            )
+            link["reftarget"], link["refdoc"] = (
+                f"/gallery/{'/'.join(('generated', *case)) if case else 'index'}",
+                app.env.docname,
+            )
             node.replace_self(link)
         elif place.is_dir() and not place.is_relative_to(HERE):
             node.replace_self(node.children)

@@ -1,6 +1,20 @@
-"""The public names, for type checkers and for :mod:`lazy_loader`, which imports each when it is first asked for."""
+"""The public names, for type checkers and for :mod:`lazy_loader`, which imports each when it is
+first asked for.
+"""
 
-from . import actuators, animation, beams, bearings, density, elements, errors, figures, motion, peaks, strength
+from . import (
+    actuators,
+    animation,
+    beams,
+    bearings,
+    density,
+    elements,
+    errors,
+    figures,
+    motion,
+    peaks,
+    strength,
+)
 from .base.symbolic import symbolic
 from .case import Case, load_case
 from .declare.curves import Curve, curve, table

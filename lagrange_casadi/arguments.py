@@ -1,4 +1,6 @@
-"""Arguments of public functions, looked at in one place: numbers, texts with a unit, counts, and the kinds that signatures name."""
+"""Arguments of public functions, looked at in one place: numbers, texts with a unit, counts, and
+the kinds that signatures name.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ from .base.units import Within, double, is_whole, typed
 from .errors import DeclarationError, shown
 
 LATER = "looked at where it is used"
-"""What an annotation says of an argument whose function tells better than a kind what was expected."""
+"""What an annotation says of an argument whose function tells better than
+a kind what was expected.
+"""
 
 _OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
 """Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
@@ -44,7 +48,9 @@ Numeric: TypeAlias = Annotated[Any, "numeric"]
 """A number, or an array of numbers of any shape."""
 
 Symbolic: TypeAlias = Annotated[Any, "symbolic"]
-"""A number, a text of one with its unit, or an expression in parameters: of what is told before it has a mechanism."""
+"""A number, a text of one with its unit, or an expression in parameters: of what is told before it
+has a mechanism.
+"""
 
 Outputs: TypeAlias = Annotated[Sequence[str], "outputs"]
 """Names of outputs that are wanted."""
@@ -56,23 +62,28 @@ Thing = TypeVar("Thing", bound=Callable[..., Any])
 
 
 def public(thing: Thing) -> Thing:
-    """A function for users, or a class: it raises :class:`DeclarationError` for arguments of other kinds than its signature names.
+    """A function for users, or a class: it raises :class:`DeclarationError` for arguments of other
+    kinds than its signature names.
 
-    So it does for arguments that it does not take, and for those that it lacks. Of a class, methods are meant whose names have no
-    underscore, and what makes an instance of a dataclass.
+    So it does for arguments that it does not take, and for those that it lacks. Of a class, methods
+    are meant whose names have no underscore, and what makes an instance of a dataclass.
     """
     if not isinstance(thing, type):
         return typing.cast(Thing, _looking(thing))
     for name, method in list(vars(thing).items()):
         if isinstance(method, classmethod | staticmethod) and not name.startswith("_"):
             setattr(thing, name, type(method)(_looking(method.__func__)))
-        elif inspect.isfunction(method) and (not name.startswith("_") or name in ("__init__", "__getitem__", "__call__")):
+        elif inspect.isfunction(method) and (
+            not name.startswith("_") or name in ("__init__", "__getitem__", "__call__")
+        ):
             setattr(thing, name, _looking(method))
     return thing
 
 
 def fitting(thing: Thing) -> Thing:
-    """A function for users, or a class, that looks at kinds of arguments itself: it refuses calls that do not fit its signature."""
+    """A function for users, or a class, that looks at kinds of arguments itself: it refuses calls
+    that do not fit its signature.
+    """
     if not isinstance(thing, type):
         return typing.cast(Thing, _looking(thing, kinds=False))
     type.__setattr__(thing, "__init__", _looking(vars(thing)["__init__"], kinds=False))
@@ -80,7 +91,9 @@ def fitting(thing: Thing) -> Thing:
 
 
 class _Kind(NamedTuple):
-    """A kind of values, in words; ``read`` makes of one what the function takes, and ``_NONE`` of what is of another kind."""
+    """A kind of values, in words; ``read`` makes of one what the function takes, and ``_NONE`` of
+    what is of another kind.
+    """
 
     words: str
     read: Callable[[Any], Any]
@@ -90,10 +103,14 @@ _NONE: Any = object()
 
 
 def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., Any]:
-    """A function that looks at its arguments before it runs: whether they fit, and at their kinds."""
+    """A function that looks at its arguments before it runs: whether they
+    fit, and at their kinds.
+    """
 
     @functools.cache
-    def asked() -> tuple[inspect.Signature, dict[str, _Kind]]:  # a module's names are not all there when it is read
+    def asked() -> tuple[
+        inspect.Signature, dict[str, _Kind]
+    ]:  # a module's names are not all there when it is read
         signature = inspect.signature(function)
         return signature, _kinds(function, signature) if kinds else {}
 
@@ -128,7 +145,9 @@ def _looking(function: Callable[..., Any], kinds: bool = True) -> Callable[..., 
 
 
 def _called(function: Callable[..., Any]) -> str:
-    """A function as users call it; a class or an instance that is called bears the name of the class."""
+    """A function as users call it; a class or an instance that is called bears the name of the
+    class.
+    """
     owner, _, name = function.__qualname__.rpartition(".")
     return owner if name.startswith("__") else name
 
@@ -136,12 +155,16 @@ def _called(function: Callable[..., Any]) -> str:
 def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
     """The name of the part that is declared, if that is what the first argument says."""
     named = (
-        list(signature.parameters)[:2] in (["self", "name"], ["mechanism", "name"]) and len(given) > 1 and isinstance(given[1], str)
+        list(signature.parameters)[:2] in (["self", "name"], ["mechanism", "name"])
+        and len(given) > 1
+        and isinstance(given[1], str)
     )
     return f" {shown(given[1])}" if named else ""
 
 
-def _not_taken(function: Callable[..., Any], signature: inspect.Signature, given: tuple[Any, ...], wrong: str) -> str:
+def _not_taken(
+    function: Callable[..., Any], signature: inspect.Signature, given: tuple[Any, ...], wrong: str
+) -> str:
     """What a call lacks, or has too much."""
     each = list(signature.parameters.values())
     own = [one.name for one in each if one.name not in ("self", "cls")]
@@ -151,7 +174,10 @@ def _not_taken(function: Callable[..., Any], signature: inspect.Signature, given
         wrong = f"name them: {', '.join(f'{name}=' for name in named[:beyond])}"
     space = getattr(given[0], "space", None) if given and len(own) < len(each) else None
     where = "" if not isinstance(space, bool) else "in space " if space else "in a plane "
-    return f"{_called(function)}{_part(signature, given)}: {wrong}; {where}it takes {', '.join(own) or 'nothing'}"
+    return (
+        f"{_called(function)}{_part(signature, given)}: {wrong}; {where}it takes"
+        f" {', '.join(own) or 'nothing'}"
+    )
 
 
 def _kinds(function: Callable[..., Any], signature: inspect.Signature) -> dict[str, _Kind]:
@@ -171,7 +197,9 @@ def _kind(hint: Any) -> _Kind | None:
     """The kind that an annotation says; None for one that its function looks at itself."""
     origin, of = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is Annotated:
-        return None if of[1] == LATER else _ranged(*of) if isinstance(of[1], Within) else _NAMED[of[1]]
+        return (
+            None if of[1] == LATER else _ranged(*of) if isinstance(of[1], Within) else _NAMED[of[1]]
+        )
     if origin in (typing.Union, types.UnionType):
         return _one_of(of)
     if origin is Literal:
@@ -214,7 +242,12 @@ def _one_of(hints: tuple[Any, ...]) -> _Kind | None:
         found = [kind for kind in found if kind is not _SIMPLE[str]]
     words = list(dict.fromkeys(kind.words for kind in found if kind.words != "None")) or ["None"]
     listed = f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else words[0]
-    return _Kind(listed, lambda value: next((got for kind in found if (got := kind.read(value)) is not _NONE), _NONE))
+    return _Kind(
+        listed,
+        lambda value: next(
+            (got for kind in found if (got := kind.read(value)) is not _NONE), _NONE
+        ),
+    )
 
 
 def _ranged(of: type, span: Within) -> _Kind:
@@ -230,9 +263,14 @@ def _ranged(of: type, span: Within) -> _Kind:
 
 
 def _row(of: Any, named: bool = False) -> _Kind | None:
-    """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping, where no order is asked for."""
+    """The kind of rows of something: of numbers, of names, of parts; or the names of a mapping,
+    where no order is asked for.
+    """
     if of is float:
-        return _Kind("a row of numbers", lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE)
+        return _Kind(
+            "a row of numbers",
+            lambda value: tuple(found.tolist()) if np.ndim(found := _array(value)) == 1 else _NONE,
+        )
     kind = _SIMPLE[str] if of is str else _kind(of)
     if kind is None:
         return None
@@ -243,7 +281,10 @@ def _row(of: Any, named: bool = False) -> _Kind | None:
         if isinstance(value, Mapping) and not named:
             return _NONE
         with suppress(Exception):  # of a class that is not ours, when it is walked over
-            found = [kind.read(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
+            found = [
+                kind.read(one)
+                for one in (value.tolist() if isinstance(value, np.ndarray) else value)
+            ]
             return tuple(found) if all(one is not _NONE for one in found) else _NONE
         return _NONE
 
@@ -256,7 +297,9 @@ def _array(value: Any) -> Any:
         return _NONE
     with suppress(TypeError, ValueError, OverflowError, RuntimeError, NotImplementedError):
         found = np.asarray(value)
-        whole = found.dtype.kind in "iuf" or (found.dtype.kind == "O" and all(double(one) is not None for one in found.flat))
+        whole = found.dtype.kind in "iuf" or (
+            found.dtype.kind == "O" and all(double(one) is not None for one in found.flat)
+        )
         return found.astype(float) if whole else _NONE
     return _NONE
 
@@ -270,7 +313,11 @@ def _pair(value: Any) -> Any:
 def _wholes(value: Any) -> Any:
     """A value as an array of whole numbers."""
     found = _array(value)
-    whole = found is not _NONE and (np.abs(found) < 2.0**53).all() and np.array_equal(found, np.rint(found))
+    whole = (
+        found is not _NONE
+        and (np.abs(found) < 2.0**53).all()
+        and np.array_equal(found, np.rint(found))
+    )
     return found.astype(np.int64) if whole else _NONE
 
 
@@ -290,7 +337,9 @@ def _graph(value: Any) -> Any:
 
 
 def _symbolic(value: Any) -> Any:
-    """A scalar expression, a number, or a text of one with its unit, as it is; its size is looked at where it is used."""
+    """A scalar expression, a number, or a text of one with its unit, as it is; its size is looked
+    at where it is used.
+    """
     if isinstance(value, ca.SX):
         return value if value.is_scalar() else _NONE
     if isinstance(value, str):
@@ -313,7 +362,9 @@ def _is_path(value: Any) -> bool:
 
 _SIMPLE: dict[type, _Kind] = {
     str: _if("a text", lambda value: isinstance(value, str)),
-    bool: _Kind("True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE),
+    bool: _Kind(
+        "True or False", lambda value: bool(value) if isinstance(value, bool | np.bool_) else _NONE
+    ),
     int: _Kind("a whole number", lambda value: int(value) if is_whole(value) else _NONE),
     float: _Kind("a number", lambda value: _NONE if (found := double(value)) is None else found),
     Path: _if("a path", _is_path),
@@ -328,6 +379,8 @@ _NAMED = {
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
     # What is none is told by who knows which outputs there are.
-    "outputs": _Kind("a list of texts", lambda value: value if (found := texts(value)) is None else found),
+    "outputs": _Kind(
+        "a list of texts", lambda value: value if (found := texts(value)) is None else found
+    ),
     "graph": _Kind("a casadi.SX expression", _graph),
 }

@@ -1,9 +1,10 @@
-"""Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a :class:`.Scene`.
+"""Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a
+:class:`.Scene`.
 
 One that comes with the package is known by its name alone.
 
-A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`, and modules of its own beside its
-file.
+A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`, and
+modules of its own beside its file.
 """
 
 from __future__ import annotations
@@ -49,27 +50,43 @@ class Case:
 
 @public
 def load_case(path: str | os.PathLike[str]) -> Case:
-    """Load a case's folder or Python file, or by its name one that comes with the package; what is here has precedence.
+    """Load a case's folder or Python file, or by its name one that comes with the package; what is
+    here has precedence.
 
     Raises :class:`CaseError`; an error of a declaration passes as it is.
     """
     given = Path(path)
     file = _file(given)
     if file.suffix != ".py":
-        raise CaseError(f"case {given}: expected a folder with a case.py, or a Python file ending in .py")
+        raise CaseError(
+            f"case {given}: expected a folder with a case.py, or a Python file ending in .py"
+        )
     file = file.resolve()
     module = _guard(given, file, lambda: case_modules.load(file))
     scene = _call(given, file, module, "scene")
     if not isinstance(scene, Scene):
-        raise CaseError(f"case {given}: scene() returned {type(scene).__name__}, expected a lagrange_casadi.Scene")
-    figures = _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
-    if not isinstance(figures, (list, tuple)) or not all(isinstance(spec, Spec) for spec in figures):
-        raise CaseError(f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got {shown(figures)}")
+        raise CaseError(
+            f"case {given}: scene() returned {type(scene).__name__}, expected a"
+            " lagrange_casadi.Scene"
+        )
+    figures = (
+        _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
+    )
+    if not isinstance(figures, (list, tuple)) or not all(
+        isinstance(spec, Spec) for spec in figures
+    ):
+        raise CaseError(
+            f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got"
+            f" {shown(figures)}"
+        )
     for spec in figures:
         try:
             dump_specs([spec])
         except (TypeError, ValueError, RecursionError) as error:
-            raise CaseError(f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file: {told(error)}") from None
+            raise CaseError(
+                f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file:"
+                f" {told(error)}"
+            ) from None
     return Case(file, scene, tuple(figures))
 
 
@@ -112,7 +129,11 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
     except (LagrangeCasadiError, KeyboardInterrupt):
         raise
     except BaseException as error:
-        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+        lines = [
+            frame.lineno
+            for frame in traceback.extract_tb(error.__traceback__)
+            if frame.filename == str(file)
+        ]
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         where = f", line {lines[-1]}" if lines and lines[-1] else ""

@@ -1,7 +1,9 @@
-"""The files of cases as modules: with a name that any process can import them by, for it tells where the file is.
+"""The files of cases as modules: with a name that any process can import them by, for it tells
+where the file is.
 
-So dataclasses find the module that they are defined in, and what a case defines can be sent to another process. Beside its file a
-case may have modules of its own; they are imported by their plain names while it is loaded, and anew for every case.
+So dataclasses find the module that they are defined in, and what a case defines can be sent to
+another process. Beside its file a case may have modules of its own; they are imported by their
+plain names while it is loaded, and anew for every case.
 """
 
 from __future__ import annotations
@@ -26,13 +28,18 @@ _FILE = f"{__name__}.file_"
 _HELPERS = "__helpers__"
 _loading = threading.RLock()
 _seen: set[str] = set()
-"""The names of the helpers that can be imported now: of one case at a time, lest another one takes them for its own."""
+"""The names of the helpers that can be imported now: of one case at a time, lest another one takes
+them for its own.
+"""
 
 _under_way: list[_Beside] = []
 
 
 def load(file: Path) -> ModuleType:
-    """The module of a case's file, an absolute path, executed anew. What it raises passes as it is."""
+    """The module of a case's file, an absolute path, executed anew.
+
+    What it raises passes as it is.
+    """
     name = _FILE + os.fsencode(file).hex()
     spec = _spec(name)
     assert spec is not None
@@ -75,7 +82,9 @@ def beside(module: ModuleType) -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class _Beside:
-    """A folder whose modules may be imported, those that were, and the names of what was imported before."""
+    """A folder whose modules may be imported, those that were, and the names of what was imported
+    before.
+    """
 
     folder: str
     helpers: dict[str, ModuleType]
@@ -85,7 +94,11 @@ class _Beside:
         """Note which modules of the folder were imported."""
         for name in sys.modules.keys() - self.before:
             file = getattr(sys.modules[name], "__file__", None)
-            if isinstance(file, str) and file.startswith(self.folder + os.sep) and not name.startswith(_FILE):
+            if (
+                isinstance(file, str)
+                and file.startswith(self.folder + os.sep)
+                and not name.startswith(_FILE)
+            ):
                 self.helpers[name] = sys.modules[name]
         _seen.update(self.helpers)
 
@@ -106,7 +119,9 @@ class _Loader(SourceFileLoader):
 
 
 class _Finder(MetaPathFinder):
-    def find_spec(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         return _spec(fullname) if fullname.startswith(_FILE) else None
 
 

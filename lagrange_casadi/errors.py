@@ -1,7 +1,8 @@
 """Every exception this package raises on purpose.
 
-A message is one line: it names the offending part, says what was expected and, where there is a list, what is valid.
-``exit_status`` is what the command line returns: 2 for a mistake in what was asked, 1 for a computation that failed.
+A message is one line: it names the offending part, says what was expected and, where there is a
+list, what is valid. ``exit_status`` is what the command line returns: 2 for a mistake in what was
+asked, 1 for a computation that failed.
 """
 
 from __future__ import annotations
@@ -24,12 +25,18 @@ _SHOWN = 120
 """Characters of a value that a message takes at most."""
 
 
-_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]")
-"""Characters that a terminal obeys, that turn the direction of writing, and halves of characters, which cannot be written."""
+_CONTROLS = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
+)
+"""Characters that a terminal obeys, that turn the direction of writing, and halves of characters,
+which cannot be written.
+"""
 
 
 def escaped(text: str) -> str:
-    """A text as it may be shown on a terminal: control characters, ends of lines too, as Python writes them."""
+    """A text as it may be shown on a terminal: control characters, ends of lines too, as Python
+    writes them.
+    """
     return _CONTROLS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
@@ -45,7 +52,9 @@ def _line(text: str) -> str:
 
 
 def check_kind(what: str, value: object, expected: str, *kinds: type) -> None:
-    """Raise :class:`DeclarationError` for a value of none of the kinds, which says what was ``expected``."""
+    """Raise :class:`DeclarationError` for a value of none of the kinds, which says what was
+    ``expected``.
+    """
     if not isinstance(value, kinds):
         raise DeclarationError(f"{what}: expected {expected}, got {shown(value)}")
 
@@ -60,7 +69,9 @@ def shown(value: object) -> str:
 
 
 def warn(words: str, category: type[Warning] = UserWarning) -> None:
-    """Warn of something: at the line of the user's that led to it, however many functions of this package are between."""
+    """Warn of something: at the line of the user's that led to it, however many functions of this
+    package are between.
+    """
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         frame, level = frame.f_back, level + 1
@@ -68,14 +79,19 @@ def warn(words: str, category: type[Warning] = UserWarning) -> None:
 
 
 def lacking(error: OSError) -> bool:
-    """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
+    """Whether the system has no more of something for now: descriptors, processes, memory.
+
+    Nothing is wrong with what was asked.
+    """
     return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
 
 
 class LagrangeCasadiError(Exception):
-    """Base of all errors of this package: one line that names the part, says what was expected, and lists what is valid.
+    """Base of all errors of this package: one line that names the part, says what was expected, and
+    lists what is valid.
 
-    ``exit_status`` is that of the command line: 2 for a mistake in what was asked, 1 for a computation that failed.
+    ``exit_status`` is that of the command line: 2 for a mistake in what was asked, 1 for a
+    computation that failed.
     """
 
     exit_status = 2
@@ -89,12 +105,20 @@ class DeclarationError(LagrangeCasadiError):
 
 
 class UnknownNameError(DeclarationError):
-    """A name that nothing bears, or several; the message lists the names that exist, or the nearest of many and what lists all.
+    """A name that nothing bears, or several; the message lists the names that exist, or the nearest
+    of many and what lists all.
 
     ``place`` is where they stand, as in a file.
     """
 
-    def __init__(self, kind: str, name: str | Sequence[str], valid: Iterable[str], listed_by: str = "", place: str = "") -> None:
+    def __init__(
+        self,
+        kind: str,
+        name: str | Sequence[str],
+        valid: Iterable[str],
+        listed_by: str = "",
+        place: str = "",
+    ) -> None:
         several = isinstance(name, (list, tuple)) and all(isinstance(other, str) for other in name)
         names, unknown = list(valid), list(dict.fromkeys(name)) if several else [str(name)]
         listed = f"valid: {', '.join(names) or 'none are declared'}"
@@ -105,7 +129,10 @@ class UnknownNameError(DeclarationError):
             if listed_by:
                 listed = f"{listed_by} lists the {len(names)} there are"
         told = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
-        super().__init__(f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''} {told}; {listed}")
+        super().__init__(
+            f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''}"
+            f" {told}; {listed}"
+        )
 
 
 class NoComponentError(UnknownNameError, AttributeError):
@@ -113,7 +140,9 @@ class NoComponentError(UnknownNameError, AttributeError):
 
 
 def _hint(name: str, names: Sequence[str], many: bool) -> str:
-    """The nearest of names, in words; of those that are too many to be listed else one that holds it."""
+    """The nearest of names, in words; of those that are too many to be listed else one that holds
+    it.
+    """
     held = [other for other in names if name and name in other] if many else []
     close = [*difflib.get_close_matches(name, names, n=1), *held]
     return f" (did you mean '{close[0]}'?)" if close else ""
@@ -128,17 +157,25 @@ class PickleError(LagrangeCasadiError, PicklingError):
 
 
 class NumberError(DeclarationError, ValueError):
-    """What is no number in its unit: neither a finite number, nor a text of one with a unit, such as ``350 deg`` or ``100 mm``."""
+    """What is no number in its unit: neither a finite number, nor a text of one with a unit, such
+    as ``350 deg`` or ``100 mm``.
+    """
 
 
 class PostureError(DeclarationError):
     """A posture that leaves open how loops are assembled.
 
-    ``ways`` are those of each loop that may be closed in several, as entries of a posture; ``lacking`` tells whether others need
-    rough values to be iterated from. ``scene`` is what it was tried with, where that is known.
+    ``ways`` are those of each loop that may be closed in several, as entries of a posture;
+    ``lacking`` tells whether others need rough values to be iterated from. ``scene`` is what it was
+    tried with, where that is known.
     """
 
-    def __init__(self, message: str, ways: Sequence[tuple[Mapping[str, float], ...]] = (), lacking: bool = False):
+    def __init__(
+        self,
+        message: str,
+        ways: Sequence[tuple[Mapping[str, float], ...]] = (),
+        lacking: bool = False,
+    ):
         super().__init__(message)
         self.ways, self.lacking = tuple(ways), lacking
         self.scene: object = None

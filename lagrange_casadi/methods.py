@@ -1,7 +1,9 @@
-"""What lies above what it is asked of: one table, by which methods of data and keywords of functions reach other packages.
+"""What lies above what it is asked of: one table, by which methods of data and keywords of
+functions reach other packages.
 
-`Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of safety. Their methods look these up
-here when they are called. No other module may name a module in a string: ``tests/test_layering.py`` reads this table.
+`Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of
+safety. Their methods look these up here when they are called. No other module may name a module in
+a string: ``tests/test_layering.py`` reads this table.
 """
 
 from __future__ import annotations
@@ -37,18 +39,27 @@ METHODS: dict[str, str] = {
 
 
 def method(name: str) -> Callable[..., Any]:
-    """The function that answers a method of :data:`METHODS`. Raises :class:`.MissingPackageError` without its package."""
+    """The function that answers a method of :data:`METHODS`.
+
+    Raises :class:`.MissingPackageError` without its package.
+    """
     module, _, function = METHODS[name].partition(":")
     try:
-        found: Callable[..., Any] = getattr(importlib.import_module(f"{__package__}.{module}"), function)
+        found: Callable[..., Any] = getattr(
+            importlib.import_module(f"{__package__}.{module}"), function
+        )
     except ModuleNotFoundError as error:
         raise missing(error, name) from None
     return found
 
 
 def missing(error: ModuleNotFoundError, name: str) -> ImportError:
-    """An error of ours where what is missing is a package of ours, which ``name`` needs; else the same error."""
+    """An error of ours where what is missing is a package of ours, which ``name`` needs; else the
+    same error.
+    """
     lacking = error.name or ""
     if lacking.partition(".")[0] != __package__:
         return error
-    return MissingPackageError(f"{name} needs {lacking}, which this installation lacks; install all of lagrange_casadi")
+    return MissingPackageError(
+        f"{name} needs {lacking}, which this installation lacks; install all of lagrange_casadi"
+    )

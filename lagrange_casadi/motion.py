@@ -1,4 +1,6 @@
-"""Laws of motion, for scenes: the public part of :mod:`.declare.motion`, :mod:`.declare.moves`, :mod:`.declare.recordings`."""
+"""Laws of motion, for scenes: the public part of :mod:`.declare.motion`, :mod:`.declare.moves`,
+:mod:`.declare.recordings`.
+"""
 
 from .declare.motion import Motion, expression, harmonic, polynomial, samples
 from .declare.moves import Dwell, Move, dwell, move, moves

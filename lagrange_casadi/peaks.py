@@ -1,4 +1,6 @@
-"""Peaks between instants: the public part of :mod:`.studies.peaks` and :mod:`.studies.strength_peaks`."""
+"""Peaks between instants: the public part of :mod:`.studies.peaks` and
+:mod:`.studies.strength_peaks`.
+"""
 
 from .studies.peaks import forces, refine, shortfall
 from .studies.strength_peaks import refine_safety, refine_stress

@@ -9,12 +9,18 @@ _IN_A_CLONE = Path(__file__).parents[1] / "cases"
 
 
 def shipped_cases() -> dict[str, Path]:
-    """Their folders by name: of a clone its own, else what the installation's record tells; none where there are none.
+    """Their folders by name: of a clone its own, else what the installation's record tells; none
+    where there are none.
 
-    An installation that runs from a clone has copies of its cases too, as they were when it was installed.
+    An installation that runs from a clone has copies of its cases too, as they were when it was
+    installed.
     """
     there = [path.parent for path in _IN_A_CLONE.glob("*/case.py")]
     if not there or not (_IN_A_CLONE.parent / "pyproject.toml").is_file():
-        recorded = [Path(str(file.locate())) for file in metadata.files("lagrange_casadi") or () if file.match("cases/*/case.py")]
+        recorded = [
+            Path(str(file.locate()))
+            for file in metadata.files("lagrange_casadi") or ()
+            if file.match("cases/*/case.py")
+        ]
         there = [path.parent for path in recorded if path.is_file()] or there
     return {folder.name: folder for folder in sorted(there)}

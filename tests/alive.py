@@ -1,4 +1,6 @@
-"""Live pages: the engine's package, pages whose inner parts a test can reach, and a scene of which every number may change."""
+"""Live pages: the engine's package, pages whose inner parts a test can reach, and a scene of which
+every number may change.
+"""
 
 import importlib.util
 import os
@@ -17,7 +19,8 @@ THERE = importlib.util.find_spec("ziglang") is not None
 NEEDS_BROWSER = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
 NEEDS_ENGINE = pytest.mark.skipif(not THERE, reason="ziglang is not installed")
 
-# A session's own cache would have ziglang build its C library anew, in half a minute; it is no part of what is tested.
+# A session's own cache would have ziglang build its C library anew, in half a minute; it is no part
+# of what is tested.
 os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(Path.home() / ".cache" / "zig"))
 
 
@@ -32,12 +35,15 @@ def chromium():
 def opened(one, path, text):
     """Open a page with its inner parts in ``window.page``, and wait until its engine runs.
 
-    A script that is changed is no longer the one whose digest the page tells, so the page must not tell any.
+    A script that is changed is no longer the one whose digest the page tells, so the page must not
+    tell any.
     """
     text = re.sub(r"<meta http-equiv=[^>]*>", "", text)
     parts = "live, contents, array, sections, sectionForce, player, deck"
     assert text.count("buildPage();\n})();") == 1
-    path.write_text(text.replace("buildPage();\n})();", f"buildPage();\nwindow.page = {{ {parts} }};\n}})();"))
+    path.write_text(
+        text.replace("buildPage();\n})();", f"buildPage();\nwindow.page = {{ {parts} }};\n}})();")
+    )
     one.open(path)
     wait(one, "window.page.live.engine !== null")
 
@@ -51,12 +57,26 @@ def wait(one, condition):
 
 
 def sheller(over=True):
-    """A machine in the plane: a plate on a rod, a load that slides along a rocker, loads along links, a spring, a turned guide."""
+    """A machine in the plane: a plate on a rod, a load that slides along a rocker, loads along
+    links, a spring, a turned guide.
+    """
     m = Mechanism("sheller")
-    r, l, b = m.parameter("r", 0.1, "m", low=0.0), m.parameter("l", 0.45, "m"), m.parameter("b", 0.12, "m")
-    mass, snow, tilt = m.parameter("m", 1.5, "kg"), m.parameter("snow", 40.0, "N/m"), m.parameter("tilt", 0.1, "rad")
+    r, l, b = (
+        m.parameter("r", 0.1, "m", low=0.0),
+        m.parameter("l", 0.45, "m"),
+        m.parameter("b", 0.12, "m"),
+    )
+    mass, snow, tilt = (
+        m.parameter("m", 1.5, "kg"),
+        m.parameter("snow", 40.0, "N/m"),
+        m.parameter("tilt", 0.1, "rad"),
+    )
     turn, rpm = m.parameter("turn", 6.2, "rad"), m.parameter("rpm", 60.0, "1/min")
-    crank, rod, ram = m.link("crank", length=r, mass=mass), m.link("rod", length=l, mass=2.0), m.point_mass("ram", 3.0 * mass)
+    crank, rod, ram = (
+        m.link("crank", length=r, mass=mass),
+        m.link("rod", length=l, mass=2.0),
+        m.point_mass("ram", 3.0 * mass),
+    )
     rocker = m.link("rocker", length=1.1 * l + b, density=density.polynomial(2.0, b, 1.0))
     drive = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)

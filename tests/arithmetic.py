@@ -1,7 +1,8 @@
 """What the oracle calculates with: doubles, or numbers of as many digits as one likes.
 
-Both have the same names: ``number`` takes a number in as it is, ``array`` is NumPy's of such numbers, ``tolerance`` is where
-Newton's method ends, ``gauss`` are the twelve nodes and weights on [-1, 1] that integrate polynomials up to degree 23.
+Both have the same names: ``number`` takes a number in as it is, ``array`` is NumPy's of such
+numbers, ``tolerance`` is where Newton's method ends, ``gauss`` are the twelve nodes and weights on
+[-1, 1] that integrate polynomials up to degree 23.
 """
 
 from __future__ import annotations
@@ -45,7 +46,9 @@ class Double(_Arrays):
         return np.polynomial.legendre.leggauss(12)
 
     def solve(self, matrix, right, least):
-        """Least squares, and of many solutions the shortest; singular values below ``least`` of the largest are none."""
+        """Least squares, and of many solutions the shortest; singular values below ``least`` of the
+        largest are none.
+        """
         return np.linalg.lstsq(matrix, right, rcond=least)[0]
 
 
@@ -54,9 +57,11 @@ DOUBLE = Double()
 
 @dataclass(frozen=True)
 class Digits(_Arrays):
-    """Numbers of a context of their own, with guard digits beyond the ``digits`` that a result should have.
+    """Numbers of a context of their own, with guard digits beyond the ``digits`` that a result
+    should have.
 
-    ``least`` is a bound for pivots of its own, where no equation repeats another and a small one counts.
+    ``least`` is a bound for pivots of its own, where no equation repeats another and a small one
+    counts.
     """
 
     digits: int
@@ -92,7 +97,8 @@ class Digits(_Arrays):
         return tuple(self.array(column) for column in zip(*pairs, strict=True))
 
     def solve(self, matrix, right, least):
-        """Elimination of equations that agree: those that repeat others are let go, unknowns that all leave open are zero.
+        """Elimination of equations that agree: those that repeat others are let go, unknowns that
+        all leave open are zero.
 
         Pivots are the largest entries left; one below ``least`` of the first is none.
         """

@@ -1,4 +1,6 @@
-"""A scene beside the oracle: what links the package's declarations to it, and every force of both compared."""
+"""A scene beside the oracle: what links the package's declarations to it, and every force of both
+compared.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +22,11 @@ TOLERANCE = 1e-12
 
 
 def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
-    """The largest difference between the scene's instant ``t`` and the oracle's, forces relative to the largest force.
+    """The largest difference between the scene's instant ``t`` and the oracle's, forces relative to
+    the largest force.
 
-    ``rough`` gives directions with their turns; ``beside`` goes to the oracle: loads, extras and unaided drives.
+    ``rough`` gives directions with their turns; ``beside`` goes to the oracle: loads, extras and
+    unaided drives.
     """
     m = scene.mechanism
     values = m.values(parameters)
@@ -31,15 +35,26 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     drives, guides = apart(m, drives, values)
     beside = {"pushed": scene.drives and list(scene.drives)} | beside
     beside["extras"] = [*beside.get("extras", ()), *guides]
-    solved = rubbing.solve(oracle_of(m, values, **beside), m, values, drives, postures(m, found, drives, nudge, rough))
+    solved = rubbing.solve(
+        oracle_of(m, values, **beside), m, values, drives, postures(m, found, drives, nudge, rough)
+    )
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
-    gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
+    gaps = {
+        f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size
+        for joint, effort in solved.efforts.items()
+    }
     for name, multiplier in solved.multipliers.items():
         gaps[f"multiplier:{name}"] = (found[f"multiplier:{name}"] - multiplier) / size
-    gaps |= {name: (found[name] - value) / size for name, value in solved.frictions.items() if name.endswith("along")}
+    gaps |= {
+        name: (found[name] - value) / size
+        for name, value in solved.frictions.items()
+        if name.endswith("along")
+    }
     for joint, forces in solved.reactions.items():
         for member, force in zip(("fx", "fy", "mz"), forces, strict=True):
-            gaps[f"reaction:{joint}:{member}"] = (found.get(f"reaction:{joint}:{member}", 0.0) - force) / size
+            gaps[f"reaction:{joint}:{member}"] = (
+                found.get(f"reaction:{joint}:{member}", 0.0) - force
+            ) / size
     for body in m.moving:
         q = solved.q[body.name]
         gaps[f"{body.name} x"] = found[f"pose:{body.name}:x"] - q[0].v
@@ -54,25 +69,36 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
                 mine = law.at(force, np.full((solution.t.size, 1), u))[-1, 0]
                 gaps[f"{force} of {link} at {u}"] = (mine - solved.sections[link](u)[k]) / size
     worst = max(gaps, key=lambda name: abs(gaps[name]))
-    assert all(math.isfinite(gap) for gap in gaps.values()), [name for name, gap in gaps.items() if not math.isfinite(gap)]
+    assert all(math.isfinite(gap) for gap in gaps.values()), [
+        name for name, gap in gaps.items() if not math.isfinite(gap)
+    ]
     return worst, abs(gaps[worst])
 
 
 def columns_at(graph, t, values):
-    """A graph's columns at an instant, by name, and its drives as (coordinate, rate, acceleration)."""
+    """A graph's columns at an instant, by name, and its drives
+    as (coordinate, rate, acceleration).
+    """
     p = list(values.values())
     driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
     found = graph.instant(t, *driven, settle(graph, t, p, graph.data.span[0]), p).full().ravel()
-    return dict(zip(graph.names, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
+    return dict(zip(graph.names, found, strict=True)), {
+        joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)
+    }
 
 
 def apart(m, drives, values, arithmetic=DOUBLE):
-    """The motions of joints, and as the oracle's extras those of points and poses: the laws hold them, and bear nothing."""
+    """The motions of joints, and as the oracle's extras those of points and poses: the laws hold
+    them, and bear nothing.
+    """
 
     def guide(name, drive):
         part, _, along = name.rpartition(".")
         point = m.paths[part].point if part in m.paths else m.bodies[part].base
-        at = (point.body.name, *(arithmetic.number(m.number(x, values)) for x in (point.x, point.y)))
+        at = (
+            point.body.name,
+            *(arithmetic.number(m.number(x, values)) for x in (point.x, point.y)),
+        )
         law, k = Jet(*map(arithmetic.number, drive)), ("x", "y", "angle").index(along)
         return oracle.Extra(name, lambda place: place(at)[k] - law, None)
 
@@ -81,8 +107,13 @@ def apart(m, drives, values, arithmetic=DOUBLE):
 
 
 def postures(m, found, drives, nudge, rough=()):
-    """Rough (x, y, angle) of every body, off by ``nudge`` from a graph's columns; ``rough`` gives directions with their turns."""
-    size = max(abs(v) for k, v in found.items() if k.startswith("pose:") and not k.endswith("angle")) or 1.0
+    """Rough (x, y, angle) of every body, off by ``nudge`` from a graph's columns; ``rough`` gives
+    directions with their turns.
+    """
+    size = (
+        max(abs(v) for k, v in found.items() if k.startswith("pose:") and not k.endswith("angle"))
+        or 1.0
+    )
     at = {
         b.name: (
             found[f"pose:{b.name}:x"] + nudge * size / 5,
@@ -92,9 +123,13 @@ def postures(m, found, drives, nudge, rough=()):
         for b in m.moving
     }
     # Where a drive from the ground counts turns, so must the oracle's guess.
-    from_ground = [joint for joint in drives if joint in m.joints and m.joints[joint].parent.body is m.ground]
+    from_ground = [
+        joint for joint in drives if joint in m.joints and m.joints[joint].parent.body is m.ground
+    ]
     turned = {m.joints[joint].child.body.name: drives[joint][0] for joint in from_ground}
-    turned = {body: angle for body, angle in turned.items() if f"pose:{body}:angle" in found} | dict(rough)
+    turned = {
+        body: angle for body, angle in turned.items() if f"pose:{body}:angle" in found
+    } | dict(rough)
     return {body: (x, y, turned.get(body, angle)) for body, (x, y, angle) in at.items()}
 
 
@@ -113,12 +148,17 @@ def settle(graph, t, p, start):
 
 
 def section_forces(law, m, l, u):
-    """Axial, shear and bending from a law's coefficients, by the moments of a uniform rod as they are defined."""
+    """Axial, shear and bending from a law's coefficients, by the moments of a uniform rod as they
+    are defined.
+    """
     mu0, mu1, mu2, xi = m * (1 - u), m * l / 2 * (1 - u**2), m * l**2 / 3 * (1 - u**3), u * l
     return (
         law["n0"] + law["n1"] * mu0 + law["n2"] * mu1,
         law["f0"] + law["f1"] * mu0 + law["f2"] * mu1,
-        law["m0"] + law["f0"] * (l - xi) + law["f1"] * (mu1 - xi * mu0) + law["f2"] * (mu2 - xi * mu1),
+        law["m0"]
+        + law["f0"] * (l - xi)
+        + law["f1"] * (mu1 - xi * mu0)
+        + law["f2"] * (mu2 - xi * mu1),
     )
 
 
@@ -136,9 +176,14 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
             return oracle.Body(b.name, number(b.mass), oriented=False)
         if isinstance(b.mass, RigidMass):
             centre = tuple(number(c) for c in b.mass.centre)
-            return oracle.Body(b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia))
+            return oracle.Body(
+                b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia)
+            )
         length, breaks = number(b.length), [number(ratio) for ratio in b.mass.breaks]
-        cells = [[number(c) * (length if b.mass.per_length else 1.0) for c in cell] for cell in b.mass.cells]
+        cells = [
+            [number(c) * (length if b.mass.per_length else 1.0) for c in cell]
+            for cell in b.mass.cells
+        ]
 
         def density(u):
             i = min(max(bisect.bisect_right(breaks, u) - 1, 0), len(cells) - 1)
@@ -147,11 +192,20 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
         return oracle.from_density(b.name, length, density, breaks, arithmetic)
 
     joints = [
-        oracle.Joint(j.name, j.kind, point(j.parent), point(j.child), (number(j.axis[0]), number(j.axis[1])), number(j.angle))
+        oracle.Joint(
+            j.name,
+            j.kind,
+            point(j.parent),
+            point(j.child),
+            (number(j.axis[0]), number(j.axis[1])),
+            number(j.angle),
+        )
         for j in m.joints.values()
     ]
     gravity = (number(m.gravity[0]), number(m.gravity[1]))
-    return oracle.Oracle([body(b) for b in m.moving], joints, gravity, arithmetic=arithmetic, **beside)
+    return oracle.Oracle(
+        [body(b) for b in m.moving], joints, gravity, arithmetic=arithmetic, **beside
+    )
 
 
 def assert_balanced(scene, **keywords):

@@ -12,10 +12,15 @@ from spatial_mechanisms import FAMILIES
 
 
 def locked(drawn: Drawn, name: str, t: float) -> Drawn:
-    """The same, with a joint's three turns told from where its second one is at a right angle at an instant."""
+    """The same, with a joint's three turns told from where its second one is at a right angle at an
+    instant.
+    """
     joint, poses = drawn.mechanism.joint(name), drawn.solve(t).poses
     (R, S), (u, v, w) = (
-        (np.asarray(poses[b].R, float) if b in poses else np.eye(3) for b in (joint.parent, joint.child)),
+        (
+            np.asarray(poses[b].R, float) if b in poses else np.eye(3)
+            for b in (joint.parent, joint.child)
+        ),
         joint.frame,
     )
     turned = np.outer(u, w) + np.outer(v, v) - np.outer(w, u)
@@ -30,18 +35,28 @@ def suspension(seed: int, t: float) -> Drawn:
 
 
 def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
-    """A plate on three legs of two links each, whose feet turn as they are told; all that holds it are balls (3-RRS).
+    """A plate on three legs of two links each, whose feet turn as they are told; all that holds it
+    are balls (3-RRS).
 
     In ``reverse`` the balls' parent is the plate.
     """
     rng = np.random.default_rng(seed)
     at = np.array([0.0, 0.0, 0.7]) + rng.normal(size=3) * 0.02
-    plate, bodies, joints, laws, guess = rigid(rng, "plate", 0.2), [], [], {}, {"plate": (at, np.eye(3))}
+    plate, bodies, joints, laws, guess = (
+        rigid(rng, "plate", 0.2),
+        [],
+        [],
+        {},
+        {"plate": (at, np.eye(3))},
+    )
     for k in range(3):
         out = np.array([math.cos(2.1 * k), math.sin(2.1 * k), 0.0])
         foot, top = 0.35 * out, at + 0.2 * out
         knee = (foot + top) / 2 + 0.15 * out + rng.normal(size=3) * 0.01
-        lower, upper = (rod(rng, f"{name}{k}", float(np.linalg.norm(way)), slender=True) for name, way in _ways(foot, knee, top))
+        lower, upper = (
+            rod(rng, f"{name}{k}", float(np.linalg.norm(way)), slender=True)
+            for name, way in _ways(foot, knee, top)
+        )
         bodies += [lower, upper]
         (_, down), (_, up) = _ways(foot, knee, top)
         guess |= {lower.name: (foot, frame(down, rng)), upper.name: (knee, frame(up, rng))}
@@ -49,14 +64,25 @@ def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
         axis = np.cross(out, (0.0, 0.0, 1.0)) + rng.normal(size=3) * 0.05
         joints += [
             Joint(f"O{k}", "revolute", GROUND, lower.name, foot, axis=axis, orientation=R),
-            Joint(f"K{k}", "revolute", lower.name, upper.name, (lower.length, 0, 0), axis=R.T @ axis, orientation=R.T @ S),
+            Joint(
+                f"K{k}",
+                "revolute",
+                lower.name,
+                upper.name,
+                (lower.length, 0, 0),
+                axis=R.T @ axis,
+                orientation=R.T @ S,
+            ),
         ]
         ends = [(upper.name, (upper.length, 0.0, 0.0)), ("plate", 0.2 * out)]
         (parent, there), (child, here) = reversed(ends) if reverse else ends
         joints.append(Joint(f"S{k}", "spherical", parent, child, there, here))
         laws["O" + str(k), 0] = Law(0.0, 0.0, rng.uniform(0.1, 0.25), rng.uniform(3, 6), 0.0)
     one = Mechanism(
-        [plate, *bodies], joints, loads=[Load("plate", (0.1, 0, 0), rng.normal(size=3) * 20, (1, 0, 0))], gravity=(0, 0, -9.81)
+        [plate, *bodies],
+        joints,
+        loads=[Load("plate", (0.1, 0, 0), rng.normal(size=3) * 20, (1, 0, 0))],
+        gravity=(0, 0, -9.81),
     )
     return locked(Drawn(one, laws, guess, span=0.4), "S0", t)
 

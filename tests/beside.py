@@ -1,4 +1,6 @@
-"""What acts in the cases beside joints and weights, written again for the oracle, in any arithmetic."""
+"""What acts in the cases beside joints and weights, written again for the oracle, in any
+arithmetic.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +10,60 @@ import math
 import oracle
 from jets import Jet, functions
 
-ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
-PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
+ANGLES = (
+    0,
+    20,
+    180,
+    220,
+    260,
+    300,
+    320,
+    335,
+    350,
+    360,
+    368,
+    375,
+    390,
+    410,
+    440,
+    480,
+    520,
+    540,
+    560,
+    600,
+    700,
+    720,
+)
+PRESSURES = (
+    0.3,
+    -0.2,
+    -0.2,
+    0.1,
+    0.9,
+    3.4,
+    6.5,
+    10.5,
+    18,
+    27,
+    42,
+    45,
+    30,
+    15,
+    6.5,
+    3.2,
+    2.0,
+    1.4,
+    0.6,
+    0.3,
+    0.3,
+    0.3,
+)
 
 
 def of_case(name, arithmetic, values):
-    """What the oracle of a case needs beside its mechanism, at the parameters' values: loads, extras and unaided drives."""
+    """What the oracle of a case needs beside its mechanism, at the parameters' values: loads,
+    extras and unaided drives.
+    """
     return _CASES[name](arithmetic, values) if name in _CASES else {}
 
 
@@ -49,7 +99,12 @@ def _v_twin(arithmetic, values):
     def gas(side, way, x, y):
         def pushes(place):
             turned = place(("crank", 0, 0))[2].v - number(way)
-            diagram = number(3.0) + number(2.5) * cos(turned) - number(1.75) * sin(turned) + number(0.5) * cos(2 * turned)
+            diagram = (
+                number(3.0)
+                + number(2.5) * cos(turned)
+                - number(1.75) * sin(turned)
+                + number(0.5) * cos(2 * turned)
+            )
             push = -100_000 * diagram * number(math.pi) / 4 * bore**2
             return [((f"{side}_piston", 0, 0), push * x, push * y, 0)]
 
@@ -71,7 +126,9 @@ HEIGHTS, SHARES = (0, 5, 15, 30, 39, 40), (0.55, 0.7, 0.95, 1.0, 0.6, 0.0)
 
 
 def _servo_press(arithmetic, values):
-    """The part's force on the ram on its way down, by a table of the height; and the counterbalance."""
+    """The part's force on the ram on its way down, by a table of the height; and the
+    counterbalance.
+    """
     number = arithmetic.number
     heights, shares = ([number(x) for x in row] for row in (HEIGHTS, SHARES))
 
@@ -79,9 +136,18 @@ def _servo_press(arithmetic, values):
         _, y, _ = place(("ram", 0, 0))
         height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
         i = min(max(bisect.bisect_right(heights, height), 1), len(heights) - 1)
-        share = shares[i - 1] + (shares[i] - shares[i - 1]) / (heights[i] - heights[i - 1]) * (height - heights[i - 1])
+        share = shares[i - 1] + (shares[i] - shares[i - 1]) / (heights[i] - heights[i - 1]) * (
+            height - heights[i - 1]
+        )
         borne = share if y.d < 0 and height < heights[-1] else number(0)
-        return [(("ram", 0, 0), 0, number(values["drawing"]) * borne + number(values["mass"]) * number(9.81), 0)]
+        return [
+            (
+                ("ram", 0, 0),
+                0,
+                number(values["drawing"]) * borne + number(values["mass"]) * number(9.81),
+                0,
+            )
+        ]
 
     return {"loads": [part]}
 
@@ -134,7 +200,9 @@ def _beam_pump(arithmetic, values):
     def gap(place):
         return place(rods)[1] - place(axle)[1] - place(head)[2] * radius + 3
 
-    bridle = oracle.Extra("bridle", gap, lambda place: [(rods, 0, 1, 0), (axle, 0, -1, 0), (head, 0, 0, -radius)])
+    bridle = oracle.Extra(
+        "bridle", gap, lambda place: [(rods, 0, 1, 0), (axle, 0, -1, 0), (head, 0, 0, -radius)]
+    )
     return {"loads": [lift], "extras": [bridle]}
 
 
@@ -142,7 +210,9 @@ def _scara(arithmetic, values):
     """A belt that ties the directions of the pulley and the outer arm."""
     pulley, outer = ("pulley", 0, 0), ("outer", 0, 0)
     belt = oracle.Extra(
-        "belt", lambda place: place(pulley)[2] - place(outer)[2], lambda place: [(pulley, 0, 0, 1), (outer, 0, 0, -1)]
+        "belt",
+        lambda place: place(pulley)[2] - place(outer)[2],
+        lambda place: [(pulley, 0, 0, 1), (outer, 0, 0, -1)],
     )
     return {"extras": [belt]}
 
@@ -167,7 +237,9 @@ def _roller_cam(arithmetic, values):
             return inside * 0 + (h if at < up + top else 0), inside * 0
         else:
             u, sign, start, width = (inside - up - top) / back, -1, h, back
-        return (u - sin(u * (2 * pi)) / (2 * pi)) * (sign * h) + start, (1 - cos(u * (2 * pi))) * (sign * h / width)
+        return (u - sin(u * (2 * pi)) / (2 * pi)) * (sign * h) + start, (1 - cos(u * (2 * pi))) * (
+            sign * h / width
+        )
 
     def lean(place):
         """Where the roller is, and how far it goes aside as it rises on the cam, of jets."""
@@ -187,15 +259,27 @@ def _roller_cam(arithmetic, values):
     def spring(place):
         length = place(stem)[1].v - least
         return [
-            (("stem", number(11) / 100, number(3) / 1000), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)
+            (
+                ("stem", number(11) / 100, number(3) / 1000),
+                0,
+                -number(values["preload"]) - number(values["stiffness"]) * length,
+                0,
+            )
         ]
 
     return {"loads": [spring], "extras": [oracle.Extra("contact", gap, effect)]}
 
 
 def _planetary_gear(arithmetic, values):
-    """Teeth as forces at pitch points, their flanks those that the load presses; the sun pushes all planets alike; and the load."""
-    number, sin, cos, pi = arithmetic.number, arithmetic.sin, arithmetic.cos, arithmetic.number(math.pi)
+    """Teeth as forces at pitch points, their flanks those that the load presses; the sun pushes all
+    planets alike; and the load.
+    """
+    number, sin, cos, pi = (
+        arithmetic.number,
+        arithmetic.sin,
+        arithmetic.cos,
+        arithmetic.number(math.pi),
+    )
     tangent, module = sin(pi / 9) / cos(pi / 9), number(values["module"])
     sun, planet, ring = (module * teeth / 2 for teeth in (24, 18, 60))
     carrier = ("carrier", 0, 0)
@@ -210,7 +294,11 @@ def _planetary_gear(arithmetic, values):
         return [((first, 0, 0), x, y, radii[0]), ((second, 0, 0), -x, -y, radii[1])]
 
     def inner(place):
-        return [force for k in (1, 2, 3) for force in mesh(place, k, "sun", f"set_planet_{k}", (sun, planet), -1)]
+        return [
+            force
+            for k in (1, 2, 3)
+            for force in mesh(place, k, "sun", f"set_planet_{k}", (sun, planet), -1)
+        ]
 
     def outer(k):
         name = f"set_planet_{k}"
@@ -221,9 +309,21 @@ def _planetary_gear(arithmetic, values):
         )
 
     def stirred(place):
-        return [(carrier, 0, 0, -number(values["torque"]) * (1 + number(values["unsteady"]) * sin(4 * place(carrier)[2].v)))]
+        return [
+            (
+                carrier,
+                0,
+                0,
+                -number(values["torque"])
+                * (1 + number(values["unsteady"]) * sin(4 * place(carrier)[2].v)),
+            )
+        ]
 
-    first = oracle.Extra("set_sun", lambda place: angle(place, "sun") * sun + angle(place, "set_planet_1") * planet, inner)
+    first = oracle.Extra(
+        "set_sun",
+        lambda place: angle(place, "sun") * sun + angle(place, "set_planet_1") * planet,
+        inner,
+    )
     return {"loads": [stirred], "extras": [first, *(outer(k) for k in (1, 2, 3))]}
 
 

@@ -1,4 +1,6 @@
-"""A headless Chromium, told what to do through two pipes (the DevTools protocol), without any network."""
+"""A headless Chromium, told what to do through two pipes (the DevTools protocol), without any
+network.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +17,26 @@ from pathlib import Path
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 FLAGS = (
-    *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe", "--hide-scrollbars"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic", "--disable-extensions"),
-    *("--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9", "--force-color-profile=srgb"),
+    *(
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--no-first-run",
+        "--remote-debugging-pipe",
+        "--hide-scrollbars",
+    ),
+    *(
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--disable-quic",
+        "--disable-extensions",
+    ),
+    *(
+        "--host-resolver-rules=MAP * ~NOTFOUND",
+        "--proxy-server=127.0.0.1:9",
+        "--force-color-profile=srgb",
+    ),
 )
 PATIENCE = 20.0
 
@@ -28,7 +47,10 @@ def found() -> str | None:
 
 
 class Browser:
-    """One page of one browser. ``complaints`` are errors and warnings of its console, ``asked`` what it tried to load."""
+    """One page of one browser.
+
+    ``complaints`` are errors and warnings of its console, ``asked`` what it tried to load.
+    """
 
     def __init__(self, width: int = 1400, height: int = 900) -> None:
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -42,8 +64,14 @@ class Browser:
             for number, place in zip(high, (3, 4), strict=True):
                 os.dup2(number, place)
 
-        quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        self._process = subprocess.Popen([str(found()), *flags], pass_fds=(3, 4), preexec_fn=adopt, **quiet)
+        quiet = {
+            "stdin": subprocess.DEVNULL,
+            "stdout": subprocess.DEVNULL,
+            "stderr": subprocess.DEVNULL,
+        }
+        self._process = subprocess.Popen(
+            [str(found()), *flags], pass_fds=(3, 4), preexec_fn=adopt, **quiet
+        )
         os.close(to_read)
         os.close(to_write)
         self._left, self._number, self._session = b"", 0, ""
@@ -51,7 +79,9 @@ class Browser:
         self.asked: list[str] = []
         try:
             target = self.call("Target.createTarget", url="about:blank")["targetId"]
-            self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+            self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)[
+                "sessionId"
+            ]
             for room in ("Page", "Runtime", "Log", "Network"):
                 self.call(f"{room}.enable")
             self.size(width, height)
@@ -105,7 +135,9 @@ class Browser:
 
     def run(self, expression: str) -> object:
         """What an expression is in the page; a promise is waited for."""
-        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        answer = self.call(
+            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
+        )
         if "exceptionDetails" in answer:
             details = answer["exceptionDetails"]
             raise RuntimeError(details.get("exception", {}).get("description") or details["text"])
@@ -113,9 +145,13 @@ class Browser:
 
     def run_within(self, expression: str) -> object:
         """What an expression is in the page's one frame, which is a page of its own."""
-        (frame,) = (one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "iframe")
+        (frame,) = (
+            one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "iframe"
+        )
         own = self._session
-        self._session = self.call("Target.attachToTarget", targetId=frame["targetId"], flatten=True)["sessionId"]
+        self._session = self.call(
+            "Target.attachToTarget", targetId=frame["targetId"], flatten=True
+        )["sessionId"]
         try:
             return self.run(expression)
         finally:
@@ -123,16 +159,28 @@ class Browser:
 
     def size(self, width: int, height: int, scale: float = 1.0, mobile: bool = False) -> None:
         """Give the page a size."""
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=mobile)
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=scale,
+            mobile=mobile,
+        )
 
     def prefer(self, **features: str) -> None:
         """Say what the user of the browser prefers, such as ``prefers-color-scheme``."""
-        told = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        told = [
+            {"name": name.replace("_", "-"), "value": value} for name, value in features.items()
+        ]
         self.call("Emulation.setEmulatedMedia", features=told)
 
     def press(self, key: str, text: str = "") -> None:
         """Press a key."""
-        code = {"key": key, "code": key, "windowsVirtualKeyCode": {"ArrowRight": 39, "ArrowLeft": 37, " ": 32}.get(key, 0)}
+        code = {
+            "key": key,
+            "code": key,
+            "windowsVirtualKeyCode": {"ArrowRight": 39, "ArrowLeft": 37, " ": 32}.get(key, 0),
+        }
         self.call("Input.dispatchKeyEvent", type="keyDown", text=text, **code)
         self.call("Input.dispatchKeyEvent", type="keyUp", **code)
 
@@ -147,7 +195,13 @@ class Browser:
 
     def printed(self, path: Path, width: float = 8.27, height: float = 11.69) -> bytes:
         """The page on paper [inch], as PDF."""
-        answer = self.call("Page.printToPDF", printBackground=True, paperWidth=width, paperHeight=height, preferCSSPageSize=False)
+        answer = self.call(
+            "Page.printToPDF",
+            printBackground=True,
+            paperWidth=width,
+            paperHeight=height,
+            preferCSSPageSize=False,
+        )
         content = base64.b64decode(str(answer["data"]))
         path.write_bytes(content)
         return content
@@ -166,8 +220,14 @@ class Browser:
         told = event.get("params", {})
         method = event.get("method")
         if method == "Runtime.exceptionThrown":
-            self.complaints.append(told["exceptionDetails"].get("exception", {}).get("description") or str(told))
-        elif method == "Runtime.consoleAPICalled" and told["type"] in ("error", "warning", "assert"):
+            self.complaints.append(
+                told["exceptionDetails"].get("exception", {}).get("description") or str(told)
+            )
+        elif method == "Runtime.consoleAPICalled" and told["type"] in (
+            "error",
+            "warning",
+            "assert",
+        ):
             self.complaints.append(str([one.get("value") for one in told["args"]]))
         elif method == "Log.entryAdded" and told["entry"]["level"] in ("error", "warning"):
             self.complaints.append(told["entry"]["text"])

@@ -29,7 +29,9 @@ TURN = motion.harmonic(0.0, 0.6, 1.0)
 SPAN = (0.0, 1.0, 5)
 
 Call = tuple[Callable[..., Any], dict[str, Any]]
-"""A function or a bound method, and its arguments by name; what has no name goes by ``*``, as a tuple."""
+"""A function or a bound method, and its arguments by name; what has no name goes by ``*``, as a
+tuple.
+"""
 
 
 def plane() -> SimpleNamespace:
@@ -55,7 +57,9 @@ def space() -> SimpleNamespace:
 def wheels() -> SimpleNamespace:
     """Wheels, a cam and what follows it."""
     m = Mechanism("w")
-    first, second = (elements.wheel(m, name, radius=0.1, width=0.01) for name in ("first", "second"))
+    first, second = (
+        elements.wheel(m, name, radius=0.1, width=0.01) for name in ("first", "second")
+    )
     m.revolute("F", m.ground, first)
     m.revolute("G", m.ground.at(0.2, 0.0), second)
     cam = m.link("cam", length=0.1, mass=1.0)
@@ -91,7 +95,12 @@ def lift(u: Any) -> Any:
 def swing() -> Scene:
     """A scene of one arm that has a beam and a bearing."""
     m = Mechanism("swing")
-    arm = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.1, high=2.0), mass=1.0, beam=beams.Beam(BAR, STEEL, [NOTCH]))
+    arm = m.link(
+        "arm",
+        length=m.parameter("l", 0.5, "m", low=0.1, high=2.0),
+        mass=1.0,
+        beam=beams.Beam(BAR, STEEL, [NOTCH]),
+    )
     pin = m.revolute("O", m.ground, arm)
     bearings.fit(m, pin, bearings.Rolling(dynamic=1e4, hours=1e4))
     return Scene(m, {"O": TURN}, t=SPAN, xi=(0.0, 1.0, 3))
@@ -116,8 +125,19 @@ def declarations() -> Iterator[tuple[str, Call]]:
         "gear": {"name": "new", "first": p.pin, "second": p.other, "ratio": 2.0},
         "force": {"name": "new", "point": p.arm.tip, "x": 1.0},
         "torque": {"name": "new", "point": p.arm, "value": 1.0},
-        "spring": {"name": "new", "first": p.m.ground.at(1.0, 1.0), "second": p.arm.tip, "stiffness": 1.0, "length": 1.0},
-        "damper": {"name": "new", "first": p.m.ground.at(1.0, 1.0), "second": p.arm.tip, "damping": 1.0},
+        "spring": {
+            "name": "new",
+            "first": p.m.ground.at(1.0, 1.0),
+            "second": p.arm.tip,
+            "stiffness": 1.0,
+            "length": 1.0,
+        },
+        "damper": {
+            "name": "new",
+            "first": p.m.ground.at(1.0, 1.0),
+            "second": p.arm.tip,
+            "damping": 1.0,
+        },
         "torsion_spring": {"name": "new", "joint": p.pin, "stiffness": 1.0},
         "friction": {"name": "new", "joint": p.pin, "mu": 0.1, "radius": 0.01},
         "line_load": {"name": "new", "link": p.arm, "y": 1.0},
@@ -171,9 +191,21 @@ def declarations() -> Iterator[tuple[str, Call]]:
         "belt": {**steel, "first": w.first, "second": w.second, "radii": (0.05, 0.05)},
         "plate": {**steel, "corners": corners, "mass": 1.0},
         "bent_bar": {**steel, "corners": corners, "mass": 1.0},
-        "disc_cam": {**steel, "cam": w.turn, "follower": w.slide, "lift": lift, "base_radius": 0.05},
+        "disc_cam": {
+            **steel,
+            "cam": w.turn,
+            "follower": w.slide,
+            "lift": lift,
+            "base_radius": 0.05,
+        },
         "cylinder": {**steel, "rear": w.m.ground, "front": w.first, "closed": 0.3, "bore": 0.05},
-        "cylindrical_cam": {"mechanism": d.m, "name": "new", "cam": d.turn, "follower": d.slide, "lift": lift},
+        "cylindrical_cam": {
+            "mechanism": d.m,
+            "name": "new",
+            "cam": d.turn,
+            "follower": d.slide,
+            "lift": lift,
+        },
         "profile_lift": {"mechanism": w.m, "cam": w.turn, "follower": w.slide, "points": points},
         "read_profile": {"path": "profile.csv"},
     }.items():
@@ -202,10 +234,27 @@ def declarations() -> Iterator[tuple[str, Call]]:
     yield "CamProfile.save_dxf", (cam.profile(count=36).save_dxf, {"path": "cam.dxf"})
     rolling = bearings.Rolling(dynamic=1e4, hours=1e4)
     yield "fit", (bearings.fit, {"*": (p.m, p.pin, rolling)})
-    yield "shaking", (importlib.import_module("lagrange_casadi").shaking, {"mechanism": p.m, "about": (0.0, 0.0)})
+    yield (
+        "shaking",
+        (
+            importlib.import_module("lagrange_casadi").shaking,
+            {"mechanism": p.m, "about": (0.0, 0.0)},
+        ),
+    )
     x = ca.SX.sym("x")
     rates, speeds = ca.SX.sym("v"), ca.SX.sym("a")
-    system = {"kinetic": rates**2, "force_function": -x, "coordinates": x, "rates": rates, "accelerations": speeds}
+    system = {
+        "kinetic": rates**2,
+        "force_function": -x,
+        "coordinates": x,
+        "rates": rates,
+        "accelerations": speeds,
+    }
     yield "LagrangeSystem", (LagrangeSystem, system)
-    scene = {"mechanism": plane().m, "motion": {"O": TURN, "A": TURN}, "t": SPAN, "xi": (0.0, 1.0, 3)}
+    scene = {
+        "mechanism": plane().m,
+        "motion": {"O": TURN, "A": TURN},
+        "t": SPAN,
+        "xi": (0.0, 1.0, 3),
+    }
     yield "Scene", (Scene, scene)

@@ -1,4 +1,6 @@
-"""Right calls of what makes motions, densities, cross-sections, notches, bearings, figures, and designs."""
+"""Right calls of what makes motions, densities, cross-sections, notches, bearings, figures, and
+designs.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,13 @@ def laws() -> Iterator[tuple[str, Call]]:
     bend = curve(**points)
     yield "curve", (curve, points)
     yield "Curve.__call__", (bend, {"x": 0.5})
-    yield "table", (importlib.import_module("lagrange_casadi").table, {"x": ca.SX.sym("x"), "places": [0, 1], "values": [0, 1]})
+    yield (
+        "table",
+        (
+            importlib.import_module("lagrange_casadi").table,
+            {"x": ca.SX.sym("x"), "places": [0, 1], "values": [0, 1]},
+        ),
+    )
     move = motion.move("90 deg", time=1.0)
     for name, given in {
         "polynomial": {"*": (0.0, 1.0)},
@@ -131,7 +139,10 @@ def laws() -> Iterator[tuple[str, Call]]:
     yield "Condition", (Condition, {"name": "l", "relation": "<", "value": 1.0})
     yield "Condition.parse", (Condition.parse, {"text": "l<0.3"})
     yield "Term.parse", (Term.parse, {"text": "l", "parameters": {"l": 0.5}})
-    yield "Constraint.parse", (optimise_constraint().parse, {"text": "l<0.3", "parameters": {"l": 0.5}})
+    yield (
+        "Constraint.parse",
+        (optimise_constraint().parse, {"text": "l<0.3", "parameters": {"l": 0.5}}),
+    )
 
 
 def optimise_constraint() -> Any:

@@ -81,7 +81,12 @@ EVALUATED = "status = @_evaluate(&model, &inputs, &outputs);"
 def cc(command, folder, *sources, output="program"):
     files = [folder / source for source in sources]
     linked = [] if "-c" in command else ["-lm"]
-    return subprocess.run([*command, *files, "-o", folder / output, *linked], capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [*command, *files, "-o", folder / output, *linked],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 def compilers():
@@ -89,13 +94,18 @@ def compilers():
     strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
     found = [("gcc", ["gcc", "-std=c99", *strict]), ("clang", ["clang", "-std=c99", *strict])]
     as_cpp = ["-pedantic", "-Wall", "-Wextra", "-Werror"]
-    found += [("g++", ["g++", "-x", "c++", "-std=c++11", *as_cpp]), ("clang++", ["clang++", "-x", "c++", "-std=c++17", *as_cpp])]
+    found += [
+        ("g++", ["g++", "-x", "c++", "-std=c++11", *as_cpp]),
+        ("clang++", ["clang++", "-x", "c++", "-std=c++17", *as_cpp]),
+    ]
     return found
 
 
 def present(command):
     try:
-        return subprocess.run([command, "--version"], capture_output=True, check=False).returncode == 0
+        return (
+            subprocess.run([command, "--version"], capture_output=True, check=False).returncode == 0
+        )
     except OSError:
         return False
 
@@ -105,5 +115,7 @@ def told(folder, made, statements):
     (folder / "harness.c").write_text((HARNESS % statements).replace("@", made.prefix))
     result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
     assert result.returncode == 0, result.stderr
-    status, effort, sentence = subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.split(" ", 2)
+    status, effort, sentence = subprocess.run(
+        [folder / "program"], capture_output=True, text=True, check=True
+    ).stdout.split(" ", 2)
     return int(status), float(effort), sentence

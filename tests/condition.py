@@ -1,9 +1,10 @@
-"""How exact a solution is, beside what its outputs mean and how much they change with its inputs: the condition, which no algorithm
-can better.
+"""How exact a solution is, beside what its outputs mean and how much they change with its inputs:
+the condition, which no algorithm can better.
 
-What outputs mean is what :mod:`precise` finds, in 50 digits, with the law of motion itself and not its doubles. An output's
-condition is the sum, over every number that goes in, of what it changes for a change of that number by one part, over the output's
-peak: differences of the graph followed in as many digits. Directions go in without their whole turns.
+What outputs mean is what :mod:`precise` finds, in 50 digits, with the law of motion itself and not
+its doubles. An output's condition is the sum, over every number that goes in, of what it changes
+for a change of that number by one part, over the output's peak: differences of the graph followed
+in as many digits. Directions go in without their whole turns.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ from lagrange_casadi.judge.reference import arithmetic
 
 DIGITS = 50
 LEAST = 1e-30
-"""Pivots of the free bodies' equations below which there is none: no equation repeats another here, but some nearly do."""
+"""Pivots of the free bodies' equations below which there is none: no equation repeats another here,
+but some nearly do.
+"""
 
 CHANGE = 20
 """Inputs change by ten to the minus so much."""
@@ -38,7 +41,9 @@ BESIDE = {"double": 1e-12, "single": 1e-5}
 
 @dataclass(frozen=True)
 class Place:
-    """A quantity by its full name, and for a section force where: a ratio, and the precisions that can tell it from a station."""
+    """A quantity by its full name, and for a section force where: a ratio, and the precisions that
+    can tell it from a station.
+    """
 
     name: str
     ratio: object = None
@@ -46,10 +51,18 @@ class Place:
 
     @property
     def peak(self):
-        """What is measured by one peak: the members of a force or a place together, since which axis is which is arbitrary."""
+        """What is measured by one peak: the members of a force or a place together, since which
+        axis is which is arbitrary.
+        """
         group, _, part = self.name.partition(":")
-        part, _, member = part.rpartition(":") if group in ("reaction", "section", "pose") else (part, "", "")
-        return group, part, {"mz": "mz", "bending": "moment", "angle": "angle"}.get(member, "vector")
+        part, _, member = (
+            part.rpartition(":") if group in ("reaction", "section", "pose") else (part, "", "")
+        )
+        return (
+            group,
+            part,
+            {"mz": "mz", "bending": "moment", "angle": "angle"}.get(member, "vector"),
+        )
 
 
 @dataclass(frozen=True)
@@ -62,45 +75,77 @@ class Instant:
 
 
 def meaning(scene, graph, i, t, values):
-    """What the outputs of a graph mean at an instant. ``values`` are the parameters by name, doubles that are taken as exact."""
+    """What the outputs of a graph mean at an instant.
+
+    ``values`` are the parameters by name, doubles that are taken as exact.
+    """
     with mp.workdps(DIGITS):
         time, p = mp.mpf(t), [mp.mpf(value) for value in values.values()]
         driven = interpret(graph.motion, [[time], p], arithmetic())
-        rough = [mp.mpf(float(x)) for x in settle(graph, t, list(values.values()), graph.data.span[0]).full().ravel()]
+        rough = [
+            mp.mpf(float(x))
+            for x in settle(graph, t, list(values.values()), graph.data.span[0]).full().ravel()
+        ]
         z = _closed(graph, rough, time, driven, p)
         places, own = _outputs(scene, graph, time, driven, z, p, None)
         total = [mp.mpf(0)] * len(own)
         step = mp.mpf(10) ** -CHANGE
         for changed, others in _changed(scene, graph, driven, p, step):
-            _, other = _outputs(scene, graph, time, changed, _closed(graph, z, time, changed, others), others, places)
-            total = [change + abs(a - b) / step for change, a, b in zip(total, other, own, strict=True)]
+            _, other = _outputs(
+                scene,
+                graph,
+                time,
+                changed,
+                _closed(graph, z, time, changed, others),
+                others,
+                places,
+            )
+            total = [
+                change + abs(a - b) / step for change, a, b in zip(total, other, own, strict=True)
+            ]
         drives = dict(zip(graph.driven, zip(*driven, strict=True), strict=True))
         free = precise(scene, t, drives, values, least=LEAST)
         for joint in scene.mechanism.joints.values():
             if joint.kind == "revolute" and joint.coordinate:
-                child, parent = (free.get(f"pose:{point.body.name}:angle", 0) for point in (joint.child, joint.parent))
+                child, parent = (
+                    free.get(f"pose:{point.body.name}:angle", 0)
+                    for point in (joint.child, joint.parent)
+                )
                 free[f"motion:{joint.name}"] = child - parent
         zero = mp.mpf(10) ** (10 - DIGITS) * max(
             abs(value) for name, value in free.items() if name.startswith(("effort", "reaction"))
         )
-        exact = {place: _found(free.get(place.name, value), place, zero) for place, value in zip(places, own, strict=True)}
+        exact = {
+            place: _found(free.get(place.name, value), place, zero)
+            for place, value in zip(places, own, strict=True)
+        }
         return Instant(i, exact, dict(zip(places, total, strict=True)))
 
 
 def _found(value, place, zero):
-    """What the free bodies have at a place, their last digits left out where a section force is zero."""
+    """What the free bodies have at a place, their last digits left out where a section force is
+    zero.
+    """
     found = mp.mpf(value(place.ratio) if callable(value) else value)
     return found if abs(found) > zero or not callable(value) else mp.mpf(0)
 
 
 def _changed(scene, graph, driven, p, step):
-    """The inputs with one of them changed, one after the other: driven coordinates, rates and accelerations, and parameters."""
+    """The inputs with one of them changed, one after the other: driven coordinates, rates and
+    accelerations, and parameters.
+    """
     joints = scene.mechanism.joints
     for order, row in enumerate(driven):
         for j, value in enumerate(row):
             if order == 0 and joints[graph.driven[j]].coordinate == "angle":
                 value -= 2 * mp.pi * mp.nint(value / (2 * mp.pi))
-            yield [[x + step * value if (i, k) == (order, j) else x for k, x in enumerate(xs)] for i, xs in enumerate(driven)], p
+            yield (
+                [
+                    [x + step * value if (i, k) == (order, j) else x for k, x in enumerate(xs)]
+                    for i, xs in enumerate(driven)
+                ],
+                p,
+            )
     for k, value in enumerate(p):
         if value and _read(scene, graph)[k]:
             yield driven, [x + step * value if i == k else x for i, x in enumerate(p)]
@@ -108,9 +153,15 @@ def _changed(scene, graph, driven, p, step):
 
 @functools.lru_cache(maxsize=32)
 def _made(scene, graph):
-    """Length and density's coefficients of every link that has sections, one below the other, as a function of the parameters."""
+    """Length and density's coefficients of every link that has sections, one below the other, as a
+    function of the parameters.
+    """
     m = scene.mechanism
-    made = [ca.SX(x) for name in graph.wanted.sections for x in (m.links[name].length, *_coefficients(m.links[name]))]
+    made = [
+        ca.SX(x)
+        for name in graph.wanted.sections
+        for x in (m.links[name].length, *_coefficients(m.links[name]))
+    ]
     return ca.Function("made", [m.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *made))])
 
 
@@ -131,8 +182,13 @@ def _matter(scene, graph, p):
 
 @functools.lru_cache(maxsize=32)
 def _read(scene, graph):
-    """Which parameters an instant reads, or a link's length or density: the law of motion's own are none of these."""
-    slopes = graph.instant.jac_sparsity(0, graph.instant.index_in("p")), _made(scene, graph).jac_sparsity(0, 0)
+    """Which parameters an instant reads, or a link's length or density: the law of motion's own are
+    none of these.
+    """
+    slopes = (
+        graph.instant.jac_sparsity(0, graph.instant.index_in("p")),
+        _made(scene, graph).jac_sparsity(0, 0),
+    )
     read = {k for slope in slopes for k in slope.get_col()}
     return [k in read for k in range(graph.instant.size1_in("p"))]
 
@@ -149,14 +205,21 @@ def _closed(graph, z, time, driven, p):
 def _outputs(scene, graph, time, driven, z, p, places):
     """Values at places, by default those that the outputs themselves suggest."""
     (found,) = interpret(graph.instant, [[time], *driven, z, p], arithmetic())
-    named = {name: value for name, value in zip(graph.names, found, strict=True) if not name.startswith("_")}
+    named = {
+        name: value
+        for name, value in zip(graph.names, found, strict=True)
+        if not name.startswith("_")
+    }
     laws = {name.split(":")[1]: {} for name in named if name.startswith("section:")}
     for name in [name for name in named if name.startswith("section:")]:
         _, link, part, member = name.split(":")
         laws[link].setdefault(part, {})[member] = named.pop(name)
     if places is None:
         places = [Place(name) for name in named] + [
-            Place(f"section:{link}:{force}", *where) for link, law in laws.items() for where in _ratios(law) for force in FORCES
+            Place(f"section:{link}:{force}", *where)
+            for link, law in laws.items()
+            for where in _ratios(law)
+            for force in FORCES
         ]
     values, matter = [], _matter(scene, graph, p)
     for place in places:
@@ -174,18 +237,29 @@ def _ratios(law):
     yield from ((mp.mpf(ratio),) for ratio in RATIOS)
     for part, members in law.items():
         if part != "law":
-            for precisions, near in ((("double",), BESIDE["double"]), (("double", "single"), BESIDE["single"])):
-                yield from ((mp.mpf(float(members["station"] * (1 + side * near))), precisions) for side in (-1, 1))
+            for precisions, near in (
+                (("double",), BESIDE["double"]),
+                (("double", "single"), BESIDE["single"]),
+            ):
+                yield from (
+                    (mp.mpf(float(members["station"] * (1 + side * near))), precisions)
+                    for side in (-1, 1)
+                )
 
 
 def _section(density, length, cells, law, ratio):
-    """The forces of a section by the law's definition, the moments of its material by their own integrals."""
+    """The forces of a section by the law's definition, the moments of its material by their own
+    integrals.
+    """
     mass, first, second = _moments(density, length, cells, ratio)
     c, xi = law["law"], ratio * length
     forces = [
         c["n0"] + c["n1"] * mass + c["n2"] * first,
         c["f0"] + c["f1"] * mass + c["f2"] * first,
-        c["m0"] + c["f0"] * (length - xi) + c["f1"] * (first - xi * mass) + c["f2"] * (second - xi * first),
+        c["m0"]
+        + c["f0"] * (length - xi)
+        + c["f1"] * (first - xi * mass)
+        + c["f2"] * (second - xi * first),
     ]
     for part, load in law.items():
         if part != "law" and (ratio < load["station"] or ratio == 1 <= load["station"]):
@@ -207,7 +281,9 @@ def _moments(density, length, cells, ratio):
 
 @dataclass(frozen=True)
 class Judged:
-    """An output's largest error over its peak, its largest condition, and its largest error in roundings times its condition."""
+    """An output's largest error over its peak, its largest condition, and its largest error in
+    roundings times its condition.
+    """
 
     name: str
     error: float
@@ -216,7 +292,8 @@ class Judged:
 
 
 def judged(solution, graph, meant, peaks):
-    """How far the outputs of a solution are from what they mean at some instants, worst first; ``peaks``: see :func:`peaks_of`.
+    """How far the outputs of a solution are from what they mean at some instants, worst first;
+    ``peaks``: see :func:`peaks_of`.
 
     What is smaller than the smallest normal number of the precision is no error.
     """
@@ -226,8 +303,14 @@ def judged(solution, graph, meant, peaks):
             peak = peaks[place.peak]
             gap = max(gap - float(np.finfo(DTYPES[precision]).tiny), 0)
             # What is zero throughout must be zero.
-            error, condition = (float(gap / peak), max(float(change / peak), 1.0)) if peak else (math.inf if gap else 0.0, 1.0)
-            found.setdefault(place.name, []).append((error, condition, error / condition / ROUNDING[precision]))
+            error, condition = (
+                (float(gap / peak), max(float(change / peak), 1.0))
+                if peak
+                else (math.inf if gap else 0.0, 1.0)
+            )
+            found.setdefault(place.name, []).append(
+                (error, condition, error / condition / ROUNDING[precision])
+            )
     judges = [Judged(name, *map(max, zip(*rows, strict=True))) for name, rows in found.items()]
     return sorted(judges, key=lambda judge: -judge.units)
 
@@ -237,27 +320,39 @@ def understated(solution, graph, meant):
     worst = {}
     for place, gap, _ in _gaps(solution, graph, meant):
         worst[place.name] = max(worst.get(place.name, 0), gap)
-    return {name: (solution.errors[name], float(gap)) for name, gap in worst.items() if not 10 * solution.errors[name] >= gap}
+    return {
+        name: (solution.errors[name], float(gap))
+        for name, gap in worst.items()
+        if not 10 * solution.errors[name] >= gap
+    }
 
 
 def peaks_of(solution):
-    """The largest value of everything that is measured by one peak: over the instants, and along a link."""
+    """The largest value of everything that is measured by one peak: over the instants, and along a
+    link.
+    """
     squares = {}
     for name in solution.names():
         place = Place(name)
         if name.startswith("section:"):
             _, link, force = name.split(":")
-            values = solution.section(link).law.at(force, np.tile([float(ratio) for ratio in RATIOS], (solution.t.size, 1)))
+            values = solution.section(link).law.at(
+                force, np.tile([float(ratio) for ratio in RATIOS], (solution.t.size, 1))
+            )
         else:
             values = solution.series[name]
         # Without squares, which underflow.
         squares.setdefault(place.peak, []).append(np.abs(values))
-    return {peak: float(np.max(functools.reduce(np.hypot, values))) for peak, values in squares.items()}
+    return {
+        peak: float(np.max(functools.reduce(np.hypot, values))) for peak, values in squares.items()
+    }
 
 
 def _gaps(solution, graph, meant):
     for instant in meant:
-        law = functools.lru_cache(maxsize=None)(lambda link, i=instant.i: solution.section(link).law.during(slice(i, i + 1)))
+        law = functools.lru_cache(maxsize=None)(
+            lambda link, i=instant.i: solution.section(link).law.during(slice(i, i + 1))
+        )
         for place, value in instant.exact.items():
             if solution.provenance.precision not in place.precisions:
                 continue

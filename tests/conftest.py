@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-# The processes of the tests have the cores already: threads of NumPy's linear algebra beside them would mostly wait for each other.
-# NumPy reads it when it is imported, so this comes before.
+# The processes of the tests have the cores already: threads of NumPy's linear algebra beside them
+# would mostly wait for each other. NumPy reads it when it is imported, so this comes before.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import sweeps
@@ -25,7 +25,8 @@ from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.codegen import compiler
 from lagrange_casadi.instants import backends, cycle_table, grids
 
-# No test is about time. Where a failure must be the change's own, the same examples every time; elsewhere new ones.
+# No test is about time. Where a failure must be the change's own, the same examples every time;
+# elsewhere new ones.
 settings.register_profile("usual", deadline=None, max_examples=40)
 settings.register_profile("ci", settings.get_profile("usual"), derandomize=True, print_blob=True)
 settings.load_profile("ci" if os.environ.get("CI") else "usual")
@@ -38,10 +39,12 @@ PLANAR = [name for name in NAMES if name not in SPATIAL]
 # Of those in space the ones with few outputs: for what takes long of each output.
 SMALL = ["cardan_shaft", "rssr", "spatial_slider_crank"]
 
-# Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
+# Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its
+# "about" says what each entry is.
 SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.json").read_text())
 
-# Expressions are many small objects that live long: to look for circles among them often takes a twentieth of the time.
+# Expressions are many small objects that live long: to look for circles among them often takes a
+# twentieth of the time.
 gc.set_threshold(20_000, 50, 100)
 
 # For the benchmarks, which are not installed; last, so that the package is the installed one.
@@ -69,20 +72,25 @@ def _cache(pytestconfig, tmp_path_factory):
 
 @pytest.fixture(scope="session", autouse=True)
 def _quick_to_build():
-    """Build here without optimization, in a third of the time: test_codegen shows that not a bit depends on it.
+    """Build here without optimization, in a third of the time: test_codegen shows that not a bit
+    depends on it.
 
     Programs that tests start, and modules that use ``released``, build as users do.
     """
     released = dict(compiler.FLAGS)
     with pytest.MonkeyPatch.context() as patch:
         for language, flags in released.items():
-            patch.setitem(compiler.FLAGS, language, tuple("-O0" if flag == "-O3" else flag for flag in flags))
+            patch.setitem(
+                compiler.FLAGS, language, tuple("-O0" if flag == "-O3" else flag for flag in flags)
+            )
         yield released
 
 
 @pytest.fixture(scope="module")
 def released(_quick_to_build):
-    """Build with the flags that users have, and forget what was built with others, or is built now."""
+    """Build with the flags that users have, and forget what was built with
+    others, or is built now.
+    """
     loaded = (backends._library, grids._compiled, cycle_table._compiled)
     with pytest.MonkeyPatch.context() as patch:
         for language, flags in _quick_to_build.items():
@@ -96,14 +104,17 @@ def released(_quick_to_build):
 
 @pytest.fixture(scope="module")
 def interpreted():
-    """Let CasADi's virtual machine evaluate doubles where no backend is asked for: for what is not about compiled code.
+    """Let CasADi's virtual machine evaluate doubles where no backend is asked for: for what is not
+    about compiled code.
 
     Compiled code has the same numbers: test_codegen, test_lanes and test_machine_ways show that.
     """
     compiled = backends.compiled
 
     def asked(rung, build):
-        return None if rung.backend == "auto" and rung.precision == "double" else compiled(rung, build)
+        return (
+            None if rung.backend == "auto" and rung.precision == "double" else compiled(rung, build)
+        )
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(backends, "compiled", asked)
@@ -112,9 +123,17 @@ def interpreted():
 
 @pytest.fixture(scope="session", autouse=True)
 def _signals():
-    """What started the tests may ignore some, as ``nohup`` does; programs that they start would too."""
-    usual = {"SIGINT": signal.default_int_handler, "SIGTERM": signal.SIG_DFL, "SIGHUP": signal.SIG_DFL}
-    there = {getattr(signal, name): handler for name, handler in usual.items() if hasattr(signal, name)}
+    """What started the tests may ignore some, as ``nohup`` does; programs that they start would
+    too.
+    """
+    usual = {
+        "SIGINT": signal.default_int_handler,
+        "SIGTERM": signal.SIG_DFL,
+        "SIGHUP": signal.SIG_DFL,
+    }
+    there = {
+        getattr(signal, name): handler for name, handler in usual.items() if hasattr(signal, name)
+    }
     before = {number: signal.signal(number, handler) for number, handler in there.items()}
     yield
     for number, handler in before.items():
@@ -142,12 +161,20 @@ def solution(slider_crank):
 
 def pytest_addoption(parser):
     generated = "parts of the documentation, and the golden text of an export"
-    parser.addoption("--update", action="store_true", help=f"write anew what is generated: {generated}")
-    parser.addoption("--long", action="store_true", help="also tests marked long, and all parameters of those marked sampled")
+    parser.addoption(
+        "--update", action="store_true", help=f"write anew what is generated: {generated}"
+    )
+    parser.addoption(
+        "--long",
+        action="store_true",
+        help="also tests marked long, and all parameters of those marked sampled",
+    )
 
 
 def pytest_xdist_auto_num_workers():
-    """One process more than there are processors: many tests wait, for what they have stopped or for what does not answer."""
+    """One process more than there are processors: many tests wait, for what they have stopped or
+    for what does not answer.
+    """
     return (os.cpu_count() or 1) + 1
 
 
@@ -159,13 +186,21 @@ def pytest_configure(config):
 
 
 def bytecode(config):
-    """Where bytecode is kept if none may be written beside modules: with what else pytest keeps of earlier runs. Else None."""
-    return config.cache.mkdir("bytecode") if sys.dont_write_bytecode and hasattr(config, "cache") else None
+    """Where bytecode is kept if none may be written beside modules: with what else pytest keeps of
+    earlier runs. Else None.
+    """
+    return (
+        config.cache.mkdir("bytecode")
+        if sys.dont_write_bytecode and hasattr(config, "cache")
+        else None
+    )
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_collection(session):
-    """Read test modules as an earlier run compiled them, in half the time; what is there now stays to the end."""
+    """Read test modules as an earlier run compiled them, in half the time; what is there now stays
+    to the end.
+    """
     before, kept = (sys.dont_write_bytecode, sys.pycache_prefix), bytecode(session.config)
     if kept is not None:
         sys.dont_write_bytecode, sys.pycache_prefix = False, str(kept)
@@ -175,7 +210,9 @@ def pytest_collection(session):
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out long tests, and parameters of those that are sampled, unless they are asked for, all or by name."""
+    """Leave out long tests, and parameters of those that are sampled, unless they are asked for,
+    all or by name.
+    """
     if config.getoption("--long") or any("::" in argument for argument in config.args):
         return
     counts = Counter(item.nodeid.partition("[")[0] for item in items)
@@ -183,7 +220,8 @@ def pytest_collection_modifyitems(config, items):
     for item in items:
         sampled = item.get_closest_marker("sampled")
         of = item.nodeid.partition("[")[0]
-        # Which one it begins with is another for every test, so that all cases are among them; of each test there is one at least.
+        # Which one it begins with is another for every test, so that all cases are among them; of
+        # each test there is one at least.
         step = min(sampled.args[0], counts[of]) if sampled else 1
         if item.get_closest_marker("long") or (seen[of] + zlib.crc32(of.encode())) % step:
             left.append(item)

@@ -1,4 +1,5 @@
-"""Threads that declare and drop mechanisms, while others make and drop the constants in them: `python constants.py TIMES`.
+"""Threads that declare and drop mechanisms, while others make and drop the constants in them:
+`python constants.py TIMES`.
 
 It ends well, or in a crash of the process.
 """

@@ -1,6 +1,8 @@
-"""A file damaged at random, many times over, and read in every way: a program of its own, for HDF5 may crash or hang on damage.
+"""A file damaged at random, many times over, and read in every way: a program of its own, for HDF5
+may crash or hang on damage.
 
-``python damaging.py FILE SEED COUNT`` prints a number before each attempt, and a line for whatever is not refused as it should be.
+``python damaging.py FILE SEED COUNT`` prints a number before each attempt, and a line for whatever
+is not refused as it should be.
 """
 
 from __future__ import annotations
@@ -31,7 +33,13 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
     """The content with one thing wrong."""
     size = len(content)
     # Half of all damage is near the ends, where a file says what it is.
-    at = chance.choice([chance.randrange(size), chance.randrange(min(size, 2048)), size - 1 - chance.randrange(2 * SIZE)])
+    at = chance.choice(
+        [
+            chance.randrange(size),
+            chance.randrange(min(size, 2048)),
+            size - 1 - chance.randrange(2 * SIZE),
+        ]
+    )
     other = chance.randrange(size)
     long = int(LARGEST ** chance.random())
     zeros = bytes(long)
@@ -66,14 +74,21 @@ def swapped(content: bytes, one: int, other: int, long: int) -> bytes:
 
 
 def commanded(*arguments: str):
-    """A command, which says one line and ends with status 1, or else is as bad as one that believed the file."""
+    """A command, which says one line and ends with status 1, or else is as bad as one that believed
+    the file.
+    """
 
     def read(path: Path) -> None:
         out, err = io.StringIO(), io.StringIO()
         with redirect_stdout(out), redirect_stderr(err):
             status = main([str(path) if word == "FILE" else word for word in arguments])
         line = err.getvalue()
-        if status == 1 and not out.getvalue() and line.startswith("error: ") and line.count("\n") == 1:
+        if (
+            status == 1
+            and not out.getvalue()
+            and line.startswith("error: ")
+            and line.count("\n") == 1
+        ):
             raise StoreError(line)
 
     return read
@@ -88,7 +103,11 @@ READERS = {
         commanded("best", "FILE", "--minimise", "peak:effort:O"),
     ],
 }
-COMMANDS = [commanded("info", "FILE"), commanded("check", "FILE"), commanded("plot", "FILE", "--out", "figures")]
+COMMANDS = [
+    commanded("info", "FILE"),
+    commanded("check", "FILE"),
+    commanded("plot", "FILE", "--out", "figures"),
+]
 
 
 def attempt(path: Path, content: bytes, sweep: bool) -> list[str]:

@@ -6,5 +6,11 @@ from lagrange_casadi.equations.model_data import template
 
 
 def declaration(scene, values):
-    """The mechanism in plain numbers, and what was stated of it, for values of all parameters by name."""
-    return Declared.of(template(scene).filled(values), Stated.of(scene.mechanism, scene.laws), tuple(values.values()))
+    """The mechanism in plain numbers, and what was stated of it, for values of all parameters by
+    name.
+    """
+    return Declared.of(
+        template(scene).filled(values),
+        Stated.of(scene.mechanism, scene.laws),
+        tuple(values.values()),
+    )

@@ -29,17 +29,28 @@ def alone(scene, row, grid, **keywords):
 
 def peaks_of(designs, outcome, row):
     """Value, time and ratio of each quantity of a design."""
-    return {name: (outcome.value[row, k], outcome.t[row, k], outcome.xi[row, k]) for k, name in enumerate(designs.quantities)}
+    return {
+        name: (outcome.value[row, k], outcome.t[row, k], outcome.xi[row, k])
+        for k, name in enumerate(designs.quantities)
+    }
 
 
 def scales(designs, outcome, row):
     """The largest peak of each quantity's unit."""
-    units, sizes = np.array(designs.units), np.abs(np.where(np.isfinite(outcome.value[row]), outcome.value[row], 0.0))
-    return {name: sizes[units == unit].max() for name, unit in zip(designs.quantities, designs.units, strict=True)}
+    units, sizes = (
+        np.array(designs.units),
+        np.abs(np.where(np.isfinite(outcome.value[row]), outcome.value[row], 0.0)),
+    )
+    return {
+        name: sizes[units == unit].max()
+        for name, unit in zip(designs.quantities, designs.units, strict=True)
+    }
 
 
 def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12):
-    """A design's peaks are the refined ones of its own evaluation; one that is larger is what the graph gives there."""
+    """A design's peaks are the refined ones of its own evaluation; one that is larger is what the
+    graph gives there.
+    """
     grid = (designs.t[0], designs.t[-1], designs.t.size)
     solution = alone(scene, p, grid)
     found, scale = peaks_of(designs, outcome, row), scales(designs, outcome, row)
@@ -62,7 +73,9 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
         reaction = solution.reaction(joint)
         size = np.hypot(reaction.fx, reaction.fy)
         assert found[f"reaction:{joint}:resultant"][0] >= size.max() * (1 - 1e-14)
-        assert found[f"reaction:{joint}:resultant"][0] <= size.max() * 1.2 or math.isinf(found[f"reaction:{joint}:resultant"][0])
+        assert found[f"reaction:{joint}:resultant"][0] <= size.max() * 1.2 or math.isinf(
+            found[f"reaction:{joint}:resultant"][0]
+        )
 
 
 def loaded(mechanism, parts):
@@ -78,5 +91,7 @@ DENSITIES = {
     "uniform": lambda: {"mass": 0.7},
     "tapered": lambda: {"density": density.polynomial(4.0, -3.0)},
     "cubic": lambda: {"density": density.polynomial(1.0, 2.0, -4.0, 3.0)},
-    "table": lambda: {"density": density.tabulated([0, 0.2, 0.25, 0.9, 1], [1.0, 3.0, 0.5, 0.5, 4.0])},
+    "table": lambda: {
+        "density": density.tabulated([0, 0.2, 0.25, 0.9, 1], [1.0, 3.0, 0.5, 0.5, 4.0])
+    },
 }

@@ -1,4 +1,6 @@
-"""Mechanisms in space as a drawing tells them: each axis, direction and place that is given as numbers is off by rounding."""
+"""Mechanisms in space as a drawing tells them: each axis, direction and place that is given as
+numbers is off by rounding.
+"""
 
 import runpy
 
@@ -12,14 +14,17 @@ from lagrange_casadi.declare.parts import Link, Point
 
 
 def drawing(noise, seed=1, exact=()):
-    """A kind of SpatialMechanism whose declarations are off by so much, in each component, in radians or metres.
+    """A kind of SpatialMechanism whose declarations are off by so much, in each component, in
+    radians or metres.
 
     But for joints that are ``exact``.
     """
     rng = np.random.default_rng(seed)
 
     def off(vector):
-        return None if vector is None else tuple(x + float(noise * rng.uniform(-1, 1)) for x in vector)
+        return (
+            None if vector is None else tuple(x + float(noise * rng.uniform(-1, 1)) for x in vector)
+        )
 
     def put(place):
         """A point that was given by numbers; base and tip of a link are what they are."""
@@ -33,7 +38,9 @@ def drawing(noise, seed=1, exact=()):
                 return super()._spatial(name, kind, bodies, axes, at, turned, pitch)
             if len(turned) == 2 and all(len(one) == 3 for one in turned):
                 turned = tuple(map(off, turned))
-            return super()._spatial(name, kind, tuple(map(put, bodies)), tuple(map(off, axes)), off(at), turned, pitch)
+            return super()._spatial(
+                name, kind, tuple(map(put, bodies)), tuple(map(off, axes)), off(at), turned, pitch
+            )
 
         def link(self, name, *, between=None, beside=None, **options) -> Link:
             between = between and tuple(map(off, between))

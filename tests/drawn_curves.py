@@ -1,4 +1,6 @@
-"""Functions of a number drawn from all operations that a graph may hold, and whether they have a kink: by halving steps alone."""
+"""Functions of a number drawn from all operations that a graph may hold, and whether they have a
+kink: by halving steps alone.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ _BESIDE = 1e-6
 
 
 class Verdict(NamedTuple):
-    """Whether something is "smooth" or "broken" from 0 to 1; else "unclear", or "nothing" where it is no number."""
+    """Whether something is "smooth" or "broken" from 0 to 1; else "unclear", or "nothing" where it
+    is no number.
+    """
 
     what: str
     values: np.ndarray
@@ -38,8 +42,12 @@ def smooth(r, t, k):
 def drawn(r, depth=None):
     """An expression of T and K with operations upon operations, up to three of them."""
     depth = int(r.integers(3)) if depth is None else depth
-    x, y = (drawn(r, depth - 1) if depth and r.random() < 0.5 else smooth(r, T, K) for _ in range(2))
-    found = ca.substitute(list(EACH.values())[r.integers(len(EACH))], ca.vertcat(X, Y), ca.vertcat(x, y))
+    x, y = (
+        drawn(r, depth - 1) if depth and r.random() < 0.5 else smooth(r, T, K) for _ in range(2)
+    )
+    found = ca.substitute(
+        list(EACH.values())[r.integers(len(EACH))], ca.vertcat(X, Y), ca.vertcat(x, y)
+    )
     beside = r.random()
     if beside < 0.5:
         found = found * smooth(r, T, K) if beside < 0.3 else found + smooth(r, T, K)
@@ -53,7 +61,9 @@ def curve(expression, k):
 
 
 def verdict(expression, k):
-    """Halve steps, always to the side on which more changes: what does not fall with them is a kink."""
+    """Halve steps, always to the side on which more changes: what does not fall with them is a
+    kink.
+    """
     f = curve(expression, k)
     t = np.linspace(0.0, 1.0, _STEPS + 1)
     values = f(t)
@@ -86,14 +96,23 @@ def verdict(expression, k):
 
 
 def shown(expression, k, place, low=0.0):
-    """Whether value or slope differ across a place, however near to it: a kink that halving went by for it is small."""
-    near = curve(expression, k)(np.clip(place + 1e-8 * np.array([-4.0, -2.0, -1.0, 1.0, 2.0, 4.0]), low, 1.0))
+    """Whether value or slope differ across a place, however near to it: a kink that halving went by
+    for it is small.
+    """
+    near = curve(expression, k)(
+        np.clip(place + 1e-8 * np.array([-4.0, -2.0, -1.0, 1.0, 2.0, 4.0]), low, 1.0)
+    )
     gaps = np.abs(near[:, [3, 4, 5]] - near[:, [2, 1, 0]])
-    return bool((gaps[:, 0] > 0.6 * gaps[:, 2]).any() and (gaps[:, 0] > 1e-7 * np.abs(near).max(axis=1)).any())
+    return bool(
+        (gaps[:, 0] > 0.6 * gaps[:, 2]).any()
+        and (gaps[:, 0] > 1e-7 * np.abs(near).max(axis=1)).any()
+    )
 
 
 def told_by_limits(expression, k, place=0.0):
-    """By values, slopes and curvatures at ever smaller distances: "kink", "isolated" or "smooth"; None where it is not clear."""
+    """By values, slopes and curvatures at ever smaller distances: "kink", "isolated" or "smooth";
+    None where it is not clear.
+    """
     slope = ca.gradient(expression, T)
     f = ca.Function("f", [T, K], [ca.densify(ca.vertcat(expression, slope, ca.gradient(slope, T)))])
     with np.errstate(all="ignore"):

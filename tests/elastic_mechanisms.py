@@ -26,7 +26,12 @@ def sections_of(**links):
     found = {}
     for name, beam in links.items():
         p = beam.course.cells[0][0].properties()
-        found[name] = (p, beam.material.elasticity, beam.material.shear_modulus, beam.material.density * p.area)
+        found[name] = (
+            p,
+            beam.material.elasticity,
+            beam.material.shear_modulus,
+            beam.material.density * p.area,
+        )
     return found
 
 
@@ -41,7 +46,9 @@ def agrees(solution, i, reactions, tolerance=1e-8):
 
 
 def work(first, second, links):
-    """Forces of a solution times the strains of another, summed over links, (t,); and a size beside it."""
+    """Forces of a solution times the strains of another, summed over links, (t,); and a size beside
+    it.
+    """
     total, size = 0.0, 0.0
     for link in links:
         beam = Compliance.of(Member.of(first, link, spun=True), "test")

@@ -1,7 +1,7 @@
 """How estimates of errors compare with the errors, which fifty digits tell.
 
-``python tests/estimates.py`` prints the table of the cases, ``python tests/estimates.py SCENES`` that of so many random scenes of
-every kind, in docs/accuracy.md.
+``python tests/estimates.py`` prints the table of the cases, ``python tests/estimates.py SCENES``
+that of so many random scenes of every kind, in docs/accuracy.md.
 """
 
 from __future__ import annotations
@@ -29,7 +29,11 @@ RUNGS = {
     "newton 2": {"backend": "c", "newton": 2},
     "newton 3": {"backend": "c", "newton": 3},
 }
-OPTIONS = {"lanes": "--backend lanes", "c": "--backend c", "single": "--backend c --precision single"}
+OPTIONS = {
+    "lanes": "--backend lanes",
+    "c": "--backend c",
+    "single": "--backend c --precision single",
+}
 
 COUNT = 101
 """Instants of a grid: half of them estimates do not look at."""
@@ -41,23 +45,32 @@ def exactly(scene, parameters=None):
 
 
 def kind(name):
-    """What is measured by one peak: motions alone, else all of a group that have a unit in common."""
+    """What is measured by one peak: motions alone, else all of a group that
+    have a unit in common.
+    """
     group, *_ = name.split(":")
     return name if group.startswith(("motion", "_")) else (group, Output.of(name).quantity.unit)
 
 
 def ratios(solution, exact):
-    """Estimate over true error by quantity, where there is an error; what has none is estimated to have none to speak of."""
+    """Estimate over true error by quantity, where there is an error; what has none is estimated to
+    have none to speak of.
+    """
     true = true_errors(solution, exact)
     assert set(true) == set(solution.errors)
     precision = "single" if solution.provenance.precision == "single" else "double"
     unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
     size = {}
     for name in solution.series:
-        size[kind(name)] = max(size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name]))))
+        size[kind(name)] = max(
+            size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name])))
+        )
     found = {}
     for name, error in true.items():
-        scale = max(size.get(kind(name), 0.0), 0.0 if name in solution.series else abs(solution.peak(name).value))
+        scale = max(
+            size.get(kind(name), 0.0),
+            0.0 if name in solution.series else abs(solution.peak(name).value),
+        )
         if error > unit**2 * scale:
             found[name] = solution.errors[name] / error
         else:
@@ -79,7 +92,9 @@ def rungs(scene):
 
 
 def looked_at(scene, rung):
-    """Estimates over true errors of a scene on a rung; none where it is refused: steps may be too few for any solution."""
+    """Estimates over true errors of a scene on a rung; none where it is refused: steps may be too
+    few for any solution.
+    """
     if rung not in rungs(scene):
         return []
     try:
@@ -93,16 +108,24 @@ def row(name, found):
     """A row of a table."""
     parts = [np.min(found), *np.quantile(found, (0.05, 0.5, 0.95))]
     near = np.mean([1 / FACTOR < value < FACTOR for value in found])
-    return f"| {name} | {len(found)} | {' | '.join(f'{part:.2g}' for part in parts)} | {100 * near:.3g} % |"
+    return (
+        f"| {name} | {len(found)} | {' | '.join(f'{part:.2g}' for part in parts)} |"
+        f" {100 * near:.3g} % |"
+    )
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases")
+    parser.add_argument(
+        "scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases"
+    )
     parser.add_argument("--rung", choices=RUNGS, action="append", help="only these; default: all")
     parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
-    print(f"| {'kind, method' if told.scenes else 'method'} | quantities | least | 5 % | median | 95 % | within a factor of ten |")
+    print(
+        f"| {'kind, method' if told.scenes else 'method'} | quantities | least | 5 % | median | 95"
+        " % | within a factor of ten |"
+    )
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for rung in told.rung or RUNGS:
         option, every = f"`{OPTIONS.get(rung, f'--{rung}')}`", []

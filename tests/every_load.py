@@ -7,8 +7,15 @@ from lagrange_casadi.motion import harmonic, polynomial
 def every_joint_and_load():
     """Pins, a guide, a slot and a weld, point masses, and every kind of load and of friction."""
     m = Mechanism("all")
-    crank, rod, arm = (m.link(name, length=length, mass=1.0) for name, length in (("crank", 0.1), ("rod", 0.4), ("arm", 0.7)))
-    slider, block, lump = m.link("slider", length=0.1, mass=0.7), m.point_mass("block", 0.5), m.point_mass("lump", 0.3)
+    crank, rod, arm = (
+        m.link(name, length=length, mass=1.0)
+        for name, length in (("crank", 0.1), ("rod", 0.4), ("arm", 0.7))
+    )
+    slider, block, lump = (
+        m.link("slider", length=0.1, mass=0.7),
+        m.point_mass("block", 0.5),
+        m.point_mass("lump", 0.3),
+    )
     o = m.revolute("O", m.ground, crank)
     a = m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)
@@ -20,7 +27,9 @@ def every_joint_and_load():
     m.force("push", slider.tip, x=-40.0, y=9.0)
     m.force("follow", arm.at(0.5), x=5.0, y=7.0, turning=True)
     m.torque("couple", rod, 2.0, against=arm)
-    m.spring("spring", m.ground.at(-0.5, 0.3), rod.at(0.2), stiffness=200.0, length=0.1, damping=4.0)
+    m.spring(
+        "spring", m.ground.at(-0.5, 0.3), rod.at(0.2), stiffness=200.0, length=0.1, damping=4.0
+    )
     m.torsion_spring("coil", c, stiffness=6.0, angle=0.2, damping=0.1)
     m.line_load("wind", arm, x=20.0, y=(3.0, -9.0), turning=True)
     m.friction("pin", a, mu=0.2, radius=0.01)

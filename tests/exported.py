@@ -43,7 +43,9 @@ def instants(t, precision):
 
 
 def rows(output):
-    return np.array([[float.fromhex(word) for word in line.split()] for line in output.splitlines()])
+    return np.array(
+        [[float.fromhex(word) for word in line.split()] for line in output.splitlines()]
+    )
 
 
 def by_c99(folder, told, lines, flags=("-O1", "-ffp-contract=off")):
@@ -52,29 +54,39 @@ def by_c99(folder, told, lines, flags=("-O1", "-ffp-contract=off")):
     defined = [f'-DMECHANISM="{told["prefix"]}.h"', '-DNAMES="names.h"', f"-I{folder}"]
     source = [CONSUMERS / "c99" / "main.c", folder / f"{told['prefix']}.c"]
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-error=long-long"]
-    subprocess.run([*compiler.command, *strict, *flags, *defined, *source, "-o", program, "-lm"], check=True)
+    subprocess.run(
+        [*compiler.command, *strict, *flags, *defined, *source, "-o", program, "-lm"], check=True
+    )
     return run([program, *map(str, RATIOS)], lines)
 
 
 def run(command, lines):
-    return rows(subprocess.run(command, input=lines, capture_output=True, text=True, check=True).stdout)
+    return rows(
+        subprocess.run(command, input=lines, capture_output=True, text=True, check=True).stdout
+    )
 
 
 def expected(scene, told, solution):
     """What the API has for the outputs, and for the forces of each link at each ratio."""
     columns = [solution.series[row["path"].replace("/", ":")] for row in told["outputs"]]
     for link in told["links"]:
-        grids = [solution.section(link["name"]).law.on_grid(force, np.array(RATIOS)) for force in FORCES]
+        grids = [
+            solution.section(link["name"]).law.on_grid(force, np.array(RATIOS)) for force in FORCES
+        ]
         columns += [grid[:, k] for k in range(len(RATIOS)) for grid in grids]
     return np.stack(columns, axis=1)
 
 
 def compare(found, wanted, told, made, solution, exact=True, few=FEW):
-    """To the last bit, or within a few units of each column's largest; angles that loops set up to whole turns."""
+    """To the last bit, or within a few units of each column's largest; angles that loops set up to
+    whole turns.
+    """
     assert found.shape == wanted.shape
     turning = [k for k, member in enumerate(made.outputs) if member.wrapped]
     gaps = np.abs(found - wanted)
-    gaps[:, turning] = np.abs(np.remainder(found[:, turning] - wanted[:, turning] + np.pi, 2 * np.pi) - np.pi)
+    gaps[:, turning] = np.abs(
+        np.remainder(found[:, turning] - wanted[:, turning] + np.pi, 2 * np.pi) - np.pi
+    )
     unit = np.finfo(np.float32 if told["precision"] == "single" else float).eps
     outputs = len(told["outputs"])
     alike = [k for k in range(outputs) if k not in turning] if exact else []
@@ -82,11 +94,17 @@ def compare(found, wanted, told, made, solution, exact=True, few=FEW):
     largest = np.abs(wanted).max(axis=0)
     # An angle has the digits of a turn; a force of a link those of the terms it is the sum of.
     largest[turning] = np.pi
-    for start, link in zip(range(outputs, wanted.shape[1], 3 * len(RATIOS)), told["links"], strict=True):
+    for start, link in zip(
+        range(outputs, wanted.shape[1], 3 * len(RATIOS)), told["links"], strict=True
+    ):
         for k, force in enumerate(FORCES):
-            largest[start + k : start + 3 * len(RATIOS) : 3] = solution.section(link["name"]).law.bound(force, np.array(RATIOS))
+            largest[start + k : start + 3 * len(RATIOS) : 3] = solution.section(
+                link["name"]
+            ).law.bound(force, np.array(RATIOS))
     units = (gaps / (unit * largest + np.finfo(float).tiny)).max(axis=0)
-    assert units.max() <= few, dict(zip([row["name"] for row in told["outputs"]], units, strict=False))
+    assert units.max() <= few, dict(
+        zip([row["name"] for row in told["outputs"]], units, strict=False)
+    )
 
 
 def values(scene, precision):
@@ -97,4 +115,6 @@ def values(scene, precision):
 
 def solve(scene, precision, **rung):
     """The API's numbers."""
-    return evaluate(scene, parameters=values(scene, precision), precision=precision, backend="c", **rung)
+    return evaluate(
+        scene, parameters=values(scene, precision), precision=precision, backend="c", **rung
+    )

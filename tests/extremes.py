@@ -1,4 +1,6 @@
-"""Scenes at the ends of their ranges: what each is, and ``python tests/extremes.py``, which prints how exact its outputs are."""
+"""Scenes at the ends of their ranges: what each is, and ``python tests/extremes.py``, which prints
+how exact its outputs are.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ CYCLE = (0.0, 0.08, 7)
 
 @dataclass(frozen=True, eq=False)
 class Extreme:
-    """A scene with parameters and instants; ``ordinary`` where nothing is near a singularity: numbers bound its errors.
+    """A scene with parameters and instants; ``ordinary`` where nothing is near a singularity:
+    numbers bound its errors.
 
     ``single`` is what a refusal in single precision says, empty where there is none.
     """
@@ -58,7 +61,9 @@ class Extreme:
         solution = self.solution(backend="vm")
         n, condition = solution.t.size, solution.certificate.get("condition", solution.t)
         chosen = sorted({n // 3, int(np.argmax(condition))})
-        return [meaning(self.scene(), self.graph, i, float(solution.t[i]), self.numbers) for i in chosen]
+        return [
+            meaning(self.scene(), self.graph, i, float(solution.t[i]), self.numbers) for i in chosen
+        ]
 
     def judged(self, solution):
         """How far a solution is from it, worst first."""
@@ -81,14 +86,18 @@ def _declared(name):
     def number(symbol, default, unit="m"):
         return m.parameter(symbol, default, unit)
 
-    motion = polynomial(number("angle", 0.3, "rad"), number("rate", RATE, "rad/s"), number("change", 5.0, "rad/s^2"))
+    motion = polynomial(
+        number("angle", 0.3, "rad"), number("rate", RATE, "rad/s"), number("change", 5.0, "rad/s^2")
+    )
     return m, number, motion
 
 
 @functools.cache
 def rotor():
     m, number, motion = _declared("rotor")
-    m.revolute("O", m.ground, m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg")))
+    m.revolute(
+        "O", m.ground, m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
+    )
     return Scene(m, {"O": motion})
 
 
@@ -136,7 +145,9 @@ def four_bar(pin=Mechanism.revolute):
 
 @functools.cache
 def lever():
-    """A pin that slides along a lever, and a pendulum that hangs on a place of it: a station that moves, and one that does not."""
+    """A pin that slides along a lever, and a pendulum that hangs on a place of it: a station that
+    moves, and one that does not.
+    """
     m, number, motion = _declared("lever")
     crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.3, "kg"))
     arm = m.link("arm", length=number("l", 0.6), mass=number("m2", 0.5, "kg"))
@@ -155,7 +166,11 @@ def tapered():
     """A rod whose density is a table that ends in nothing."""
     m, number, motion = _declared("tapered")
     crank = m.link("crank", length=number("r", 0.1), mass=number("m1", 0.1, "kg"))
-    rod = m.link("rod", length=number("l", 0.2), density=tabulated([0, 1e-3, 0.5, 0.999, 1], [2.0, 1.0, 3.0, 0.5, 0.0]))
+    rod = m.link(
+        "rod",
+        length=number("l", 0.2),
+        density=tabulated([0, 1e-3, 0.5, 0.999, 1], [2.0, 1.0, 3.0, 0.5, 0.0]),
+    )
     slider = m.point_mass("slider", number("m3", 0.1, "kg"))
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
@@ -166,11 +181,20 @@ def tapered():
 
 @functools.cache
 def platform(size=1.0, frequency=1.0):
-    """A 3-RRR platform, whose loops are iterated; of another size, for what is judged when it is derived."""
+    """A 3-RRR platform, whose loops are iterated; of another size, for what is judged when it is
+    derived.
+    """
     m = Mechanism("platform")
-    corners = {radius: [(radius * math.cos(a), radius * math.sin(a)) for a in _THIRDS] for radius in (0.5 * size, 0.12 * size)}
+    corners = {
+        radius: [(radius * math.cos(a), radius * math.sin(a)) for a in _THIRDS]
+        for radius in (0.5 * size, 0.12 * size)
+    }
     plate = m.link(
-        "plate", length=0.2 * size, mass=1.5, centre=(0.0, 0.0), inertia=m.parameter("inertia", 0.01 * size**2, "kg m^2")
+        "plate",
+        length=0.2 * size,
+        mass=1.5,
+        centre=(0.0, 0.0),
+        inertia=m.parameter("inertia", 0.01 * size**2, "kg m^2"),
     )
     lengths = [m.parameter(f"l{i}", 0.28 * size, "m") for i in range(6)]
     posture, motion = {"plate": 0.0}, {}
@@ -190,11 +214,15 @@ _THIRDS = [2 * math.pi * i / 3 + math.pi / 6 for i in range(3)]
 
 
 def _platform(name, t=(0.0, 0.9, 31), **keywords):
-    return Extreme(f"3-RRR platform: {name}", functools.partial(platform, **keywords), {}, t, ordinary=True)
+    return Extreme(
+        f"3-RRR platform: {name}", functools.partial(platform, **keywords), {}, t, ordinary=True
+    )
 
 
 def _through(centre, width):
-    """Parameters that lead the crank through a direction, and the instants from so far before it to so far behind."""
+    """Parameters that lead the crank through a direction, and the instants from so far before it to
+    so far behind.
+    """
     return {"angle": centre - width, "change": 0.0}, (0.0, 2 * width / RATE, 9)
 
 
@@ -229,10 +257,17 @@ def _dead_centres():
 def _masses():
     for part, symbol in (("crank", "m1"), ("rod", "m2"), ("slider", "m3")):
         for mass in (0.0, 1e-10, 1e8):
-            yield Extreme(f"slider-crank: {part} of {mass:g} kg", slider_crank, {symbol: mass}, ordinary=True)
+            yield Extreme(
+                f"slider-crank: {part} of {mass:g} kg", slider_crank, {symbol: mass}, ordinary=True
+            )
     for symbol in ("ma", "mb", "mc"):
         for mass in (0.0, 1e8):
-            yield Extreme(f"four-bar: link {symbol[1]} of {mass:g} kg", four_bar, {symbol: mass}, ordinary=True)
+            yield Extreme(
+                f"four-bar: link {symbol[1]} of {mass:g} kg",
+                four_bar,
+                {symbol: mass},
+                ordinary=True,
+            )
 
 
 def _times():
@@ -240,8 +275,16 @@ def _times():
         for scene in (slider_crank, four_bar):
             values = {"change": 0.0}
             name = scene.__name__.replace("_", "-")
-            yield Extreme(f"{name}: t = {t:.0e} s, {RATE * t:.2g} rad", scene, values, (t, t + 0.08, 7), ordinary=True)
-    yield Extreme("slider-crank, swung: t = 1e+06 s", swung, {}, (1e6, 1e6 + 0.08, 7), ordinary=True)
+            yield Extreme(
+                f"{name}: t = {t:.0e} s, {RATE * t:.2g} rad",
+                scene,
+                values,
+                (t, t + 0.08, 7),
+                ordinary=True,
+            )
+    yield Extreme(
+        "slider-crank, swung: t = 1e+06 s", swung, {}, (1e6, 1e6 + 0.08, 7), ordinary=True
+    )
 
 
 EXTREMES = (
@@ -255,13 +298,37 @@ EXTREMES = (
     Extreme("slider-crank: r/l = 1 - 1e-9 through 90 deg", slider_crank, *_90_TO_9, single=_DEAD),
     *_dead_centres(),
     *_masses(),
-    Extreme("slider-crank: 1e-3 rad/s", slider_crank, {"rate": 1e-3, "change": 0.0}, (0.0, 6e3, 7), ordinary=True),
-    Extreme("slider-crank: 1e5 rad/s", slider_crank, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True),
-    Extreme("four-bar: 1e5 rad/s", four_bar, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True),
+    Extreme(
+        "slider-crank: 1e-3 rad/s",
+        slider_crank,
+        {"rate": 1e-3, "change": 0.0},
+        (0.0, 6e3, 7),
+        ordinary=True,
+    ),
+    Extreme(
+        "slider-crank: 1e5 rad/s",
+        slider_crank,
+        {"rate": 1e5, "change": 0.0},
+        (0.0, 6e-5, 7),
+        ordinary=True,
+    ),
+    Extreme(
+        "four-bar: 1e5 rad/s", four_bar, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True
+    ),
     Extreme("rotor: 1e5 rad/s", rotor, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True),
-    Extreme("spinner: 1e5 rad/s", spinner, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True),
-    Extreme("slider-crank: crank of 1e8 kg at 1e5 rad/s", slider_crank, {"m1": 1e8, "rate": 1e5}, (0.0, 6e-5, 7), ordinary=True),
-    Extreme("slider-crank: 1e9 rad/s^2", slider_crank, {"change": 5e8}, (0.0, 1e-4, 7), ordinary=True),
+    Extreme(
+        "spinner: 1e5 rad/s", spinner, {"rate": 1e5, "change": 0.0}, (0.0, 6e-5, 7), ordinary=True
+    ),
+    Extreme(
+        "slider-crank: crank of 1e8 kg at 1e5 rad/s",
+        slider_crank,
+        {"m1": 1e8, "rate": 1e5},
+        (0.0, 6e-5, 7),
+        ordinary=True,
+    ),
+    Extreme(
+        "slider-crank: 1e9 rad/s^2", slider_crank, {"change": 5e8}, (0.0, 1e-4, 7), ordinary=True
+    ),
     Extreme("four-bar: 1e9 rad/s^2", four_bar, {"change": 5e8}, (0.0, 1e-4, 7), ordinary=True),
     *_times(),
     _platform("micrometres", size=1e-5),
@@ -269,30 +336,72 @@ EXTREMES = (
     _platform("t = 1e+06 s, 6e+06 rad", (1e6, 1e6 + 0.9, 31)),
     Extreme("slider-crank: micrometres", slider_crank, {"r": 1e-6, "l": 2e-6}, ordinary=True),
     Extreme("slider-crank: kilometres", slider_crank, {"r": 1e3, "l": 2e3}, ordinary=True),
-    Extreme("four-bar: micrometres", four_bar, {"la": 1e-6, "lb": 3.5e-6, "lc": 2.5e-6, "cx": 3e-6, "cy": 5e-7}, ordinary=True),
-    Extreme("four-bar: kilometres", four_bar, {"la": 1e3, "lb": 3.5e3, "lc": 2.5e3, "cx": 3e3, "cy": 500.0}, ordinary=True),
-    Extreme("slider-crank: micrometres on kilometres", slider_crank, {"r": 1e-6, "l": 1e3}, ordinary=True),
-    Extreme("four-bar: coupler of a micrometre", four_bar, {"la": 5e-7, "lb": 1e-6, "lc": 0.3, "cy": 0.0}),
-    Extreme("four-bar: rocker of a micrometre", four_bar, {"la": 5e-7, "lb": 0.3, "lc": 1e-6, "cy": 0.0}),
-    Extreme("slider-crank: a kilometre from the origin", slider_crank, {"x": 1e3, "y": 1e3, "gx": 1e3, "gy": 1e3}),
-    Extreme("four-bar: a kilometre from the origin", four_bar, {"x": 1e3, "y": 1e3, "cx": 1000.3, "cy": 1000.05}),
+    Extreme(
+        "four-bar: micrometres",
+        four_bar,
+        {"la": 1e-6, "lb": 3.5e-6, "lc": 2.5e-6, "cx": 3e-6, "cy": 5e-7},
+        ordinary=True,
+    ),
+    Extreme(
+        "four-bar: kilometres",
+        four_bar,
+        {"la": 1e3, "lb": 3.5e3, "lc": 2.5e3, "cx": 3e3, "cy": 500.0},
+        ordinary=True,
+    ),
+    Extreme(
+        "slider-crank: micrometres on kilometres",
+        slider_crank,
+        {"r": 1e-6, "l": 1e3},
+        ordinary=True,
+    ),
+    Extreme(
+        "four-bar: coupler of a micrometre",
+        four_bar,
+        {"la": 5e-7, "lb": 1e-6, "lc": 0.3, "cy": 0.0},
+    ),
+    Extreme(
+        "four-bar: rocker of a micrometre", four_bar, {"la": 5e-7, "lb": 0.3, "lc": 1e-6, "cy": 0.0}
+    ),
+    Extreme(
+        "slider-crank: a kilometre from the origin",
+        slider_crank,
+        {"x": 1e3, "y": 1e3, "gx": 1e3, "gy": 1e3},
+    ),
+    Extreme(
+        "four-bar: a kilometre from the origin",
+        four_bar,
+        {"x": 1e3, "y": 1e3, "cx": 1000.3, "cy": 1000.05},
+    ),
     Extreme("slider-crank: slider of 1e-310 kg", slider_crank, {"m3": 1e-310}, ordinary=True),
-    Extreme("slider-crank: all of 1e-310 kg", slider_crank, {"m1": 1e-310, "m2": 1e-310, "m3": 1e-310}),
+    Extreme(
+        "slider-crank: all of 1e-310 kg", slider_crank, {"m1": 1e-310, "m2": 1e-310, "m3": 1e-310}
+    ),
     Extreme("slider-crank: crank of 1e-310 m", slider_crank, {"r": 1e-310}),
-    Extreme("slider-crank: 1e-310 rad/s", slider_crank, {"rate": 1e-310, "change": 0.0}, ordinary=True),
-    Extreme("slider-crank: t from 0 to 1e-310 s", slider_crank, {}, (0.0, 1e-310, 3), ordinary=True),
+    Extreme(
+        "slider-crank: 1e-310 rad/s", slider_crank, {"rate": 1e-310, "change": 0.0}, ordinary=True
+    ),
+    Extreme(
+        "slider-crank: t from 0 to 1e-310 s", slider_crank, {}, (0.0, 1e-310, 3), ordinary=True
+    ),
 )
 
 SINGULAR = (
     Singular("slider-crank of r = l", slider_crank, {"r": 0.2}, math.pi / 2),
     Singular("parallelogram", four_bar, {"la": 0.1, "lb": 0.3, "lc": 0.1, "cy": 0.0}, 0.0),
-    Singular("parallelogram at its other change point", four_bar, {"la": 0.1, "lb": 0.3, "lc": 0.1, "cy": 0.0}, math.pi),
+    Singular(
+        "parallelogram at its other change point",
+        four_bar,
+        {"la": 0.1, "lb": 0.3, "lc": 0.1, "cy": 0.0},
+        math.pi,
+    ),
     Singular("coupler and rocker in line", four_bar, {"lb": 0.25, "lc": 0.15, "cy": 0.0}, math.pi),
 )
 
 
 def row(extreme):
-    """A row of the table: for each precision the largest error over peak, and in roundings times its condition."""
+    """A row of the table: for each precision the largest error over peak, and in roundings times
+    its condition.
+    """
     cells, condition = [], 1.0
     for precision in PRECISIONS:
         if precision == "single" and extreme.single:
@@ -305,7 +414,10 @@ def row(extreme):
 
 
 def main():
-    print("| scene | condition | double: error / peak | in roundings | single: error / peak | in roundings |")
+    print(
+        "| scene | condition | double: error / peak | in roundings | single: error / peak | in"
+        " roundings |"
+    )
     print("| --- | --- | --- | --- | --- | --- |")
     for extreme in EXTREMES:
         print(row(extreme), flush=True)

@@ -5,7 +5,9 @@ from lagrange_casadi.declare.motion import polynomial
 
 
 def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):
-    """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station of a rod."""
+    """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station
+    of a rod.
+    """
     m = Mechanism("five_bar")
     heavier = m.parameter("heavier", 2.0)
     a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.5)
@@ -25,4 +27,10 @@ def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):
         m.output("still", vy * m.results.effort(m.joints["O"]), unit="W")
     motion = {"O": polynomial(2.0, 0.5, -0.2), "C": polynomial(1.0, -0.3, 0.4)}
     drives = drives(heavier) if callable(drives) else drives
-    return Scene(m, motion, wanted, drives=drives, **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords))
+    return Scene(
+        m,
+        motion,
+        wanted,
+        drives=drives,
+        **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords),
+    )

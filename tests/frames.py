@@ -1,7 +1,9 @@
-"""A frame solver by direct stiffness, which shares nothing with the package: Timoshenko's beams, joints by multipliers.
+"""A frame solver by direct stiffness, which shares nothing with the package: Timoshenko's beams,
+joints by multipliers.
 
-Elements have the stiffness of textbooks (Przemieniecki, *Theory of Matrix Structural Analysis*, section 5.6). Loads along an
-element are put to its nodes by the shape functions that solve the unloaded beam, so displacements of nodes are exact.
+Elements have the stiffness of textbooks (Przemieniecki, *Theory of Matrix Structural Analysis*,
+section 5.6). Loads along an element are put to its nodes by the shape functions that solve the
+unloaded beam, so displacements of nodes are exact.
 """
 
 import itertools
@@ -12,7 +14,9 @@ GAUSS = np.polynomial.legendre.leggauss(6)
 
 
 def bending(l, ei, phi):
-    """The stiffness of an element in a plane, for deflection and slope at both ends; ``phi`` is 12 EI / (GAs l^2)."""
+    """The stiffness of an element in a plane, for deflection and slope at both ends; ``phi`` is 12
+    EI / (GAs l^2).
+    """
     c = ei / (l**3 * (1 + phi))
     return c * np.array(
         [
@@ -48,29 +52,45 @@ class Frame:
         return len(self.places) - 1
 
     def beam(self, a, b, axes, p, e, g, load=None):
-        """An element between two nodes, in ``axes`` (rows x, y, z), of a cross-section; ``load`` of its share per length [N/m]."""
+        """An element between two nodes, in ``axes`` (rows x, y, z), of a cross-section; ``load`` of
+        its share per length [N/m].
+        """
         l = np.linalg.norm(self.places[b] - self.places[a])
         k, f = np.zeros((12, 12)), np.zeros(12)
         for stiffness, ends in ((e * p.area, (0, 6)), (g * p.torsion, (3, 9))):
             k[np.ix_(ends, ends)] += stiffness / l * np.array([[1, -1], [-1, 1]])
         # In the plane x, z a slope about y lowers z.
-        for i, shear, across, turn, sign in ((p.iz, p.shear_y, 1, 5, 1), (p.iy, p.shear_z, 2, 4, -1)):
+        for i, shear, across, turn, sign in (
+            (p.iz, p.shear_y, 1, 5, 1),
+            (p.iy, p.shear_z, 2, 4, -1),
+        ):
             phi = 12 * e * i / (g * shear * l * l)
             ends, signs = [across, turn, across + 6, turn + 6], np.array([1, sign, 1, sign])
             k[np.ix_(ends, ends)] += bending(l, e * i, phi) * np.outer(signs, signs)
             for x, w in zip(*GAUSS, strict=True):
                 if load is not None:
-                    f[ends] += shapes((x + 1) / 2, l, phi) * signs * (axes @ load((x + 1) / 2))[across] * w * l / 2
+                    f[ends] += (
+                        shapes((x + 1) / 2, l, phi)
+                        * signs
+                        * (axes @ load((x + 1) / 2))[across]
+                        * w
+                        * l
+                        / 2
+                    )
         for x, w in zip(*GAUSS, strict=True):
             if load is not None:
-                f[[0, 6]] += np.array([(1 - x) / 2, (1 + x) / 2]) * (axes @ load((x + 1) / 2))[0] * w * l / 2
+                f[[0, 6]] += (
+                    np.array([(1 - x) / 2, (1 + x) / 2]) * (axes @ load((x + 1) / 2))[0] * w * l / 2
+                )
         self.elements.append((a, b, np.kron(np.eye(4), axes), k, f))
 
     def push(self, node, force=(0, 0, 0), couple=(0, 0, 0)):
         self.loads[node] = self.loads.get(node, 0.0) + np.array([*force, *couple], float)
 
     def tie(self, parent, child, row):
-        """The child's displacements (6,) along a row are the parent's; of the ground, None, they are nil. A number."""
+        """The child's displacements (6,) along a row are the parent's; of the ground, None, they
+        are nil. A number.
+        """
         self.ties.append((parent, child, np.asarray(row, float)))
         return len(self.ties) - 1
 
@@ -98,15 +118,20 @@ class Frame:
 
 
 def of_solution(solution, i, sections, loads=(), accelerations=None):
-    """The frame of a mechanism at an instant, its drives locked: the reactions of joints on their children, in ground axes.
+    """The frame of a mechanism at an instant, its drives locked: the reactions of joints on their
+    children, in ground axes.
 
-    ``sections`` are (properties, E, G, mass per length) by link; ``loads`` (link, x, force, couple) in ground axes;
-    ``accelerations`` tells the acceleration of a link's place x.
+    ``sections`` are (properties, E, G, mass per length) by link; ``loads`` (link, x, force, couple)
+    in ground axes; ``accelerations`` tells the acceleration of a link's place x.
     """
     told, frame, nodes = solution.description, Frame(), {}
     space = len(told["gravity"]) > 2
     gravity = np.array([*told["gravity"], 0.0][:3])
-    places = {name: {0.0, body["length"]} for name, body in told["bodies"].items() if body["length"] is not None}
+    places = {
+        name: {0.0, body["length"]}
+        for name, body in told["bodies"].items()
+        if body["length"] is not None
+    }
     for joint in told["joints"].values():
         for end in (joint["parent"], joint["child"]):
             if end["body"] in places:
@@ -121,7 +146,10 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
             base = np.array([pose.x[i], pose.y[i], pose.z[i]])
         else:
             c, s = np.cos(pose.angle[i]), np.sin(pose.angle[i])
-            axes, base = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]), np.array([pose.x[i], pose.y[i], 0.0])
+            axes, base = (
+                np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]),
+                np.array([pose.x[i], pose.y[i], 0.0]),
+            )
         axes_of[link] = axes
         p, e, g, line = sections[link]
         ordered = sorted(xs)
@@ -130,7 +158,9 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
         for a, b in itertools.pairwise(ordered):
 
             def load(share, a=a, b=b, link=link, line=line):
-                return line * (gravity - (accelerations(link, a + (b - a) * share) if accelerations else 0.0))
+                return line * (
+                    gravity - (accelerations(link, a + (b - a) * share) if accelerations else 0.0)
+                )
 
             frame.beam(nodes[link, a], nodes[link, b], axes, p, e, g, load)
     for link, x, force, couple in loads:
@@ -142,7 +172,9 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
     for name, body in told["bodies"].items():
         if body["length"] is None:
             pose = solution.pose(name)
-            node = nodes[name, 0.0] = frame.node([pose.x[i], pose.y[i], pose.z[i] if space else 0.0])
+            node = nodes[name, 0.0] = frame.node(
+                [pose.x[i], pose.y[i], pose.z[i] if space else 0.0]
+            )
             frame.push(node, body["mass"] * gravity)
             for k in (3, 4, 5) if space else (2, 3, 4, 5):
                 frame.tie(None, node, np.eye(6)[k])
@@ -152,7 +184,11 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
         parent, child = (nodes.get((end["body"], end["x"])) for end in ends)
         axes = axes_of[ends[0]["body"]]
         kind, driven = joint["kind"], bool(joint["driven"])
-        triad = np.array(joint["triad"]) @ axes if space else np.array([[0, 0, 1.0], [1.0, 0, 0], [0, 1.0, 0]])
+        triad = (
+            np.array(joint["triad"]) @ axes
+            if space
+            else np.array([[0, 0, 1.0], [1.0, 0, 0], [0, 1.0, 0]])
+        )
         if kind == "prismatic":
             along = axes.T @ np.array([*joint["axis"], 0.0]) if not space else triad[0]
             across = list(np.linalg.svd(along[None])[2][1:])
@@ -172,5 +208,8 @@ def of_solution(solution, i, sections, loads=(), accelerations=None):
         for row in driving if driven else ():
             frame.tie(parent, child, row)
     displacements, multipliers = frame.solve()
-    reactions = {name: sum((multipliers[k] * row for k, row in ties), np.zeros(6)) for name, ties in rows.items()}
+    reactions = {
+        name: sum((multipliers[k] * row for k, row in ties), np.zeros(6))
+        for name, ties in rows.items()
+    }
     return reactions, {place: displacements[node] for place, node in nodes.items()}

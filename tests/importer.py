@@ -21,14 +21,24 @@ def windy():
         m.force("wind", parts["b"].at(0.2, 0.01), x=gust * ca.sin(7 * m.time), y=-2.0)
 
     scene = crank_and_rod({"mass": 0.5}, loads=loads)
-    return Scene(scene.mechanism, dict(scene.motion), ["all"], posture={"b": 0.0}, t=(0.3, 1.3, 101))
+    return Scene(
+        scene.mechanism, dict(scene.motion), ["all"], posture={"b": 0.0}, t=(0.3, 1.3, 101)
+    )
 
 
 def robot():
-    """Three legs under a platform, whose loops are iterated; the length of a shin and the platform's mass are parameters."""
+    """Three legs under a platform, whose loops are iterated; the length of a shin and the
+    platform's mass are parameters.
+    """
     m = Mechanism("robot")
     shin = m.parameter("shin", 0.28, "m", low=0.1, high=0.5)
-    platform = m.link("platform", length=0.2, mass=m.parameter("mass", 1.5, "kg", low=0.0), centre=(0.0, 0.0), inertia=0.01)
+    platform = m.link(
+        "platform",
+        length=0.2,
+        mass=m.parameter("mass", 1.5, "kg", low=0.0),
+        centre=(0.0, 0.0),
+        inertia=0.01,
+    )
     posture, motion = {"platform": 0.0}, {}
     for i in range(3):
         angle = 2 * math.pi * i / 3 + math.pi / 6
@@ -36,7 +46,9 @@ def robot():
         lower = m.link(f"lower{i}", length=0.28 if i else shin, mass=0.5)
         m.revolute(f"drive{i}", m.ground.at(0.5 * math.cos(angle), 0.5 * math.sin(angle)), upper)
         m.revolute(f"knee{i}", upper.tip, lower)
-        m.revolute(f"foot{i}", lower.tip, platform.at(0.12 * math.cos(angle), 0.12 * math.sin(angle)))
+        m.revolute(
+            f"foot{i}", lower.tip, platform.at(0.12 * math.cos(angle), 0.12 * math.sin(angle))
+        )
         inward = angle + math.pi
         posture[f"upper{i}"], posture[f"lower{i}"] = inward - 0.8, inward + 0.8
         motion[f"drive{i}"] = harmonic(inward - 0.8, 0.2, 1.0, 2 * math.pi * i / 3)
@@ -47,7 +59,10 @@ def signals(solution, ahead=0, **tuned):
     """The motion of the drives as FMPy takes it; ``ahead`` so many instants early."""
     names = [name for name in solution.series if name.startswith("motion:")]
     columns = {"time": solution.t} | {
-        name.replace(":", "/"): np.append(solution.series[name][ahead:], [solution.series[name][-1]] * ahead) for name in names
+        name.replace(":", "/"): np.append(
+            solution.series[name][ahead:], [solution.series[name][-1]] * ahead
+        )
+        for name in names
     }
     columns |= tuned
     table = np.empty(solution.t.size, [(name, float) for name in columns])
@@ -95,7 +110,9 @@ class Instance:
         return self
 
     def set(self, **values):
-        self.fmu.setReal([self.of[name.replace("__", "/")] for name in values], list(values.values()))
+        self.fmu.setReal(
+            [self.of[name.replace("__", "/")] for name in values], list(values.values())
+        )
 
     def get(self, *names):
         return self.fmu.getReal([self.of[name] for name in names])

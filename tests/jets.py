@@ -1,4 +1,6 @@
-"""Numbers with their first and second derivative by time: truncated power series, of any arithmetic's numbers."""
+"""Numbers with their first and second derivative by time: truncated power series, of any
+arithmetic's numbers.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from splines import by_hand
 class Jet:
     """A number with its first and second derivative by time.
 
-    ``d`` may also be an array: the derivatives along several directions at once, of which only these first ones have a meaning.
+    ``d`` may also be an array: the derivatives along several directions at once, of which only
+    these first ones have a meaning.
     """
 
     v: Any
@@ -24,16 +27,29 @@ class Jet:
     __array_ufunc__: ClassVar = None  # a NumPy number on the left leaves the operation to the jet
 
     def __add__(self, o):
-        return Jet(self.v + o.v, self.d + o.d, self.a + o.a) if isinstance(o, Jet) else Jet(self.v + o, self.d, self.a)
+        return (
+            Jet(self.v + o.v, self.d + o.d, self.a + o.a)
+            if isinstance(o, Jet)
+            else Jet(self.v + o, self.d, self.a)
+        )
 
     def __sub__(self, o):
-        return Jet(self.v - o.v, self.d - o.d, self.a - o.a) if isinstance(o, Jet) else Jet(self.v - o, self.d, self.a)
+        return (
+            Jet(self.v - o.v, self.d - o.d, self.a - o.a)
+            if isinstance(o, Jet)
+            else Jet(self.v - o, self.d, self.a)
+        )
 
     def __mul__(self, o):
         if not isinstance(o, Jet):
             return Jet(self.v * o, self.d * o, self.a * o)
-        # Derivatives, which may be arrays, come first: mpmath would try to read an array as a number.
-        return Jet(self.v * o.v, self.d * o.v + o.d * self.v, self.a * o.v + 2 * self.d * o.d + o.a * self.v)
+        # Derivatives, which may be arrays, come first: mpmath would try to read an array as a
+        # number.
+        return Jet(
+            self.v * o.v,
+            self.d * o.v + o.d * self.v,
+            self.a * o.v + 2 * self.d * o.d + o.a * self.v,
+        )
 
     def __truediv__(self, o):
         return self * (o.through(1 / o.v, -1 / o.v**2, 2 / o.v**3) if isinstance(o, Jet) else 1 / o)
@@ -48,7 +64,9 @@ class Jet:
         return self * -1
 
     def __pow__(self, n):
-        return self.through(self.v**n, n * self.v ** (n - 1), n * (n - 1) * self.v ** (n - 2) if n > 1 else 0)
+        return self.through(
+            self.v**n, n * self.v ** (n - 1), n * (n - 1) * self.v ** (n - 2) if n > 1 else 0
+        )
 
     __radd__ = __add__
     __rmul__ = __mul__

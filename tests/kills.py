@@ -1,4 +1,6 @@
-"""Commands that a kill, or a full disk, meets just before one of the moments at which they change what is there."""
+"""Commands that a kill, or a full disk, meets just before one of the moments at which they change
+what is there.
+"""
 
 import errno
 import os

@@ -1,6 +1,8 @@
-"""Random mechanisms of many kinds, drawn from what can be declared: each a function of a generator that gives a scene.
+"""Random mechanisms of many kinds, drawn from what can be declared: each a function of a generator
+that gives a scene.
 
-Linkages are drawn by the places of their pins at the first instant, so they close there; whether they go on, an evaluation tells.
+Linkages are drawn by the places of their pins at the first instant, so they close there; whether
+they go on, an evaluation tells.
 """
 
 from __future__ import annotations
@@ -45,10 +47,11 @@ def _pins(rng, links):
 
 
 def linkage(rng, name, links, grounded, drives, *, decorate=None, swing=None, masses=(-2, 1)):
-    """Links between random places: ``links`` names the pins of each, the first its base, the second its tip.
+    """Links between random places: ``links`` names the pins of each, the first its base, the second
+    its tip.
 
-    ``grounded`` are the pins on the ground, ``drives`` the links driven from there. ``decorate(m, links, pins, rng)`` adds to it,
-    and gives the posture of what it adds.
+    ``grounded`` are the pins on the ground, ``drives`` the links driven from there. ``decorate(m,
+    links, pins, rng)`` adds to it, and gives the posture of what it adds.
     """
     pins = _pins(rng, links)
     m, made, posture, motion, known = Mechanism(name), {}, {}, {}, {}
@@ -61,8 +64,13 @@ def linkage(rng, name, links, grounded, drives, *, decorate=None, swing=None, ma
         posture[own] = angle
         for pin in own:
             dx, dy = pins[pin] - pins[own[0]]
-            along, across = dx * math.cos(angle) + dy * math.sin(angle), dy * math.cos(angle) - dx * math.sin(angle)
-            point = {own[0]: link.base, own[1]: link.tip}.get(pin) or link.at(float(along), float(across))
+            along, across = (
+                dx * math.cos(angle) + dy * math.sin(angle),
+                dy * math.cos(angle) - dx * math.sin(angle),
+            )
+            point = {own[0]: link.base, own[1]: link.tip}.get(pin) or link.at(
+                float(along), float(across)
+            )
             if pin in known:
                 m.revolute(f"{pin}{own}", known[pin], point)
             else:
@@ -71,7 +79,12 @@ def linkage(rng, name, links, grounded, drives, *, decorate=None, swing=None, ma
             motion[f"{own[0]}{own}"] = _law(rng, angle, swing)
     if decorate is not None:
         posture |= decorate(m, made, pins, rng) or {}
-    return Scene(m, motion, posture={k: v for k, v in posture.items() if k not in drives}, t=(0.0, 1.0, COUNT))
+    return Scene(
+        m,
+        motion,
+        posture={k: v for k, v in posture.items() if k not in drives},
+        t=(0.0, 1.0, COUNT),
+    )
 
 
 def four_bar(rng):
@@ -106,10 +119,26 @@ def stephenson_driven_last(rng):
 
 def platform(rng):
     """3-RRR: three drives."""
-    return linkage(rng, "platform", ["OA", "CB", "GF", "PQR", "AP", "BQ", "FR"], "OCG", ["OA", "CB", "GF"], swing=0.2)
+    return linkage(
+        rng,
+        "platform",
+        ["OA", "CB", "GF", "PQR", "AP", "BQ", "FR"],
+        "OCG",
+        ["OA", "CB", "GF"],
+        swing=0.2,
+    )
 
 
-LINKAGES = (four_bar, watt_one, watt_two, stephenson_one, stephenson_two, stephenson_three, stephenson_driven_last, platform)
+LINKAGES = (
+    four_bar,
+    watt_one,
+    watt_two,
+    stephenson_one,
+    stephenson_two,
+    stephenson_three,
+    stephenson_driven_last,
+    platform,
+)
 
 
 def _crank(rng, name):
@@ -117,11 +146,17 @@ def _crank(rng, name):
     m = Mechanism(name)
     r = float(rng.uniform(0.05, 0.2))
     l = r * float(rng.uniform(1.3, 5.0))
-    a, b, s = m.link("a", length=r, mass=_mass(rng)), m.link("b", length=l, mass=_mass(rng)), m.point_mass("s", _mass(rng))
+    a, b, s = (
+        m.link("a", length=r, mass=_mass(rng)),
+        m.link("b", length=l, mass=_mass(rng)),
+        m.point_mass("s", _mass(rng)),
+    )
     main = m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, s)
-    guide = m.prismatic("P", m.ground.at(0, r * float(rng.choice([0.0, 0.1, 0.25]))), s, axis=(1, 0))
+    guide = m.prismatic(
+        "P", m.ground.at(0, r * float(rng.choice([0.0, 0.1, 0.25]))), s, axis=(1, 0)
+    )
     return m, {"a": a, "b": b, "s": s}, main, guide
 
 
@@ -133,10 +168,20 @@ def slider_crank(rng):
 def chain(rng):
     m, near, motion = Mechanism("chain"), None, {}
     for i in range(int(rng.integers(1, 6))):
-        matter = {"mass": _mass(rng)} if rng.random() < 0.6 else {"density": density.polynomial(_mass(rng), 0.5, _mass(rng))}
+        matter = (
+            {"mass": _mass(rng)}
+            if rng.random() < 0.6
+            else {"density": density.polynomial(_mass(rng), 0.5, _mass(rng))}
+        )
         link = m.link(f"l{i}", length=float(rng.uniform(0.05, 0.5)), **matter)
         if i and rng.random() < 0.3:
-            m.prismatic(f"J{i}", near, link, axis=(1.0, float(rng.choice([0.0, 0.3]))), angle=float(rng.choice([0.0, 0.5])))
+            m.prismatic(
+                f"J{i}",
+                near,
+                link,
+                axis=(1.0, float(rng.choice([0.0, 0.3]))),
+                angle=float(rng.choice([0.0, 0.5])),
+            )
         else:
             m.revolute(f"J{i}", m.ground if near is None else near, link)
         motion[f"J{i}"] = _law(rng, float(rng.uniform(-0.3, 0.3)))
@@ -146,7 +191,9 @@ def chain(rng):
 
 
 def _station(rng, l, length):
-    """A station of a link as an expression of its length that is a round ratio, its base or its tip, but for rounding, or none."""
+    """A station of a link as an expression of its length that is a round ratio, its base or its
+    tip, but for rounding, or none.
+    """
     n, d = int(rng.integers(1, 9)), int(rng.integers(1, 11))
     ratio = min(n, d) / max(n, d)
     return (
@@ -171,7 +218,10 @@ def stations(rng):
         m.revolute(f"J{i}", m.ground if near is None else near, link)
         motion[f"J{i}"] = _law(rng, float(rng.uniform(-1, 1)))
         for k in range(int(rng.integers(1, 4))):
-            place, size = link.at(_station(rng, l, length), float(rng.choice([0.0, 0.02]))), float(10 ** rng.uniform(0, 6))
+            place, size = (
+                link.at(_station(rng, l, length), float(rng.choice([0.0, 0.02]))),
+                float(10 ** rng.uniform(0, 6)),
+            )
             kind = int(rng.integers(4))
             if kind == 0:
                 m.weld(f"w{i}{k}", place, m.point_mass(f"lump{i}{k}", size / 1e3))
@@ -184,8 +234,13 @@ def stations(rng):
 
 
 def _jumping(rng, x, span):
-    """A load that jumps with what it is given, which runs through ``span``; now and then at an instant of the grid."""
-    size, at = float(10 ** rng.uniform(0, 5)), span[0] + (span[1] - span[0]) * float(rng.integers(0, COUNT)) / (COUNT - 1)
+    """A load that jumps with what it is given, which runs through ``span``; now and then at an
+    instant of the grid.
+    """
+    size, at = (
+        float(10 ** rng.uniform(0, 5)),
+        span[0] + (span[1] - span[0]) * float(rng.integers(0, COUNT)) / (COUNT - 1),
+    )
     width = span[1] - span[0]
     return (
         lambda: -size * ca.sign(x - at),
@@ -201,7 +256,9 @@ def _jumping(rng, x, span):
 
 
 def jumps(rng):
-    """Loads that jump with time, with places and with rates, that are zero at instants or turn round there."""
+    """Loads that jump with time, with places and with rates, that are zero at instants or turn
+    round there.
+    """
     if rng.random() < 0.5:
         m, parts, main, guide = _crank(rng, "jumps")
         steady = rng.random() < 0.7
@@ -210,7 +267,10 @@ def jumps(rng):
     else:
         m = Mechanism("jumps")
         l = m.parameter("l", 0.4, "m")
-        parts = {"a": m.link("a", length=l, mass=_mass(rng)), "b": m.link("b", length=0.3, mass=_mass(rng))}
+        parts = {
+            "a": m.link("a", length=l, mass=_mass(rng)),
+            "b": m.link("b", length=0.3, mass=_mass(rng)),
+        }
         main = guide = m.revolute("O", m.ground, parts["a"])
         m.weld("W", parts["a"].tip, parts["b"], angle=0.5)
         law, turned, bodies, posture = harmonic(0.0, 1.0, 1.0), (-1.0, 1.0), ["a", "b"], {}
@@ -236,17 +296,30 @@ def jumps(rng):
 def quick_return(rng):
     """A crank's pin in the slot of a rocker, over ratios of its length; a ram that cuts one way."""
     m = Mechanism("quick_return")
-    crank, rocker = m.link("crank", length=0.1, mass=_mass(rng)), m.link("rocker", length=0.6, mass=_mass(rng))
-    connecting, ram = m.link("connecting", length=0.25, mass=_mass(rng)), m.point_mass("ram", _mass(rng))
+    crank, rocker = (
+        m.link("crank", length=0.1, mass=_mass(rng)),
+        m.link("rocker", length=0.6, mass=_mass(rng)),
+    )
+    connecting, ram = (
+        m.link("connecting", length=0.25, mass=_mass(rng)),
+        m.point_mass("ram", _mass(rng)),
+    )
     m.revolute("O", m.ground, crank)
-    m.revolute("C", m.ground.at(0, -float(rng.choice([0.2, 0.3, 0.25, rng.uniform(0.15, 0.3)]))), rocker)
+    m.revolute(
+        "C", m.ground.at(0, -float(rng.choice([0.2, 0.3, 0.25, rng.uniform(0.15, 0.3)]))), rocker
+    )
     m.slot("slot", rocker, crank.tip)
     m.revolute("D", rocker.tip, connecting)
     m.revolute("E", connecting.tip, ram)
     way = m.prismatic("way", m.ground.at(0, 0.36), ram, axis=(1, 0))
     m.force("cut", ram, x=-float(10 ** rng.uniform(0, 6)) * (m.rate(way) > 0))
     start = float(rng.choice([0.0, math.pi / 2, rng.uniform(0, 6)]))
-    return Scene(m, {"O": polynomial(start, -2 * math.pi)}, posture={"rocker": 1.5, "connecting": 0.0}, t=(0.0, 1.0, COUNT))
+    return Scene(
+        m,
+        {"O": polynomial(start, -2 * math.pi)},
+        posture={"rocker": 1.5, "connecting": 0.0},
+        t=(0.0, 1.0, COUNT),
+    )
 
 
 def slots(rng):
@@ -270,14 +343,30 @@ def stiff_springs(rng):
     def sprung(m, made, pins, rng):
         for k, link in enumerate(made.values()):
             (x0, y0), (x1, y1) = pins[link.name[0]], pins[link.name[1]]
-            u, stiffness = float(rng.choice([0.25, 0.5, 0.64, 1.0])), float(10 ** rng.uniform(3, 10))
+            u, stiffness = (
+                float(rng.choice([0.25, 0.5, 0.64, 1.0])),
+                float(10 ** rng.uniform(3, 10)),
+            )
             gap = float(10 ** rng.uniform(-9, -1)) * rng.normal(size=2)
-            at = m.ground.at(*(float(a + u * (b - a) + g) for a, b, g in zip((x0, y0), (x1, y1), gap, strict=True)))
+            at = m.ground.at(
+                *(
+                    float(a + u * (b - a) + g)
+                    for a, b, g in zip((x0, y0), (x1, y1), gap, strict=True)
+                )
+            )
             length = float(rng.choice([0.0, 0.0, 1e-3]))
-            m.spring(f"k{k}", at, link.tip if u == 1.0 else link.at(u * link.length), stiffness=stiffness, length=length)
+            m.spring(
+                f"k{k}",
+                at,
+                link.tip if u == 1.0 else link.at(u * link.length),
+                stiffness=stiffness,
+                length=length,
+            )
 
     swing = float(10 ** rng.uniform(-7, -0.5))
-    return linkage(rng, "stiff_springs", ["OA", "AB", "CB"], "OC", ["OA"], decorate=sprung, swing=swing)
+    return linkage(
+        rng, "stiff_springs", ["OA", "AB", "CB"], "OC", ["OA"], decorate=sprung, swing=swing
+    )
 
 
 def lift(stages, mass, l, forces, count=COUNT):
@@ -295,12 +384,18 @@ def lift(stages, mass, l, forces, count=COUNT):
         left, right = b.tip, a.tip
     m.force("left", left, y=-forces[0])
     m.force("right", right, y=-forces[1])
-    return Scene(m, {"slide": harmonic(l * 0.8, l * 0.15, 0.5)}, posture=posture, t=(0.0, 1.0, count))
+    return Scene(
+        m, {"slide": harmonic(l * 0.8, l * 0.15, 0.5)}, posture=posture, t=(0.0, 1.0, count)
+    )
 
 
 def scissors(rng):
     """A lift of light links under a large load."""
-    stages, mass, l = int(rng.integers(1, 6)), float(10 ** rng.uniform(-9, 1)), float(rng.uniform(0.4, 1.5))
+    stages, mass, l = (
+        int(rng.integers(1, 6)),
+        float(10 ** rng.uniform(-9, 1)),
+        float(rng.uniform(0.4, 1.5)),
+    )
     load = float(10 ** rng.uniform(1, 6))
     return lift(stages, mass, l, (load, load * float(rng.uniform(0, 2))))
 
@@ -310,20 +405,31 @@ def light_links(rng):
 
     def loaded(m, made, pins, rng):
         for k, link in enumerate(made.values()):
-            m.force(f"f{k}", link.at(float(rng.uniform(0, 1)) * link.length), x=float(10 ** rng.uniform(3, 7)), turning=bool(k % 2))
+            m.force(
+                f"f{k}",
+                link.at(float(rng.uniform(0, 1)) * link.length),
+                x=float(10 ** rng.uniform(3, 7)),
+                turning=bool(k % 2),
+            )
 
-    return linkage(rng, "light_links", ["OA", "AB", "CB"], "OC", ["OA"], decorate=loaded, masses=(-12, -3))
+    return linkage(
+        rng, "light_links", ["OA", "AB", "CB"], "OC", ["OA"], decorate=loaded, masses=(-12, -3)
+    )
 
 
 def gears(rng):
-    """A planet wheel on an arm that meshes with one that turns about the ground, and a slider-crank behind it."""
+    """A planet wheel on an arm that meshes with one that turns about the ground, and a slider-crank
+    behind it.
+    """
     m, parts, main, guide = _crank(rng, "gears")
     wheel = m.link("wheel", length=0.05, mass=_mass(rng), centre=(0.01, 0.0), inertia=0.002)
     turn = m.revolute("wheel_pin", m.ground.at(-0.2, 0.0), wheel)
     m.gear("mesh", main, turn, ratio=-float(rng.choice([0.5, 2.0, 17 / 31])))
     m.torque("brake", wheel, -float(_mass(rng)) * m.rate(turn))
     m.torsion_spring("coil", main, stiffness=_mass(rng), angle=0.2)
-    m.force("gas", parts["s"], x=-900.0 * table(m.coordinate(guide), [0.0, 0.1, 0.45], [4.0, 2.0, 1.0]))
+    m.force(
+        "gas", parts["s"], x=-900.0 * table(m.coordinate(guide), [0.0, 0.1, 0.45], [4.0, 2.0, 1.0])
+    )
     return Scene(m, {"O": polynomial(0.2, 6.0)}, posture={"b": 0.0}, t=(0.0, 1.0, COUNT))
 
 

@@ -27,12 +27,20 @@ def shown(title):
     return names
 
 
-ROLLING = {"sun": 0.03, "planet": 0.02, "turned": 40.0, "slow": 40.0 * 0.03 / (0.03 + 0.07), "torque": 90.0}
+ROLLING = {
+    "sun": 0.03,
+    "planet": 0.02,
+    "turned": 40.0,
+    "slow": 40.0 * 0.03 / (0.03 + 0.07),
+    "torque": 90.0,
+}
 """Radii [m], rates of sun and carrier [rad/s], and what the carrier drives [N m]."""
 
 
 def rolling():
-    """A sun drives a planet, which rolls in a ring that stands still, each mesh a row in velocities of what touches."""
+    """A sun drives a planet, which rolls in a ring that stands still, each mesh a row in velocities
+    of what touches.
+    """
     s, p, turned, slow = (ROLLING[name] for name in ("sun", "planet", "turned", "slow"))
     m = Mechanism("planetary")
     m.set_gravity(0, 0)
@@ -49,7 +57,9 @@ def rolling():
     m.nonholonomic("outside", along + p * spin, replaces=pin)
     m.torque("load", carrier, -torque)
     steady = {"main": turned, "output": slow, "pin": -slow * (s + p) / p - slow}
-    return Scene(m, {joint: motion.polynomial(0.0, rate) for joint, rate in steady.items()}, t=(0, 0.5, 51))
+    return Scene(
+        m, {joint: motion.polynomial(0.0, rate) for joint, rate in steady.items()}, t=(0, 0.5, 51)
+    )
 
 
 def elsewhere():

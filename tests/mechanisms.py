@@ -20,7 +20,12 @@ PIN = Mechanism.revolute
 def slider_crank(wanted=("all",), mechanism=None, **keywords):
     """The paper's mechanism, with parameters; or another one with its motion."""
     keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
-    return Scene(mechanism or crank_slider(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
+    return Scene(
+        mechanism or crank_slider(),
+        {"O": polynomial(0, 25 * math.pi, math.pi / 200)},
+        wanted,
+        **keywords,
+    )
 
 
 def crank_slider(pin=PIN):
@@ -37,7 +42,13 @@ def crank_slider(pin=PIN):
 
 
 def four_bar(
-    lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), pin=PIN, **keywords
+    lengths=(0.1, 0.35, 0.25),
+    masses=(0.3, 0.5, 0.4),
+    frame=(0.3, 0.05),
+    rocker=1.5,
+    turned=(False, False),
+    pin=PIN,
+    **keywords,
 ):
     """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
     m = Mechanism("four_bar")
@@ -55,7 +66,13 @@ def four_bar(
     else:
         pin(m, "B", far, c.tip)
         m.revolute("C", ground, c)
-    return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
+    return Scene(
+        m,
+        {"O": MOTION},
+        posture={"c": rocker - math.pi if turned[1] else rocker},
+        t=(INSTANT, 1.0, 2),
+        **keywords,
+    )
 
 
 def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
@@ -92,7 +109,10 @@ def chain(*parts):
 def block(guide_of="ground"):
     """An offset slider-crank whose slider is a link, guided at an angle."""
     m = Mechanism("block")
-    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6)))
+    a, b, s = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6))
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, s)
@@ -113,9 +133,14 @@ def driven_slider():
 
 
 def inverted(block_carries):
-    """A block on the crank's pin slides along a rocker (RPR); either of the two carries the axis."""
+    """A block on the crank's pin slides along a rocker (RPR); either of
+    the two carries the axis.
+    """
     m = Mechanism("inverted")
-    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2)))
+    a, b, s = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2))
+    )
     m.revolute("O", m.ground, a)
     m.revolute("Q", m.ground.at(0, -0.3), b)
     m.revolute("A", a.tip, s)
@@ -127,9 +152,14 @@ def inverted(block_carries):
 
 
 def cross_slide():
-    """A pin on a crank moves two slides at right angles (PRP): no branch, two equations for two slides."""
+    """A pin on a crank moves two slides at right angles (PRP): no branch, two equations for two
+    slides.
+    """
     m = Mechanism("cross_slide")
-    a, x, y = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("x", 0.2, 0.5), ("y", 0.05, 0.2)))
+    a, x, y = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.1, 0.3), ("x", 0.2, 0.5), ("y", 0.05, 0.2))
+    )
     m.revolute("O", m.ground, a)
     m.prismatic("X", m.ground, x, axis=(1, 0))
     m.prismatic("Y", x, y, axis=(0, 1), angle=0.2)
@@ -140,7 +170,10 @@ def cross_slide():
 def six_bar():
     """A four-bar whose rocker's pin drives a slider: two loops, one after the other."""
     m = Mechanism("six_bar")
-    a, b, c, d = (m.link(n, length=l, mass=w) for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True))
+    a, b, c, d = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True)
+    )
     s = m.point_mass("s", 0.6)
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
@@ -153,7 +186,9 @@ def six_bar():
 
 
 def truss_platform(loads=lambda m: None):
-    """A triangle of three bars on three legs, one leg's foot driven: no dyad anywhere, six unknown directions at once."""
+    """A triangle of three bars on three legs, one leg's foot driven: no dyad anywhere, six unknown
+    directions at once.
+    """
     m = Mechanism("truss_platform")
     feet = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.7)]
     corners = [(0.2, 0.2), (0.4, 0.2), (0.3, 0.4)]
@@ -176,7 +211,9 @@ def truss_platform(loads=lambda m: None):
 
 
 def ladder(length=1.0, mass=2.0):
-    """Its foot on the floor, its tip on the wall, its middle in the slot of a driven crank without mass."""
+    """Its foot on the floor, its tip on the wall, its middle in the slot of a driven crank without
+    mass.
+    """
     m = Mechanism("ladder")
     crank, bar = m.link("crank", length=0.8, mass=0.0), m.link("bar", length=length, mass=mass)
     foot, tip, middle = (m.point_mass(name, 0.0) for name in ("foot", "tip", "middle"))
@@ -187,11 +224,16 @@ def ladder(length=1.0, mass=2.0):
     m.prismatic("wall", m.ground, tip, axis=(0, 1))
     m.revolute("M", bar.at(length / 2), middle)
     m.slot("slot", crank, middle)
-    return Scene(m, {"O": polynomial(0.5, 0.2)}, t=(0, 3, 31), posture={"bar": math.pi - 0.5, "floor": 0.8})
+    return Scene(
+        m, {"O": polynomial(0.5, 0.2)}, t=(0, 3, 31), posture={"bar": math.pi - 0.5, "floor": 0.8}
+    )
 
 
 def parallelogram(third=1.0, pendulum=False):
-    """Three equal cranks on one coupler: one of them is too many. The third is off the line of the others, so none is dead."""
+    """Three equal cranks on one coupler: one of them is too many.
+
+    The third is off the line of the others, so none is dead.
+    """
     m = Mechanism("three_cranks")
     a, b, c = (m.link(n, length=0.2, mass=0.3) for n in "abc")
     bar = m.link("bar", length=1.0, mass=1.0)
@@ -210,7 +252,11 @@ def parallelogram(third=1.0, pendulum=False):
 
 def flat_parallelogram():
     m = Mechanism("parallelogram")
-    a, b, c = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.2, mass=1.0)
+    a, b, c = (
+        m.link("a", length=0.2, mass=1.0),
+        m.link("b", length=0.5, mass=1.0),
+        m.link("c", length=0.2, mass=1.0),
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
@@ -219,7 +265,9 @@ def flat_parallelogram():
 
 
 def double_crank(step):
-    """A drag link whose second crank a gear counts, so that it is iterated; instants ``step`` radians of the drive apart."""
+    """A drag link whose second crank a gear counts, so that it is iterated; instants ``step``
+    radians of the drive apart.
+    """
     m = Mechanism("double_crank")
     a, b, c = (m.link(n, length=l, mass=1.0) for n, l in (("a", 0.3), ("b", 0.25), ("c", 0.35)))
     wheel = m.link("wheel", length=0.1, mass=0.1)
@@ -238,12 +286,16 @@ def spline_arm():
 
 
 def cam_lift(angle):
-    """A closed form for :func:`cam`: the lift [m] at an angle of the cam, of CasADi's or NumPy's numbers."""
+    """A closed form for :func:`cam`: the lift [m] at an angle of the cam, of CasADi's or NumPy's
+    numbers.
+    """
     return 0.004 * (1 - np.cos(angle)) + 0.0007 * np.sin(3 * angle)
 
 
 def cam(lift, motion=None, **keywords):
-    """A cam lifts a rod that is guided upright, against a spring that stiffens by a curve and a side force."""
+    """A cam lifts a rod that is guided upright, against a spring that stiffens by a curve and a
+    side force.
+    """
     m = Mechanism("cam")
     base = m.parameter("base", 0.03, "m", low=0.0)
     disc, rod = m.link("disc", length=0.03, mass=0.6), m.link("rod", length=0.1, mass=0.2)
@@ -266,10 +318,15 @@ def sampled_cam(count=73, **keywords):
 def bracket(reach=0.9):
     """A mass slides along a swinging arm, beyond its tip and before its base."""
     m = Mechanism("bracket")
-    arm, p = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0), m.point_mass("p", 2.0)
+    arm, p = (
+        m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0),
+        m.point_mass("p", 2.0),
+    )
     m.revolute("J", m.ground.at(0, 0), arm.at(0.1))
     m.prismatic("S", arm, p, axis=(1, 0))
-    return Scene(m, {"J": polynomial(0.2, 3.0, 4.0), "S": harmonic(0.25, reach, 1.0)}, t=(0.0, 1.0, 101))
+    return Scene(
+        m, {"J": polynomial(0.2, 3.0, 4.0), "S": harmonic(0.25, reach, 1.0)}, t=(0.0, 1.0, 101)
+    )
 
 
 DRAG_LINK = {"lengths": (0.3, 0.35, 0.32), "frame": (0.1, 0.0)}
@@ -278,16 +335,32 @@ STIFFNESS, FREE, DAMPING = 1.5, 0.2, 0.05
 
 
 def coil(m, joint):
-    m.torsion_spring(f"coil_{joint}", m.joints[joint], stiffness=STIFFNESS, angle=FREE, damping=DAMPING)
+    m.torsion_spring(
+        f"coil_{joint}", m.joints[joint], stiffness=STIFFNESS, angle=FREE, damping=DAMPING
+    )
 
 
 def sprung(
-    joints, lengths=(0.1, 0.35, 0.25), frame=(0.3, 0.05), rocker=1.5, law=None, span=2.0, count=101, parametric=False, pin=PIN
+    joints,
+    lengths=(0.1, 0.35, 0.25),
+    frame=(0.3, 0.05),
+    rocker=1.5,
+    law=None,
+    span=2.0,
+    count=101,
+    parametric=False,
+    pin=PIN,
 ):
     """A four-bar with springs on some of its undriven joints."""
     m = Mechanism("sprung")
-    sides = [m.parameter(n, l, "m") for n, l in zip("pqr", lengths, strict=True)] if parametric else lengths
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True))
+    sides = (
+        [m.parameter(n, l, "m") for n, l in zip("pqr", lengths, strict=True)]
+        if parametric
+        else lengths
+    )
+    a, b, c = (
+        m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     pin(m, "B", b.tip, c.tip)
@@ -317,7 +390,9 @@ def lobes(t):
 
 
 def counting(motion, load, **parameters):
-    """A driven crank with a load on its rod; ``load(m, angle)`` is a force on the slider along its guide."""
+    """A driven crank with a load on its rod; ``load(m, angle)`` is a force on the slider along its
+    guide.
+    """
     m = Mechanism("counting")
     symbols = {name: m.parameter(name, value) for name, value in parameters.items()}
     crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
@@ -342,9 +417,14 @@ def sampled(scale):
 
 
 def far(distance, load=0.0):
-    """A four-bar so far from the origin that places lose what is behind the point; under a load, or none."""
+    """A four-bar so far from the origin that places lose what is behind the point; under a load, or
+    none.
+    """
     m = Mechanism("far")
-    a, b, c = (m.link(name, length=length, mass=1.0) for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True))
+    a, b, c = (
+        m.link(name, length=length, mass=1.0)
+        for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True)
+    )
     m.revolute("O", m.ground.at(distance, 0), a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
@@ -368,22 +448,41 @@ PATTERNS = {
     "six_bar": six_bar,
     "chain_rrr": lambda: chain(("revolute", False), ("revolute", False), ("revolute", False)),
     "chain_reversed": lambda: chain(("revolute", True), ("revolute", True), ("revolute", False)),
-    "chain_prismatic": lambda: chain(("revolute", False), ("prismatic", False), ("revolute", False)),
-    "chain_prismatic_reversed": lambda: chain(("revolute", False), ("prismatic", True), ("revolute", True)),
+    "chain_prismatic": lambda: chain(
+        ("revolute", False), ("prismatic", False), ("revolute", False)
+    ),
+    "chain_prismatic_reversed": lambda: chain(
+        ("revolute", False), ("prismatic", True), ("revolute", True)
+    ),
 }
 
 
 def press(law=polynomial, wanted=("all",), pin=PIN, **keywords):
-    """A press whose speed is a parameter: ``law(0, w)`` gives the crank's motion, ``t`` and ``over`` may be functions of it."""
+    """A press whose speed is a parameter: ``law(0, w)`` gives the crank's motion, ``t`` and
+    ``over`` may be functions of it.
+    """
     m = Mechanism("press")
     rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
-    crank, rod, ram = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=length, mass=2.0), m.point_mass("ram", 15.0)
+    crank, rod, ram = (
+        m.link("crank", length=0.1, mass=1.2),
+        m.link("rod", length=length, mass=2.0),
+        m.point_mass("ram", 15.0),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
-    asked = {name: keywords.pop(name)(rpm) for name in ("t", "over") if callable(keywords.get(name))}
-    return Scene(m, {"O": law(0, rpm * math.tau / 60)}, wanted, posture={"rod": 1.5, "guide": 0.6}, **asked, **keywords)
+    asked = {
+        name: keywords.pop(name)(rpm) for name in ("t", "over") if callable(keywords.get(name))
+    }
+    return Scene(
+        m,
+        {"O": law(0, rpm * math.tau / 60)},
+        wanted,
+        posture={"rod": 1.5, "guide": 0.6},
+        **asked,
+        **keywords,
+    )
 
 
 def uneven(_, w):

@@ -1,12 +1,14 @@
 """An independent solution: vector Newton-Euler on free bodies in absolute coordinates.
 
-It imports nothing of the package. Every body has a place (x, y) and a direction; every joint is written as gaps between bodies;
-Newton's method finds the postures, and truncated power series in time (:mod:`jets`) give rates and accelerations. The forces
-are the unknowns of the balance of force and moment of every body, all solved at once; a section's forces are the balance of
-the piece towards the tip. It shares no formula with an energy method. The numbers are those of an :mod:`arithmetic`.
+It imports nothing of the package. Every body has a place (x, y) and a direction; every joint is
+written as gaps between bodies; Newton's method finds the postures, and truncated power series in
+time (:mod:`jets`) give rates and accelerations. The forces are the unknowns of the balance of force
+and moment of every body, all solved at once; a section's forces are the balance of the piece
+towards the tip. It shares no formula with an energy method. The numbers are those of an
+:mod:`arithmetic`.
 
-It also tells where there is no one answer: how far the slope of the gaps is from singular, and, by the null space of the balance,
-which forces equilibrium leaves open.
+It also tells where there is no one answer: how far the slope of the gaps is from singular, and, by
+the null space of the balance, which forces equilibrium leaves open.
 """
 
 from __future__ import annotations
@@ -36,7 +38,8 @@ class OpenLoopError(AssertionError):
 class Body:
     """A rigid body, or a point mass where ``oriented`` is false.
 
-    ``centre`` is in its axes and ``inertia`` about it; ``density`` (kg per unit of the ratio) and its ``breaks`` are for sections.
+    ``centre`` is in its axes and ``inertia`` about it; ``density`` (kg per unit of the ratio) and
+    its ``breaks`` are for sections.
     """
 
     name: str
@@ -49,7 +52,13 @@ class Body:
     breaks: tuple[float, ...] = (0.0, 1.0)
 
 
-def from_density(name: str, length: float, density: Callable[[float], float], breaks=(0.0, 1.0), arithmetic=DOUBLE) -> Body:
+def from_density(
+    name: str,
+    length: float,
+    density: Callable[[float], float],
+    breaks=(0.0, 1.0),
+    arithmetic=DOUBLE,
+) -> Body:
     """A straight body, its mass, centre and inertia by quadrature."""
     mass, first, second = _moments(arithmetic, density, breaks, 0.0)
     centre = first / mass if mass else 0.0
@@ -58,7 +67,9 @@ def from_density(name: str, length: float, density: Callable[[float], float], br
 
 
 def _moments(arithmetic, density, breaks, start):
-    """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each smooth piece."""
+    """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each
+    smooth piece.
+    """
     nodes, weights = arithmetic.gauss
     total = arithmetic.zeros(3)
     for a, b in itertools.pairwise(breaks):
@@ -88,9 +99,11 @@ class Joint:
 
 @dataclass(frozen=True)
 class Extra:
-    """Something else that holds: ``gap(place)`` of jets (None for a non-holonomic row), and what a unit of its force does.
+    """Something else that holds: ``gap(place)`` of jets (None for a non-holonomic row), and what a
+    unit of its force does.
 
-    ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier; None for what only says where something goes.
+    ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier; None for what only says where
+    something goes.
     """
 
     name: str
@@ -100,12 +113,14 @@ class Extra:
 
 @dataclass
 class Result:
-    """Everything at one instant; ``reactions`` are (fx, fy, mz) of the parent on the child, mz about the child's point.
+    """Everything at one instant; ``reactions`` are (fx, fy, mz) of the parent on the child, mz
+    about the child's point.
 
-    ``steadiness`` is the least singular value of the gaps' slope, its rows of length one: about the sine of a transmission angle;
-    ``softest`` is that slope, and its singular vectors there. ``open`` names what equilibrium leaves open, ``open_sections`` tells
-    it of a link's forces at a ratio; ``vague`` where a singular value of either is neither zero nor clearly another number. They
-    are known in doubles only.
+    ``steadiness`` is the least singular value of the gaps' slope, its rows of length one: about the
+    sine of a transmission angle; ``softest`` is that slope, and its singular vectors there.
+    ``open`` names what equilibrium leaves open, ``open_sections`` tells it of a link's forces at a
+    ratio; ``vague`` where a singular value of either is neither zero nor clearly another number.
+    They are known in doubles only.
     """
 
     q: dict[str, tuple[Jet, Jet, Jet]]
@@ -123,10 +138,11 @@ class Result:
 
 @dataclass(frozen=True)
 class Oracle:
-    """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz) from a posture, ``spreads`` those
-    along bodies.
+    """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz)
+    from a posture, ``spreads`` those along bodies.
 
-    ``unaided`` are driven joints that bear no effort; ``pushed`` the joints that do, where these are not the driven ones.
+    ``unaided`` are driven joints that bear no effort; ``pushed`` the joints that do, where these
+    are not the driven ones.
     """
 
     bodies: Sequence[Body]
@@ -139,17 +155,29 @@ class Oracle:
     pushed: Sequence[str] | None = None
     spreads: Sequence[Callable] = ()
 
-    def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
-        """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""
+    def solve(
+        self,
+        drives: dict[str, tuple[float, float, float]],
+        guess: dict[str, tuple[float, float, float]],
+    ) -> Result:
+        """The instant at which the driven joints have the given (coordinate, rate, acceleration),
+        from a rough posture.
+        """
         drives = self._numbers(drives)
         result = self.move(drives, guess)
         self.balance(result, drives)
         return result
 
     def move(
-        self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]], steps: int = 50
+        self,
+        drives: dict[str, tuple[float, float, float]],
+        guess: dict[str, tuple[float, float, float]],
+        steps: int = 50,
     ) -> Result:
-        """The motion alone. Raises :class:`OpenLoopError` where Newton's method closes nothing in so many steps."""
+        """The motion alone.
+
+        Raises :class:`OpenLoopError` where Newton's method closes nothing in so many steps.
+        """
         names, a, drives = [b.name for b in self.bodies], self.arithmetic, self._numbers(drives)
         q = a.array([a.number(x) for n in names for x in guess[n]])
         rest, left = np.zeros_like(q), None
@@ -160,7 +188,9 @@ class Oracle:
             step = a.solve(slope, -self.gaps(q, rest, drives)[0], _LEAST)
             q, before = q + step, left
             left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
-            if left < a.tolerance * size or (before is not None and before / 2 < left < 1000 * a.tolerance * size):
+            if left < a.tolerance * size or (
+                before is not None and before / 2 < left < 1000 * a.tolerance * size
+            ):
                 break
         left = max(left, np.max(np.abs(self.gaps(q, rest, drives)[0]), initial=0.0))
         if not left < 1000 * a.tolerance * size:
@@ -174,12 +204,17 @@ class Oracle:
             scaled = self.scaled(slope)
             left, values, right = np.linalg.svd(scaled, full_matrices=False)
             if scaled.shape[0] >= scaled.shape[1]:
-                result.steadiness, result.vague = float(values[-1]), bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
+                result.steadiness, result.vague = (
+                    float(values[-1]),
+                    bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1]))),
+                )
                 result.softest = (scaled, left[:, -1], right[-1])
         return result
 
     def scaled(self, slope):
-        """The gaps' slope by places in units of the mechanism's size and by angles, its rows of length one."""
+        """The gaps' slope by places in units of the mechanism's size and by angles, its rows of
+        length one.
+        """
         scaled = slope * np.tile([self.size, self.size, 1.0], len(self.bodies))
         return scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
 
@@ -190,14 +225,18 @@ class Oracle:
 
     @property
     def size(self) -> float:
-        """The longest body's length, by which places and angles, forces and moments are compared."""
+        """The longest body's length, by which places and angles, forces
+        and moments are compared.
+        """
         return max((float(b.length) for b in self.bodies), default=0.0) or 1.0
 
     def _numbers(self, drives):
         return {joint: tuple(map(self.arithmetic.number, drive)) for joint, drive in drives.items()}
 
     def frames(self, q):
-        """Of every body, and the ground, the place of its base, its direction, and the direction's cosine and sine."""
+        """Of every body, and the ground, the place of its base, its direction, and the direction's
+        cosine and sine.
+        """
         zero, one = self.arithmetic.number(0), self.arithmetic.number(1)
         frames = {"ground": (Jet(zero), Jet(zero), Jet(zero), Jet(one), Jet(zero))}
         for name, (x, y, phi) in q.items():
@@ -226,27 +265,44 @@ class Oracle:
         return gaps
 
     def gaps(self, q, rate, drives):
-        """Gaps with their first and second derivative, all accelerations of q at zero: (3, gaps)."""
-        found = self._gap_jets([Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)], drives)
+        """Gaps with their first and second derivative, all accelerations of q
+        at zero: (3, gaps).
+        """
+        found = self._gap_jets(
+            [Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)], drives
+        )
         return self.arithmetic.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
 
     def slope(self, q, drives):
         """Slope of the gaps by q."""
         still = {joint: (coordinate, 0, 0) for joint, (coordinate, *_) in drives.items()}
         rest = self.gaps(q, np.zeros_like(q), still)[1]
-        along = self._gap_jets([Jet(x, row) for x, row in zip(q, np.eye(q.size, dtype=q.dtype), strict=True)], still)
-        return np.array([np.broadcast_to(g.d, q.size) - x for g, x in zip(along, rest, strict=True)]).reshape(-1, q.size)
+        along = self._gap_jets(
+            [Jet(x, row) for x, row in zip(q, np.eye(q.size, dtype=q.dtype), strict=True)], still
+        )
+        return np.array(
+            [np.broadcast_to(g.d, q.size) - x for g, x in zip(along, rest, strict=True)]
+        ).reshape(-1, q.size)
 
     def _gap_jets(self, jets, drives):
-        frames = self.frames({b.name: tuple(jets[3 * i : 3 * i + 3]) for i, b in enumerate(self.bodies)})
+        frames = self.frames(
+            {b.name: tuple(jets[3 * i : 3 * i + 3]) for i, b in enumerate(self.bodies)}
+        )
         found = [g for j in self.joints for g in self._joint_gaps(frames, j, drives)]
-        found += [extra.gap(lambda point: place_in(frames, point)) for extra in self.extras if extra.gap]
+        found += [
+            extra.gap(lambda point: place_in(frames, point)) for extra in self.extras if extra.gap
+        ]
         return found + [frames[b.name][2] for b in self.bodies if not b.oriented]
 
     def balance(self, result, drives):
-        """Force and moment balance of every body, for all joint forces, efforts and multipliers together."""
+        """Force and moment balance of every body, for all joint forces, efforts and multipliers
+        together.
+        """
         frames, place = self.frames(result.q), self.places(result)
-        labels, unknowns = [], []  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
+        labels, unknowns = (
+            [],
+            [],
+        )  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
 
         def pair(joint, label, force, moment):
             at = joint.child
@@ -262,27 +318,52 @@ class Oracle:
                 pair(joint, "reaction", force, 0.0)
             if self._holds_direction(joint):
                 pair(joint, "reaction", (0.0, 0.0), 1.0)
-            if joint.name in (drives if self.pushed is None else self.pushed) and joint.name not in self.unaided:
-                pair(joint, "effort", (ax, ay) if joint.slides else (0.0, 0.0), 0.0 if joint.slides else 1.0)
+            if (
+                joint.name in (drives if self.pushed is None else self.pushed)
+                and joint.name not in self.unaided
+            ):
+                pair(
+                    joint,
+                    "effort",
+                    (ax, ay) if joint.slides else (0.0, 0.0),
+                    0.0 if joint.slides else 1.0,
+                )
         for extra in (extra for extra in self.extras if extra.effect):
             labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))
             unknowns.append(extra.effect(place))
-        given, spread = ([part for load in loads for part in load(place)] for loads in (self.loads, self.spreads))
+        given, spread = (
+            [part for load in loads for part in load(place)] for loads in (self.loads, self.spreads)
+        )
         matrix = np.column_stack([self._on_bodies(frames, parts) for parts in unknowns])
         inertia = []
         for b in self.bodies:
             cx, cy, phi = place_in(frames, (b.name, *b.centre))
-            inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), b.inertia * phi.a]
-        right = self.arithmetic.array(inertia) - self._on_bodies(frames, given + forces(spread, self.arithmetic))
+            inertia += [
+                b.mass * (cx.a - self.gravity[0]),
+                b.mass * (cy.a - self.gravity[1]),
+                b.inertia * phi.a,
+            ]
+        right = self.arithmetic.array(inertia) - self._on_bodies(
+            frames, given + forces(spread, self.arithmetic)
+        )
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
         found = self.arithmetic.solve(matrix, right, 1e-11)
-        left, size = np.max(np.abs(matrix @ found - right)), np.max(np.abs(right)) + np.max(np.abs(found))
-        assert left <= 1000 * self.arithmetic.tolerance * size, "the oracle's forces do not balance its bodies"
+        left, size = (
+            np.max(np.abs(matrix @ found - right)),
+            np.max(np.abs(right)) + np.max(np.abs(found)),
+        )
+        assert left <= 1000 * self.arithmetic.tolerance * size, (
+            "the oracle's forces do not balance its bodies"
+        )
         for (name, label, (fx, fy, mz)), x in zip(labels, found, strict=True):
             if label == "reaction":
                 before = result.reactions.get(name, (0.0, 0.0, 0.0))
-                result.reactions[name] = (before[0] + x * fx, before[1] + x * fy, before[2] + x * mz)
+                result.reactions[name] = (
+                    before[0] + x * fx,
+                    before[1] + x * fy,
+                    before[2] + x * mz,
+                )
             else:
                 (result.efforts if label == "effort" else result.multipliers)[name] = x
         acting = _times(unknowns, found)
@@ -294,7 +375,9 @@ class Oracle:
             self._find_open(result, frames, labels, unknowns, matrix / scales)
 
     def _find_open(self, result, frames, labels, unknowns, matrix):
-        """What the null space of the balance changes: forces and moments that hold each other, whatever is given."""
+        """What the null space of the balance changes: forces and moments that hold each other,
+        whatever is given.
+        """
         lengths = np.linalg.norm(matrix, axis=0)
         lengths[lengths == 0.0] = 1.0
         _, values, basis = np.linalg.svd(matrix / lengths)
@@ -303,14 +386,18 @@ class Oracle:
         null = (basis[values < _LEAST] / lengths).T
         own: dict[str, np.ndarray] = {}
         for (name, label, parts), row in zip(labels, null, strict=True):
-            for member, part in zip(FORCES, parts, strict=True) if label == "reaction" else [("", 1.0)]:
+            for member, part in (
+                zip(FORCES, parts, strict=True) if label == "reaction" else [("", 1.0)]
+            ):
                 full = f"{label}:{name}:{member}".rstrip(":")
                 own[full] = own.get(full, 0.0) + row * part / (self.size if member == "mz" else 1.0)
         result.open = {name for name, row in own.items() if np.linalg.norm(row) > _OPEN}
         alone = [_times(unknowns, column) for column in null.T]
         for b in self.bodies:
             if b.density is not None:
-                result.open_sections[b.name] = self._open_section([self._section(frames, b, parts, weight=0) for parts in alone])
+                result.open_sections[b.name] = self._open_section(
+                    [self._section(frames, b, parts, weight=0) for parts in alone]
+                )
 
     def _open_section(self, laws):
         def at(ratio: float) -> tuple[bool, ...]:
@@ -333,20 +420,31 @@ class Oracle:
         return stacked
 
     def _section(self, frames, body, acting, spread=(), weight=1):
-        """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l.
+        """Action of the piece towards the tip on the piece towards the base: (axial, shear,
+        bending) at a ratio xi/l.
 
         With no ``weight`` the piece's own matter is left out.
         """
 
         def at(ratio: float) -> tuple[float, float, float]:
-            ratio, l, near = self.arithmetic.number(ratio), body.length, 100 * self.arithmetic.tolerance * body.length
+            ratio, l, near = (
+                self.arithmetic.number(ratio),
+                body.length,
+                100 * self.arithmetic.tolerance * body.length,
+            )
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
             cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
             # At the very tip of the link what acts there still acts beyond the section.
             own = [p for p in acting if p[0][0] == body.name]
-            seen = [p for p in own if p[0][1] > ratio * l + near or (ratio == 1 and abs(p[0][1] - l) < near)]
-            for place, gx, gy, couple in seen + forces(spread, self.arithmetic, body.name, ratio * l):
+            seen = [
+                p
+                for p in own
+                if p[0][1] > ratio * l + near or (ratio == 1 and abs(p[0][1] - l) < near)
+            ]
+            for place, gx, gy, couple in seen + forces(
+                spread, self.arithmetic, body.name, ratio * l
+            ):
                 point = place_in(frames, place)
                 arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
                 fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
@@ -354,7 +452,10 @@ class Oracle:
             if mass and weight:
                 middle = first / mass
                 centre = place_in(frames, (body.name, middle * l, 0.0))
-                gx, gy = mass * (self.gravity[0] - centre[0].a), mass * (self.gravity[1] - centre[1].a)
+                gx, gy = (
+                    mass * (self.gravity[0] - centre[0].a),
+                    mass * (self.gravity[1] - centre[1].a),
+                )
                 arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
                 fx, fy = fx + gx, fy + gy
                 mz += arm[0] * gy - arm[1] * gx - (second - first * middle) * l**2 * phi.a
@@ -364,7 +465,9 @@ class Oracle:
 
 
 def passed(before: Result, after: Result) -> bool:
-    """Whether the least singular value of the gaps' slope, with its sign, went through zero from one motion to the next."""
+    """Whether the least singular value of the gaps' slope, with its sign, went through zero from
+    one motion to the next.
+    """
     if before.softest is None or after.softest is None:
         return False
     (_, left, right), (slope, *_) = before.softest, after.softest
@@ -373,7 +476,11 @@ def passed(before: Result, after: Result) -> bool:
 
 def _times(unknowns, values):
     """What unknowns do at points, for values of them."""
-    return [(p, x * fx, x * fy, x * mz) for parts, x in zip(unknowns, values, strict=True) for p, fx, fy, mz in parts]
+    return [
+        (p, x * fx, x * fy, x * mz)
+        for parts, x in zip(unknowns, values, strict=True)
+        for p, fx, fy, mz in parts
+    ]
 
 
 def place_in(frames, point):

@@ -1,4 +1,6 @@
-"""A packaging machine as a case's text, and its ``scene``: it dwells, its guide rubs and its rod has a beam."""
+"""A packaging machine as a case's text, and its ``scene``: it dwells, its guide rubs and its rod
+has a beam.
+"""
 
 CASE = """
 from lagrange_casadi import Mechanism, Scene, beams
@@ -20,7 +22,7 @@ def scene(rest=0.2, way=1.5, count=61):
     wanted = ["effort", "motion", "reaction", "friction", "load", "safety:rod", "life:rod", "stress:rod"]
     law = moves(steps, start=0.4, cyclic=True)
     return Scene(m, {"O": law}, wanted, t=(0, 0.6 + 2 * rest, count), xi=(0, 1, 5), posture={"rod": 0.0})
-"""
+"""  # noqa: E501
 space: dict = {}
 exec(CASE, space)
 scene = space["scene"]

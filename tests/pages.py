@@ -1,4 +1,5 @@
-"""``python -m tests.pages FOLDER``: pictures of the pages of four cases and of a sweep, to be looked at.
+"""``python -m tests.pages FOLDER``: pictures of the pages of four cases and of a sweep, to be
+looked at.
 
 Each page is there at two sizes of window, light and dark, and on A4 and letter as a PDF.
 """
@@ -37,7 +38,9 @@ def written(folder):
 
 
 def taken(folder):
-    """Open each page in each way, and take its picture; complaints of the browser end the program."""
+    """Open each page in each way, and take its picture; complaints of
+    the browser end the program.
+    """
     with browser.Browser() as one:
         for page in written(folder):
             for scheme in ("light", "dark"):

@@ -1,4 +1,6 @@
-"""A case with every number of its declaration a parameter, so that none is folded into a rounded constant of its graphs."""
+"""A case with every number of its declaration a parameter, so that none is folded into a rounded
+constant of its graphs.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +19,19 @@ _RELATIVE = 1e-15
 
 
 def declared(path):
-    """The scene of a case; lengths, masses, densities, places, angles and gravity are parameters with the case's values."""
+    """The scene of a case; lengths, masses, densities, places, angles and gravity are parameters
+    with the case's values.
+    """
     count, made = itertools.count(), []
 
     def free(x):
         if isinstance(x, tuple):
             return tuple(free(part) for part in x)
-        return made[-1].parameter(f"number{next(count)}", float(x)) if isinstance(x, int | float) and x else x
+        return (
+            made[-1].parameter(f"number{next(count)}", float(x))
+            if isinstance(x, int | float) and x
+            else x
+        )
 
     def gravity(mechanism, *, begin=Mechanism.__post_init__):
         begin(mechanism)
@@ -33,9 +41,13 @@ def declared(path):
     def link(mechanism, name, *, density=None, declare=Mechanism.link, **numbers):
         if density is not None:
             density = replace(density, cells=free(density.cells))
-        return declare(mechanism, name, density=density, **{word: free(x) for word, x in numbers.items()})
+        return declare(
+            mechanism, name, density=density, **{word: free(x) for word, x in numbers.items()}
+        )
 
-    def joint(mechanism, name, kind, parent, child, axis=None, angle=0.0, *, declare=Mechanism._joint):
+    def joint(
+        mechanism, name, kind, parent, child, axis=None, angle=0.0, *, declare=Mechanism._joint
+    ):
         return declare(mechanism, name, kind, parent, child, axis, free(angle))
 
     def friction(mechanism, name, joint, *, declare=Mechanism.friction, **numbers):
@@ -46,21 +58,30 @@ def declared(path):
         patch.setattr(Mechanism, "link", link)
         patch.setattr(Mechanism, "_joint", joint)
         patch.setattr(Mechanism, "friction", friction)
-        patch.setattr(Mechanism, "point_mass", lambda m, name, mass, declare=Mechanism.point_mass: declare(m, name, free(mass)))
+        patch.setattr(
+            Mechanism,
+            "point_mass",
+            lambda m, name, mass, declare=Mechanism.point_mass: declare(m, name, free(mass)),
+        )
         patch.setattr(Ground, "at", lambda body, x, y, at=Ground.at: at(body, free(x), free(y)))
         patch.setattr(Link, "at", lambda body, x, y=0.0, at=Link.at: at(body, free(x), free(y)))
         return load_case(path).scene
 
 
 def meant(number):
-    """What a constant of a graph stands for, a function of doubles: a fraction, or one of the double nearest to pi, or a double.
+    """What a constant of a graph stands for, a function of doubles: a fraction, or one of the
+    double nearest to pi, or a double.
 
     Slopes of a table, moments of a density and the like are fractions of small numbers, rounded.
     """
 
     def constant(x):
         for part, pi in ((x, 1), (x / math.pi, math.pi), (x * math.pi, 1 / number(math.pi))):
-            near = Fraction(part).limit_denominator(_DENOMINATOR) if math.isfinite(part) else Fraction(0)
+            near = (
+                Fraction(part).limit_denominator(_DENOMINATOR)
+                if math.isfinite(part)
+                else Fraction(0)
+            )
             if near and abs(float(near) - part) <= _RELATIVE * abs(part):
                 return number(near.numerator) / near.denominator * pi
         return number(x)

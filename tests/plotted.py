@@ -10,7 +10,10 @@ from lagrange_casadi.studies.sweep import Listed, Sweep, sweep
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
-CLOSED, REACH = "the iterated loops did not converge", "no result: the iterated loops did not converge"
+CLOSED, REACH = (
+    "the iterated loops did not converge",
+    "no result: the iterated loops did not converge",
+)
 
 
 def rewritten(found, name, change):
@@ -43,5 +46,7 @@ def grid_of(monkeypatch, tmp_path):
 def list_of(monkeypatch, tmp_path):
     """A list of fifty designs, swept likewise."""
     sweeps.use(monkeypatch)
-    rows = np.column_stack([np.random.default_rng(3).uniform(0.1, 0.3, (50, 2)), np.repeat([0.1, 0.2], 25)])
+    rows = np.column_stack(
+        [np.random.default_rng(3).uniform(0.1, 0.3, (50, 2)), np.repeat([0.1, 0.2], 25)]
+    )
     return sweep(sweeps.scene(), Listed(("l", "r", "m1"), rows), out=tmp_path / "y.h5")

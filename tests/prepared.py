@@ -24,12 +24,24 @@ SET    printf("%d\\n", (int) @_prepare(&model, &parameters));
 
 def prepared(scene, values, folder):
     made = export(scene, folder)
-    rows = ", ".join("{" + ", ".join(f"{float(x)!r}" for x in np.atleast_1d(row)) + "}" for row in values)
-    members = "".join(f"    parameters.{name} = values[k][{i}];\n" for i, name in enumerate(scene.mechanism.parameters))
-    text = PREPARED.replace("COUNT", str(len(scene.mechanism.parameters))).replace("VALUES", rows).replace("SET", members)
+    rows = ", ".join(
+        "{" + ", ".join(f"{float(x)!r}" for x in np.atleast_1d(row)) + "}" for row in values
+    )
+    members = "".join(
+        f"    parameters.{name} = values[k][{i}];\n"
+        for i, name in enumerate(scene.mechanism.parameters)
+    )
+    text = (
+        PREPARED.replace("COUNT", str(len(scene.mechanism.parameters)))
+        .replace("VALUES", rows)
+        .replace("SET", members)
+    )
     (folder / "harness.c").write_text(text.replace("@", made.prefix))
     result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
     assert result.returncode == 0, result.stderr
     return [
-        int(line) == 0 for line in subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.split()
+        int(line) == 0
+        for line in subprocess.run(
+            [folder / "program"], capture_output=True, text=True, check=True
+        ).stdout.split()
     ]

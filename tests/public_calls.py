@@ -62,7 +62,9 @@ def solved() -> SimpleNamespace:
         stress=solution.stress("arm"),
         prepared=prepare(scene, wanted=["effort"], backend="vm"),
         sensitivities=sensitivities(scene, solution, backend="vm"),
-        swept=sweep(scene, {"l": (0.2, 0.3, 2)}, wanted=["effort"], backend="vm", out="swept.h5", workers=1),
+        swept=sweep(
+            scene, {"l": (0.2, 0.3, 2)}, wanted=["effort"], backend="vm", out="swept.h5", workers=1
+        ),
         plane=plane(),
     )
 
@@ -88,7 +90,14 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "tool_deflection": {"scene": scene, "point": scene.mechanism.links["arm"].tip},
         "vibration": {"solution": solution, "link": "arm"},
         "sweep": {**lean, "grid": one, "out": "made.h5", "force": True, "workers": 1},
-        "optimise": {**bare, "minimise": "l", "over": {"l": (0.2, 0.3)}, "starts": 1, "screen": 2, "points": 2},
+        "optimise": {
+            **bare,
+            "minimise": "l",
+            "over": {"l": (0.2, 0.3)},
+            "starts": 1,
+            "screen": 2,
+            "points": 2,
+        },
         "best": {"sweep": swept, "minimise": "l"},
         "read_designs": {"path": "designs.csv"},
         "load": {"path": "run.h5"},
@@ -106,7 +115,13 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     }.items():
         yield f"peaks.{name}", (getattr(peaks, name), given)
     size = importlib.import_module("lagrange_casadi.studies.sizing").size
-    yield "size", (size, {"scene": sized(), "profiles": [beams.Profile("p", {"height": 0.03, "width": 0.01})]})
+    yield (
+        "size",
+        (
+            size,
+            {"scene": sized(), "profiles": [beams.Profile("p", {"height": 0.03, "width": 0.01})]},
+        ),
+    )
     for name, given in {
         "animate": {"path": "cycle.svg"},
         "array": {"name": "effort:O"},
@@ -135,7 +150,10 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
     yield "Scene.values", (scene.values, {"parameters": {"l": 0.5}})
     yield "Scene.wants", (scene.wants, {"names": ["effort"]})
     yield "Scene.giving", (scene.giving, {"elastic": True})
-    yield "Deflection.at", (solution.deflection("arm").at, {"name": solution.deflection("arm").names[0], "u": 0.5})
+    yield (
+        "Deflection.at",
+        (solution.deflection("arm").at, {"name": solution.deflection("arm").names[0], "u": 0.5}),
+    )
     for name, given in {
         "at": {"xi": 0.5},
         "fibres": {"xi": 0.5},
@@ -196,7 +214,10 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
         "inertia_at": {"scene": scene, "joint": "O"},
         "judge": {"motor": of.motor, "duty": of.duty},
         "plot_duty": {"duty": of.duty, "path": "duty.png"},
-        "select": {"motors": [of.motor], "duty": lambda ratio, inertia: actuators.duty_of(**held, ratio=ratio, inertia=inertia)},
+        "select": {
+            "motors": [of.motor],
+            "duty": lambda ratio, inertia: actuators.duty_of(**held, ratio=ratio, inertia=inertia),
+        },
     }.items():
         yield name, (getattr(actuators, name), given)
     yield "Motor.at_most", (of.motor.at_most, {"speed": 10.0})
@@ -211,11 +232,18 @@ def uses(of: SimpleNamespace) -> Iterator[tuple[str, Call]]:
 def files() -> None:
     """Put what calls read into this folder."""
     for name, text in {
-        "profile.csv": "x,y\n" + "\n".join(f"{0.05 * np.cos(a):.6f},{0.05 * np.sin(a):.6f}" for a in np.linspace(0.0, 6.0, 20)),
+        "profile.csv": (
+            "x,y\n"
+            + "\n".join(
+                f"{0.05 * np.cos(a):.6f},{0.05 * np.sin(a):.6f}" for a in np.linspace(0.0, 6.0, 20)
+            )
+        ),
         "samples.csv": "0,0\n1,1\n2,0\n3,1\n4,0\n5,1\n",
         "profiles.csv": "name,height,width\nflat,0.03,0.01\n",
         "designs.csv": "l\n0.2\n0.3\n",
-        "motors.csv": "name,stall_torque,rated_torque,peak_torque,rated_speed,max_speed,inertia\nM,9,8,20,1000,2000,1e-5\n",
+        "motors.csv": (
+            "name,stall_torque,rated_torque,peak_torque,rated_speed,max_speed,inertia\nM,9,8,20,1000,2000,1e-5\n"
+        ),
     }.items():
         Path(name).write_text(text)
 

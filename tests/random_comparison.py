@@ -1,9 +1,11 @@
 """A solution beside the oracle, at some of its instants.
 
-A quantity is right within 1e-9 of its peak over the instants looked at, or of a thousandth of the largest of its kind. Rounding is
-``64 eps / s^2`` of the largest of its kind, with s the least singular value of the loops' slope (its steadiness): a posture is off
-by eps / s, and that changes s itself by the part eps / s^2. Where that is more, as near a dead centre, so much is right; where s is
-below 1e-6 nothing is judged. What a load magnifies is found by trial: see :meth:`Comparison._blur`.
+A quantity is right within 1e-9 of its peak over the instants looked at, or of a thousandth of the
+largest of its kind. Rounding is ``64 eps / s^2`` of the largest of its kind, with s the least
+singular value of the loops' slope (its steadiness): a posture is off by eps / s, and that changes s
+itself by the part eps / s^2. Where that is more, as near a dead centre, so much is right; where s
+is below 1e-6 nothing is judged. What a load magnifies is found by trial: see
+:meth:`Comparison._blur`.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ _BESIDE, _AT_STATION = 2e-3, 1e-5
 
 @dataclass(frozen=True, eq=False)
 class _Gap:
-    """How far a quantity is off at an instant, its value, the part that is rounding there, and the instant's solution."""
+    """How far a quantity is off at an instant, its value, the part that is rounding there, and the
+    instant's solution.
+    """
 
     t: float
     gap: float
@@ -60,21 +64,37 @@ def _open(exact: oracle.Result, name: str) -> bool:
 
 
 class Comparison:
-    """A solution beside the oracle; a quantity may also be off by ``claims`` times what the solution says it may be."""
+    """A solution beside the oracle; a quantity may also be off by ``claims`` times what the
+    solution says it may be.
+    """
 
-    def __init__(self, drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0) -> None:
-        self.drawn, self.d, self.solution, self.tolerance, self.claims = drawn, drawn.draft, solution, tolerance, claims
+    def __init__(
+        self, drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0
+    ) -> None:
+        self.drawn, self.d, self.solution, self.tolerance, self.claims = (
+            drawn,
+            drawn.draft,
+            solution,
+            tolerance,
+            claims,
+        )
         self.rng = np.random.default_rng(drawn.seed)
         self.notes: list[str] = []
         self.faults: list[str] = []
         self.found: dict[str, list[_Gap]] = collections.defaultdict(list)
-        self.withheld: dict[str, list[bool]] = collections.defaultdict(list)  # whether each value is open indeed
-        self.angles = {f"motion:{name}" for name, joint in self.d.joints.items() if not joint.slides}
+        self.withheld: dict[str, list[bool]] = collections.defaultdict(
+            list
+        )  # whether each value is open indeed
+        self.angles = {
+            f"motion:{name}" for name, joint in self.d.joints.items() if not joint.slides
+        }
         self.units: dict[str, float] = {}  # the force of a unit multiplier
         self.size = self.d.oracle(self.d.start).size
 
     def look(self) -> None:
-        """Fill ``faults``, what is wrong, and ``notes``, what is doubtful: the first fault tells most."""
+        """Fill ``faults``, what is wrong, and ``notes``, what is doubtful: the first fault tells
+        most.
+        """
         path = self._path()
         if path is None:
             return
@@ -97,7 +117,9 @@ class Comparison:
     # Motion
 
     def poses(self, i: int, near) -> dict[str, tuple[float, float, float]]:
-        """What the solution says of the bodies' places, its angles with the turns that make them nearest to others."""
+        """What the solution says of the bodies' places, its angles with the turns that make them
+        nearest to others.
+        """
         found = {}
         for name, body in self.d.bodies.items():
             x, y = (float(self.solution.series[f"pose:{name}:{k}"][i]) for k in "xy")
@@ -106,13 +128,16 @@ class Comparison:
         return found
 
     def _path(self) -> Path | None:
-        """The oracle's path, or the one from the posture in which the solution begins, where that is another."""
+        """The oracle's path, or the one from the posture in which the solution begins, where that
+        is another.
+        """
         path, t = self.drawn.path, float(self.solution.t[0])
         if not path.times or path.end < t:
             gap = self._gap(t, self.poses(0, self.d.poses))
             if gap > 1e-6 * self.size:
                 self.faults.append(
-                    f"the oracle closes its loops up to t = {path.end:g} s only; a gap of {gap:.3g} is left in the solution"
+                    f"the oracle closes its loops up to t = {path.end:g} s only; a gap of {gap:.3g}"
+                    " is left in the solution"
                 )
             return None
         near = path.near(t)
@@ -123,7 +148,10 @@ class Comparison:
             return path
         gap = self._gap(t, poses)
         if gap > 1e-6 * self.size:
-            self.faults.append(f"at t = {t:g} s a gap of {gap:.3g} is left between bodies, the posture is off by {off:.3g}")
+            self.faults.append(
+                f"at t = {t:g} s a gap of {gap:.3g} is left between bodies, the posture is off by"
+                f" {off:.3g}"
+            )
             return None
         self.notes.append(f"another assembly than the posture's, off by {off:.3g}")
         other = follow(self.d, float(self.solution.t[-1]), 0.1, t, self._unwound(t, poses))
@@ -132,7 +160,11 @@ class Comparison:
     def _off(self, poses, exact) -> float:
         """How far poses are from exact ones, in sizes and radians."""
         scales = (self.size, self.size, 1.0)
-        gaps = [abs(a - b.v) / s for name, q in exact.q.items() for a, b, s in zip(poses[name], q, scales, strict=True)]
+        gaps = [
+            abs(a - b.v) / s
+            for name, q in exact.q.items()
+            for a, b, s in zip(poses[name], q, scales, strict=True)
+        ]
         return float(max(gaps)) if all(map(math.isfinite, gaps)) else math.inf
 
     def _gap(self, t: float, poses) -> float:
@@ -149,12 +181,22 @@ class Comparison:
         oriented = [name for name, body in self.d.bodies.items() if body.oriented]
         while len(known) <= len(oriented):
             if not moved:  # nothing ties what is left to what is known: it stays as it is
-                known |= {name: poses[name][2] for name in [n for n in oriented if n not in known][:1]}
+                known |= {
+                    name: poses[name][2] for name in [n for n in oriented if n not in known][:1]
+                }
             moved = False
             for name, joint in self.d.joints.items():
-                tied = joint.angle if joint.kind in ("prismatic", "weld") else drives.get(name, (None,))[0]
+                tied = (
+                    joint.angle
+                    if joint.kind in ("prismatic", "weld")
+                    else drives.get(name, (None,))[0]
+                )
                 ends = (joint.parent[0], joint.child[0])
-                if tied is None or (joint.slides and joint.kind == "slot") or sum(e in known for e in ends) != 1:
+                if (
+                    tied is None
+                    or (joint.slides and joint.kind == "slot")
+                    or sum(e in known for e in ends) != 1
+                ):
                     continue
                 if not all(e == "ground" or self.d.bodies[e].oriented for e in ends):
                     continue
@@ -165,14 +207,19 @@ class Comparison:
         return poses
 
     def _closes(self, i: int, path: Path) -> None:
-        """Hold the bodies' places against the path's, or where that ends or may go on in two ways, look at the gaps alone."""
+        """Hold the bodies' places against the path's, or where that ends or may go on in two ways,
+        look at the gaps alone.
+        """
         t = float(self.solution.t[i])
         if t <= min(path.end, path.passes):
             found = self.d.oracle(t).move(self.d.drives(t), path.near(t))
             off = self._off(self.poses(i, _places(found)), found)
             if off > 1e-6 / max(found.steadiness, _UNJUDGED):
                 self.faults.append(f"at t = {t:g} s the bodies are off by {off:.3g}")
-        elif not self.d.constraints and (gap := self._gap(t, self.poses(i, path.near(t)))) > 1e-7 * self.size:
+        elif (
+            not self.d.constraints
+            and (gap := self._gap(t, self.poses(i, path.near(t)))) > 1e-7 * self.size
+        ):
             self.faults.append(f"at t = {t:g} s a gap of {gap:.3g} is left between bodies")
 
     # Everything at an instant
@@ -188,7 +235,10 @@ class Comparison:
         if exact.steadiness < _UNJUDGED or exact.vague:
             return
         for extra in model.extras:
-            acts = [max(abs(fx), abs(fy), abs(mz) / self.size) for _, fx, fy, mz in extra.effect(model.places(exact))]
+            acts = [
+                max(abs(fx), abs(fy), abs(mz) / self.size)
+                for _, fx, fy, mz in extra.effect(model.places(exact))
+            ]
             self.units[extra.name] = max(acts, default=0.0) or 1.0
         ratios = self._ratios(exact, model.places(exact))
         rounding = 64 * ROUNDING / exact.steadiness**2
@@ -200,7 +250,11 @@ class Comparison:
                 self.faults.append(f"'{name}' is given, and is not unique at t = {t:g} s")
             else:
                 whole = name.endswith(":angle") or (name in self.angles)
-                gap = math.remainder(mine - value, math.tau) if whole and math.isfinite(mine) else mine - value
+                gap = (
+                    math.remainder(mine - value, math.tau)
+                    if whole and math.isfinite(mine)
+                    else mine - value
+                )
                 self.found[name].append(_Gap(t, gap, value, rounding, exact, ratios))
 
     def _mine(self, name: str, i: int) -> float | None:
@@ -211,43 +265,85 @@ class Comparison:
         if not ratio:
             return float(self.solution.series[full][i])
         _, link, force = full.split(":")
-        return float(self.solution.section(link).law.during(slice(i, i + 1)).at(force, np.array([[float(ratio)]]))[0, 0])
+        return float(
+            self.solution.section(link)
+            .law.during(slice(i, i + 1))
+            .at(force, np.array([[float(ratio)]]))[0, 0]
+        )
 
     def _named(self, exact, model, ratios) -> dict[str, float]:
-        """What the oracle says of all that the solution has or should have, by full name; of section forces at ratios."""
+        """What the oracle says of all that the solution has or should have, by full name; of
+        section forces at ratios.
+        """
         known, place = {*self.solution.series, *self.solution.undetermined}, model.places(exact)
-        named = {f"pose:{name}:{k}": x.v for name, q in exact.q.items() for k, x in zip(("x", "y", "angle"), q, strict=True)}
+        named = {
+            f"pose:{name}:{k}": x.v
+            for name, q in exact.q.items()
+            for k, x in zip(("x", "y", "angle"), q, strict=True)
+        }
         for name, joint in self.d.joints.items():
             jet = joint_coordinate(joint, place)
-            named |= {f"motion:{name}": jet.v, f"motion:{name}_rate": jet.d, f"motion:{name}_acceleration": jet.a}
-            named |= {f"reaction:{name}:{k}": x for k, x in zip(oracle.FORCES, exact.reactions[name], strict=True)}
+            named |= {
+                f"motion:{name}": jet.v,
+                f"motion:{name}_rate": jet.d,
+                f"motion:{name}_acceleration": jet.a,
+            }
+            named |= {
+                f"reaction:{name}:{k}": x
+                for k, x in zip(oracle.FORCES, exact.reactions[name], strict=True)
+            }
         named |= {f"effort:{name}": x for name, x in exact.efforts.items()}
         named |= {f"multiplier:{name}": x for name, x in exact.multipliers.items()}
         named = {name: float(x) for name, x in named.items() if name in known}
         for link in self.solution.links_with_sections:
             for u in ratios[link]:
                 forces = exact.sections[link](u)
-                named |= {f"section:{link}:{force}@{u!r}": float(x) for force, x in zip(FORCES, forces, strict=True)}
+                named |= {
+                    f"section:{link}:{force}@{u!r}": float(x)
+                    for force, x in zip(FORCES, forces, strict=True)
+                }
         return named
 
     def _ratios(self, exact, place) -> dict[str, list[float]]:
-        """Where to look at each link: its ends, anywhere, and beside its stations; not where a station is just now."""
+        """Where to look at each link: its ends, anywhere, and beside its stations; not where a
+        station is just now.
+        """
         found = {}
         for link in self.solution.links_with_sections:
             l = self.d.bodies[link].length
-            fixed = {point[1] / l for joint in self.d.joints.values() for point in (joint.parent, joint.child) if point[0] == link}
+            fixed = {
+                point[1] / l
+                for joint in self.d.joints.values()
+                for point in (joint.parent, joint.child)
+                if point[0] == link
+            }
             fixed |= {x / l for x in self.d.stations.get(link, ())}
-            moving = {float(under(j, place)[1]) / l for j in self.d.joints.values() if j.slides and j.parent[0] == link}
-            ratios = [0.0, 1.0, *self.rng.random(3), *(s + e for s in sorted(fixed) for e in (-_BESIDE, _BESIDE))]
+            moving = {
+                float(under(j, place)[1]) / l
+                for j in self.d.joints.values()
+                if j.slides and j.parent[0] == link
+            }
+            ratios = [
+                0.0,
+                1.0,
+                *self.rng.random(3),
+                *(s + e for s in sorted(fixed) for e in (-_BESIDE, _BESIDE)),
+            ]
             found[link] = [
                 float(u)
                 for u in ratios
-                if 0.0 <= u <= 1.0 and all(abs(u - s) > _AT_STATION for s in (moving if u in (0.0, 1.0) else moving | fixed))
+                if 0.0 <= u <= 1.0
+                and all(
+                    abs(u - s) > _AT_STATION
+                    for s in (moving if u in (0.0, 1.0) else moving | fixed)
+                )
             ]
         return found
 
     def _weigh(self) -> None:
-        """Hold every gap against its quantity's peak, and against a small part of the largest of its kind."""
+        """Hold every gap against its quantity's peak, and against a small part of the largest of
+        its kind.
+        """
         peaks: dict[str, float] = collections.defaultdict(float)
         for name, gaps in self.found.items():
             full = name.partition("@")[0]
@@ -276,23 +372,39 @@ class Comparison:
             kind, scale = self._kind(name)
             largest[kind] = max(largest[kind], peak * scale)
         largest["acceleration"] = max(largest["acceleration"], largest["rate"] ** 2)
-        if any(text.startswith("motion.samples") for text, _ in self.d.laws.values()):  # a spline divides what they are rounded by
-            most = max(abs(law.jet(None, t).v) for _, law in self.d.laws.values() for t in self.solution.t[[0, -1]])
+        if any(
+            text.startswith("motion.samples") for text, _ in self.d.laws.values()
+        ):  # a spline divides what they are rounded by
+            most = max(
+                abs(law.jet(None, t).v)
+                for _, law in self.d.laws.values()
+                for t in self.solution.t[[0, -1]]
+            )
             largest["acceleration"] = max(largest["acceleration"], most / SPACING**2)
         for name, values in self.solution.series.items():
             if name.startswith("load:"):
                 given = float(np.max(np.abs(values))) / (self.size if name.endswith(":mz") else 1.0)
                 largest["force"] = max(largest["force"], given)
-        mass, weight = sum(body.mass for body in self.d.bodies.values()), math.hypot(*self.d.gravity)
-        largest["force"] = max(largest["force"], mass * (weight + largest["acceleration"] * self.size))
+        mass, weight = (
+            sum(body.mass for body in self.d.bodies.values()),
+            math.hypot(*self.d.gravity),
+        )
+        largest["force"] = max(
+            largest["force"], mass * (weight + largest["acceleration"] * self.size)
+        )
         largest["place"], largest["angle"] = self.size / SMALL, 1.0 / SMALL
         return largest
 
     def _blur(self, name: str, gap: _Gap) -> float:
-        """What the rounding of the motion makes of a quantity, as the loads magnify it: eight times the most of four trials."""
+        """What the rounding of the motion makes of a quantity, as the loads magnify it: eight times
+        the most of four trials.
+        """
         model, most = self.d.oracle(gap.t), 0.0
         for _ in range(4):
-            q = {body: tuple(self._rounded(x, gap.exact) for x in jets) for body, jets in gap.exact.q.items()}
+            q = {
+                body: tuple(self._rounded(x, gap.exact) for x in jets)
+                for body, jets in gap.exact.q.items()
+            }
             other = oracle.Result(q)
             try:
                 model.balance(other, self.d.drives(gap.t))
@@ -308,7 +420,9 @@ class Comparison:
         return oracle.Jet(x.v + by[0], x.d + by[1] * rates, x.a + by[2] * (bends + rates * rates))
 
     def _kind(self, name: str) -> tuple[str, float]:
-        """What a quantity is compared with, and its factor there: moments are forces at an arm of the mechanism's size."""
+        """What a quantity is compared with, and its factor there: moments are forces at an arm of
+        the mechanism's size.
+        """
         name = name.partition("@")[0]
         group, part, *_ = name.split(":")
         if group == "pose":

@@ -1,7 +1,8 @@
-"""A mechanism that is drawn part by part in a posture: as the Python that declares it, and in numbers for the oracle.
+"""A mechanism that is drawn part by part in a posture: as the Python that declares it, and in
+numbers for the oracle.
 
-What is drawn is placed at once, so whatever is joined fits in this posture. The package sees only the source; the oracle sees only
-the numbers.
+What is drawn is placed at once, so whatever is joined fits in this posture. The package sees only
+the source; the oracle sees only the numbers.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from random_formula import Formula, Measure, Number, joint_coordinate, literal
 Place = tuple[float, float]
 
 _NOTHING = 1e-9
-"""Where a number is meant to be none, it is as large as its rounding; nobody names that by a parameter."""
+"""Where a number is meant to be none, it is as large as its rounding; nobody names that by a
+parameter.
+"""
 
 
 @dataclass(frozen=True)
@@ -37,9 +40,13 @@ class Spot:
 
 
 class Draft:
-    """A mechanism under construction; ``parametric`` is how often a number is written by a parameter."""
+    """A mechanism under construction; ``parametric`` is how often a number is written by a
+    parameter.
+    """
 
-    def __init__(self, name: str, rng: np.random.Generator, parametric: float = 0.0, far: float = 0.0) -> None:
+    def __init__(
+        self, name: str, rng: np.random.Generator, parametric: float = 0.0, far: float = 0.0
+    ) -> None:
         self.name, self.rng, self.parametric, self.far = name, rng, parametric, far
         self.lines: list[str] = []
         self.parameters: dict[str, tuple[float, float]] = {}  # default and value
@@ -55,7 +62,9 @@ class Draft:
         self.stations: dict[str, list[float]] = {}
         self.limited: set[str] = set()  # links whose stations must lie on them
         self.loose_axes = False  # whether axes and angles may be written by parameters
-        self.exact = False  # whether only what leaves all places as they are is written by parameters
+        self.exact = (
+            False  # whether only what leaves all places as they are is written by parameters
+        )
         self.start = 0.0
         self.leads: list[str] = []  # joints to drive first
         self.whole = False  # whether the first of them may turn all the way round
@@ -83,20 +92,32 @@ class Draft:
             return self.choose(0.0, math.pi / 2, -math.pi / 2, 3.0)
         return self.between(-3.1, 3.1)
 
-    def number(self, value: float, spread: float | None = 0.03, default: float | None = None) -> Number:
-        """A number as it stands, or by a parameter whose default is off by up to ``spread`` of it, or is the one given."""
+    def number(
+        self, value: float, spread: float | None = 0.03, default: float | None = None
+    ) -> Number:
+        """A number as it stands, or by a parameter whose default is off by up to ``spread`` of it,
+        or is the one given.
+        """
         value = float(value)
         if self.exact and spread is not None and spread < 0.1:
             spread = None
         if spread is None or abs(value) < _NOTHING or not self.chance(self.parametric):
             return literal(value)
-        alike = [name for name, most in self._spreads.items() if most <= spread and name in self.parameters]
+        alike = [
+            name
+            for name, most in self._spreads.items()
+            if most <= spread and name in self.parameters
+        ]
         if alike and default is None and self.chance(0.3):
             name = self.choose(*alike)
             factor = value / self.parameters[name][1]
             return Number(f"{factor!r} * {name}", factor * self.parameters[name][1])
         name = self.new("p")
-        default = value * (1.0 + self.far * self.rng.uniform(-spread, spread)) if default is None else default
+        default = (
+            value * (1.0 + self.far * self.rng.uniform(-spread, spread))
+            if default is None
+            else default
+        )
         self.parameters[name], self._spreads[name] = (default, value), spread
         self.lines.append(f'{name} = m.parameter("{name}", {default!r})')
         return Number(name, value)
@@ -107,9 +128,19 @@ class Draft:
 
     # Bodies and points
 
-    def link(self, length: float | Number, matter: tuple[str, dict] | None = None, spread: float | None = 0.03) -> str:
-        """A link that is not placed yet; ``matter`` is its text, and what :class:`oracle.Body` takes."""
-        name, size = self.new("b"), length if isinstance(length, Number) else self.number(length, spread)
+    def link(
+        self,
+        length: float | Number,
+        matter: tuple[str, dict] | None = None,
+        spread: float | None = 0.03,
+    ) -> str:
+        """A link that is not placed yet; ``matter`` is its text, and what :class:`oracle.Body`
+        takes.
+        """
+        name, size = (
+            self.new("b"),
+            length if isinstance(length, Number) else self.number(length, spread),
+        )
         text, body = matter or self.matter(size.value)
         self.lines.append(f'{name} = m.link("{name}", length={size.text}, {text})')
         if "centre" in body:
@@ -121,7 +152,9 @@ class Draft:
 
     def matter(self, length: float) -> tuple[str, dict]:
         """How the mass of a link is given."""
-        kind = self.choose("uniform", "massless", "light", "taper", "table", "rigid", weights=[8, 2, 1, 2, 1, 3])
+        kind = self.choose(
+            "uniform", "massless", "light", "taper", "table", "rigid", weights=[8, 2, 1, 2, 1, 3]
+        )
         if kind == "massless":
             return "mass=0.0", {"density": lambda u: 0.0}
         if kind == "light":
@@ -132,11 +165,22 @@ class Draft:
             return f"mass={mass.text}", {"density": lambda u: mass.value}
         if kind == "taper":
             a, b = self.number(self.between(0.5, 4.0), 0.5), self.between(0.0, 3.0)
-            return f"density=density.polynomial({a.text}, {b!r})", {"density": lambda u: (a.value + b * u) * length}
+            return f"density=density.polynomial({a.text}, {b!r})", {
+                "density": lambda u: (a.value + b * u) * length
+            }
         if kind == "table":
-            at, to = (0.0, self.between(0.2, 0.8), 1.0), tuple(self.between(0.0, 4.0) for _ in range(3))
-            return f"density=density.tabulated({at}, {to})", {"density": lambda u: _linear(u, at, to) * length, "breaks": at}
-        mass, inertia = self.number(self.between(0.1, 3.0), 0.5), self.number(self.between(1e-3, 0.1), 0.5)
+            at, to = (
+                (0.0, self.between(0.2, 0.8), 1.0),
+                tuple(self.between(0.0, 4.0) for _ in range(3)),
+            )
+            return f"density=density.tabulated({at}, {to})", {
+                "density": lambda u: _linear(u, at, to) * length,
+                "breaks": at,
+            }
+        mass, inertia = (
+            self.number(self.between(0.1, 3.0), 0.5),
+            self.number(self.between(1e-3, 0.1), 0.5),
+        )
         centre = (self.between(-0.2, 0.4), self.choose(0.0, self.between(-0.2, 0.2)))
         given = {"mass": mass.value, "centre": centre, "inertia": inertia.value}
         return f"mass={mass.text}, centre={centre}, inertia={inertia.text}", given
@@ -160,7 +204,12 @@ class Draft:
         """A place on a body, in its axes."""
         a, b = self.number(x, spread), self.number(y, spread)
         self.stations.setdefault(body, []).append(a.value)
-        return Spot(body, f"{body}.at({a.text}, {b.text})" if b.text != "0.0" else f"{body}.at({a.text})", a.value, b.value)
+        return Spot(
+            body,
+            f"{body}.at({a.text}, {b.text})" if b.text != "0.0" else f"{body}.at({a.text})",
+            a.value,
+            b.value,
+        )
 
     def ground(self, at: Place, spread: float | None = 0.03) -> Spot:
         if at == (0.0, 0.0):
@@ -174,11 +223,16 @@ class Draft:
             return self.ground((self.between(-0.5, 0.5), self.between(-0.5, 0.5)))
         if not self.bodies[body].oriented:
             return self.base(body)
-        kind, l = self.choose("base", "tip", "station", "beside", weights=[2, 3, 2, 1]), self.bodies[body].length
+        kind, l = (
+            self.choose("base", "tip", "station", "beside", weights=[2, 3, 2, 1]),
+            self.bodies[body].length,
+        )
         if kind in ("base", "tip"):
             return getattr(self, kind)(body)
         return self.at(
-            body, float(f"{l * self.rng.uniform(0.1, 0.9):.4g}"), 0.0 if kind == "station" else self.between(-0.15, 0.15)
+            body,
+            float(f"{l * self.rng.uniform(0.1, 0.9):.4g}"),
+            0.0 if kind == "station" else self.between(-0.15, 0.15),
         )
 
     def meet(self, body: str, at: Place, spread: float | None = 0.03) -> Spot | None:
@@ -193,14 +247,20 @@ class Draft:
             if math.hypot(x - end, y) < 1e-12:
                 return spot(body)
         y = 0.0 if abs(y) < 1e-13 else y
-        return self.at(body, x, y, spread) if body not in self.limited or 0.08 * l < x < 0.92 * l else None
+        return (
+            self.at(body, x, y, spread)
+            if body not in self.limited or 0.08 * l < x < 0.92 * l
+            else None
+        )
 
     def pose(self, body: str) -> tuple[float, float, float]:
         return (0.0, 0.0, 0.0) if body == "ground" else self.poses[body]
 
     def place(self, spot: Spot) -> Place:
         x, y, phi = self.pose(spot.body)
-        return x + math.cos(phi) * spot.x - math.sin(phi) * spot.y, y + math.sin(phi) * spot.x + math.cos(phi) * spot.y
+        return x + math.cos(phi) * spot.x - math.sin(phi) * spot.y, y + math.sin(
+            phi
+        ) * spot.x + math.cos(phi) * spot.y
 
     def local(self, body: str, at: Place) -> Place:
         x, y, phi = self.pose(body)
@@ -213,8 +273,12 @@ class Draft:
         x, y = self.place(spot)
         self.poses[spot.body] = (at[0] - x, at[1] - y, phi)
 
-    def bar(self, a: Place, b: Place, matter=None, spread: float | None = 0.03) -> tuple[Spot, Spot]:
-        """A link through two places, and its points there: its ends, either way round, or stations."""
+    def bar(
+        self, a: Place, b: Place, matter=None, spread: float | None = 0.03
+    ) -> tuple[Spot, Spot]:
+        """A link through two places, and its points there: its ends, either
+        way round, or stations.
+        """
         length, phi = math.dist(a, b), math.atan2(b[1] - a[1], b[0] - a[0])
         if self.chance(0.25):
             a, b, phi = b, a, math.remainder(phi + math.pi, math.tau)
@@ -223,7 +287,9 @@ class Draft:
             first, second = self.bar_along(a, length, phi, matter, spread)
         return first, second
 
-    def bar_along(self, a: Place, length: float, phi: float, matter=None, spread: float | None = 0.03) -> tuple[Spot, Spot]:
+    def bar_along(
+        self, a: Place, length: float, phi: float, matter=None, spread: float | None = 0.03
+    ) -> tuple[Spot, Spot]:
         """A link in a direction, and its points at a place and so far along."""
         if self.chance(0.8):
             name = self.link(length, matter, spread)
@@ -231,7 +297,10 @@ class Draft:
         else:
             before = self.between(0.02, 0.1)
             name = self.link(before + length + self.between(0.06, 0.1), matter, spread)
-            first, second = self.at(name, before, 0.0, spread), self.at(name, before + length, 0.0, spread)
+            first, second = (
+                self.at(name, before, 0.0, spread),
+                self.at(name, before + length, 0.0, spread),
+            )
         self.put(first, a, phi)
         return first, second
 
@@ -243,18 +312,31 @@ class Draft:
     def weld(self, a: Spot, b: Spot) -> str:
         if self._oriented(a.body) and self._oriented(b.body):
             a, b = self._either(a, b)
-            turn = self.number(self.pose(b.body)[2] - self.pose(a.body)[2], 0.05 if self.loose_axes else None)
+            turn = self.number(
+                self.pose(b.body)[2] - self.pose(a.body)[2], 0.05 if self.loose_axes else None
+            )
             return self.joint("weld", a, b, f", angle={turn.text}", angle=turn.value)
         a, b = (a, b) if self._oriented(a.body) else (b, a)
         return self.joint("weld", a, b)
 
-    def line(self, kind: str, carrier: str, child: Spot, direction: float, origin: Spot | None = None) -> str | None:
-        """A prismatic joint or a slot of a carrier, along a direction, for a point of another body; None where it has no place."""
+    def line(
+        self, kind: str, carrier: str, child: Spot, direction: float, origin: Spot | None = None
+    ) -> str | None:
+        """A prismatic joint or a slot of a carrier, along a direction, for a point of another body;
+        None where it has no place.
+        """
         at, phi = self.place(child), self.pose(carrier)[2]
         c, s = math.cos(direction), math.sin(direction)
-        ways = [0.0 if self.chance(0.5) else self.between(-0.4, 0.4) for _ in range(0 if origin else 8)]
-        if carrier in self.limited and abs(math.cos(direction - phi)) > 0.1:  # or where the line meets the carrier's middle
-            ways.append((self.local(carrier, at)[0] - self.bodies[carrier].length / 2) / math.cos(direction - phi))
+        ways = [
+            0.0 if self.chance(0.5) else self.between(-0.4, 0.4) for _ in range(0 if origin else 8)
+        ]
+        if (
+            carrier in self.limited and abs(math.cos(direction - phi)) > 0.1
+        ):  # or where the line meets the carrier's middle
+            ways.append(
+                (self.local(carrier, at)[0] - self.bodies[carrier].length / 2)
+                / math.cos(direction - phi)
+            )
         for away in ways:
             origin = origin or self.meet(carrier, (at[0] - away * c, at[1] - away * s))
         if origin is None:
@@ -265,9 +347,13 @@ class Draft:
         if way.text != repr(way.value):
             written = f"(cos({way.text}), sin({way.text}))"
         if kind == "prismatic" and self._oriented(child.body):
-            turn = self.number(_exact(self.pose(child.body)[2] - phi), 0.05 if self.loose_axes else None)
+            turn = self.number(
+                _exact(self.pose(child.body)[2] - phi), 0.05 if self.loose_axes else None
+            )
             end = f", angle={turn.text}" if turn.value else ""
-            return self.joint(kind, origin, child, f", axis={written}{end}", axis=axis, angle=turn.value)
+            return self.joint(
+                kind, origin, child, f", axis={written}{end}", axis=axis, angle=turn.value
+            )
         return self.joint(kind, origin, child, f", axis={written}", axis=axis)
 
     def joint(self, kind: str, parent: Spot, child: Spot, more: str = "", **given) -> str:
@@ -286,8 +372,14 @@ class Draft:
         """The joints that can be driven, as far as they themselves tell."""
         found = []
         for name, joint in self.joints.items():
-            turns = joint.kind == "revolute" and self._oriented(joint.parent[0]) and self._oriented(joint.child[0])
-            slides = joint.kind == "prismatic" or (joint.kind == "slot" and not self._oriented(joint.child[0]))
+            turns = (
+                joint.kind == "revolute"
+                and self._oriented(joint.parent[0])
+                and self._oriented(joint.child[0])
+            )
+            slides = joint.kind == "prismatic" or (
+                joint.kind == "slot" and not self._oriented(joint.child[0])
+            )
             if turns or slides:
                 found.append(name)
         return found
@@ -295,10 +387,14 @@ class Draft:
     # Formulas
 
     def measured(self, kind: str, of, rate: bool = False) -> dict[str, Measure]:
-        """Names for the places of a spot, a link's direction, or a joint's coordinate, or for their rates."""
+        """Names for the places of a spot, a link's direction, or a joint's coordinate, or for their
+        rates.
+        """
         if kind == "place":
             names = [self.new("vx" if rate else "x"), self.new("vy" if rate else "y")]
-            self.lines.append(f"{', '.join(names)} = m.{'velocity' if rate else 'place'}({of.text})")
+            self.lines.append(
+                f"{', '.join(names)} = m.{'velocity' if rate else 'place'}({of.text})"
+            )
             return {n: Measure(k, of.point, rate) for n, k in zip(names, "xy", strict=True)}
         name = self.new("w" if rate else "q")
         if kind == "direction":
@@ -326,9 +422,16 @@ class Draft:
         given = self.number(ratio, None)
         q, r = (joint_coordinate(self.joints[j], self.posture_place()).v for j in (first, second))
         name, offset = self.new("c"), literal(r - given.value * q)
-        self.lines.append(f'm.gear("{name}", {first}, {second}, ratio={given.text}, offset={offset.text})')
-        names = {"first": Measure("coordinate", self.joints[first]), "second": Measure("coordinate", self.joints[second])}
-        self.constraints[name] = self.formula(f"second - {given.text} * first - ({offset.text})", names)
+        self.lines.append(
+            f'm.gear("{name}", {first}, {second}, ratio={given.text}, offset={offset.text})'
+        )
+        names = {
+            "first": Measure("coordinate", self.joints[first]),
+            "second": Measure("coordinate", self.joints[second]),
+        }
+        self.constraints[name] = self.formula(
+            f"second - {given.text} * first - ({offset.text})", names
+        )
         return name
 
     def row(self, formula: Formula, replaces: str) -> str:
@@ -361,7 +464,9 @@ class Draft:
         unaided = [joint for _, joint in self.rows.values()]
         joints, bodies = list(self.joints.values()), list(self.bodies.values())
         spreads = [lambda place, one=one: one(place, t) for one in self.spreads.values()]
-        return oracle.Oracle(bodies, joints, self.gravity, loads, extras, unaided, arithmetic, spreads=spreads)
+        return oracle.Oracle(
+            bodies, joints, self.gravity, loads, extras, unaided, arithmetic, spreads=spreads
+        )
 
     def drives(self, t: float) -> dict[str, tuple[float, float, float]]:
         """Coordinate, rate and acceleration of the driven joints."""

@@ -1,4 +1,6 @@
-"""Formulas of a random mechanism: the text that a user writes, and its value by the oracle's places of points, as jets."""
+"""Formulas of a random mechanism: the text that a user writes, and its value by the oracle's places
+of points, as jets.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ def literal(value: float) -> Number:
 
 @dataclass(frozen=True)
 class Measure:
-    """What a name in a formula stands for: x or y of a point, the angle of a body, or a joint's coordinate; or its rate."""
+    """What a name in a formula stands for: x or y of a point, the angle of a body, or a joint's
+    coordinate; or its rate.
+    """
 
     kind: str
     of: Any
@@ -72,7 +76,9 @@ def under(joint: oracle.Joint, place) -> tuple[str, Any, Any]:
 
 
 def joint_coordinate(joint: oracle.Joint, place) -> Jet:
-    """The coordinate of a joint: the child's angle less the parent's, or the place along the axis."""
+    """The coordinate of a joint: the child's angle less the parent's, or
+    the place along the axis.
+    """
     (px, py, pa), (cx, cy, ca) = place(joint.parent), place(joint.child)
     if not joint.slides:
         return ca - pa
@@ -99,13 +105,23 @@ class Formula:
         return self._value(known, Jet(arithmetic.number(t), 1.0), arithmetic)
 
     def effect(self, place, t, arithmetic=DOUBLE) -> list[tuple[Any, Any, Any, Any]]:
-        """What a unit multiplier of this formula does: its slope by each measure, or by the rates where it is a row, along it."""
+        """What a unit multiplier of this formula does: its slope by each measure, or by the rates
+        where it is a row, along it.
+        """
         known, row_of_rates = {}, any(m.rate for m in self.names.values())
-        for row, (name, measure) in zip(np.eye(len(self.names), dtype=arithmetic.dtype), self.names.items(), strict=True):
+        for row, (name, measure) in zip(
+            np.eye(len(self.names), dtype=arithmetic.dtype), self.names.items(), strict=True
+        ):
             found = measure.jet(place)
             known[name] = Jet(found.d if measure.rate else found.v, row)
-        slopes = np.broadcast_to(self._value(known, Jet(arithmetic.number(t)), arithmetic).d, len(self.names))
-        acting = [(m, x) for m, x in zip(self.names.values(), slopes, strict=True) if m.rate == row_of_rates]
+        slopes = np.broadcast_to(
+            self._value(known, Jet(arithmetic.number(t)), arithmetic).d, len(self.names)
+        )
+        acting = [
+            (m, x)
+            for m, x in zip(self.names.values(), slopes, strict=True)
+            if m.rate == row_of_rates
+        ]
         return [part for measure, size in acting for part in measure.does(place, size)]
 
     def _value(self, known, t, arithmetic):

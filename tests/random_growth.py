@@ -1,4 +1,6 @@
-"""Grows any mechanism: bodies hung on others, loops closed where they meet, and what is free given a motion."""
+"""Grows any mechanism: bodies hung on others, loops closed where they meet, and what is free given
+a motion.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ LEAST = 1e-9
 
 def frame(d: Draft):
     """Axes to lay a pattern in, those of the ground or others: places and directions there."""
-    x, y, turn = (0.0, 0.0, 0.0) if d.chance(0.5) else (d.between(-1, 1), d.between(-1, 1), d.angle())
+    x, y, turn = (
+        (0.0, 0.0, 0.0) if d.chance(0.5) else (d.between(-1, 1), d.between(-1, 1), d.angle())
+    )
     c, s = math.cos(turn), math.sin(turn)
 
     def at(u: float, v: float) -> Place:
@@ -41,8 +45,12 @@ def freedom(d: Draft) -> int:
 
 
 def attempt(d: Draft, part, *, takes: int | None = None) -> bool:
-    """Let ``part(d)`` add something, and undo it where it does not fit, or does not take so many freedoms as its equations say."""
-    kept = {name: copy.copy(value) for name, value in vars(d).items() if name not in ("rng", "_counts")}
+    """Let ``part(d)`` add something, and undo it where it does not fit, or does not take so many
+    freedoms as its equations say.
+    """
+    kept = {
+        name: copy.copy(value) for name, value in vars(d).items() if name not in ("rng", "_counts")
+    }
     before = freedom(d) if takes is not None else 0
     if part(d) is not False:
         found = values(d)
@@ -77,7 +85,9 @@ def hang(d: Draft) -> None:
     far = d.spot(body)
     if kind == "line":
         direction, away = d.angle(), d.between(-0.3, 0.3)
-        d.put(far, (at[0] + away * math.cos(direction), at[1] + away * math.sin(direction)), d.angle())
+        d.put(
+            far, (at[0] + away * math.cos(direction), at[1] + away * math.sin(direction)), d.angle()
+        )
         carrier, guided = (near, far) if d.chance(0.6) else (far, near)
         d.line("prismatic", carrier.body, guided, direction, carrier)
         return
@@ -86,7 +96,9 @@ def hang(d: Draft) -> None:
 
 
 def dyad(d: Draft) -> bool | None:
-    """Two links, or a link and a slide, between two points that are there: no freedom more or less."""
+    """Two links, or a link and a slide, between two points that are there:
+    no freedom more or less.
+    """
     a, b = (d.spot(anything(d)) for _ in range(2))
     if a.body == b.body:
         return False
@@ -109,7 +121,10 @@ def dyad(d: Draft) -> bool | None:
         d.pin(a, near)
         d.pin(b, other)
         direction = d.choose(d.pose(near.body)[2], d.angle())
-        return d.line("prismatic", *d.choose((near.body, other), (other.body, far)), direction) is not None
+        return (
+            d.line("prismatic", *d.choose((near.body, other), (other.body, far)), direction)
+            is not None
+        )
     return None
 
 
@@ -142,7 +157,9 @@ def twice(d: Draft) -> bool | None:
 
 
 def close(d: Draft) -> bool:
-    """Tie two bodies that are there to each other, by any joint or equation; False where nothing fits."""
+    """Tie two bodies that are there to each other, by any joint or equation; False where nothing
+    fits.
+    """
     kinds = {"pin": 2, "slot": 1, "guide": 1, "line": 2, "weld": 3, "gear": 1, "users": 1}
     kind = d.choose(*kinds, weights=[5, 4, 2, 2, 0.3, 2, 4])
     if kinds[kind] > freedom(d):
@@ -182,7 +199,17 @@ def users(d: Draft) -> bool | None:
     turning = [name for name in d.bodies if d.bodies[name].oriented]
     if not turning:
         return False
-    kind = d.choose("distance", "root", "line", "curve", "direction", "directions", "coordinates", "middle", "timed")
+    kind = d.choose(
+        "distance",
+        "root",
+        "line",
+        "curve",
+        "direction",
+        "directions",
+        "coordinates",
+        "middle",
+        "timed",
+    )
     spot = d.spot(d.choose(*d.bodies))
     if kind in ("distance", "root", "middle"):
         other = d.spot(anything(d))
@@ -207,7 +234,10 @@ def users(d: Draft) -> bool | None:
         if kind == "curve":
             text = f"{y} - {d.between(-2, 2)!r} * {x}**2 - {d.between(-1, 1)!r} * {x}"
         if kind == "timed":
-            text = f"{d.choose(x, y, text)} - {d.between(-0.2, 0.2)!r} * {d.choose('t', 'sin(3.0 * t)', 't**2')}"
+            text = (
+                f"{d.choose(x, y, text)} - {d.between(-0.2, 0.2)!r} *"
+                f" {d.choose('t', 'sin(3.0 * t)', 't**2')}"
+            )
         d.constraint(d.held(text, names))
     elif kind in ("direction", "directions"):
         names = d.measured("direction", d.choose(*turning))
@@ -221,15 +251,24 @@ def users(d: Draft) -> bool | None:
             text, names = f"{q} + {d.between(-1.5, 1.5)!r} * {next(iter(more))}", names | more
         d.constraint(d.held(text, names))
     else:
-        joints = [*d.movable(), *(name for name, joint in d.joints.items() if joint.kind == "slot" and d.chance(0.5))]
+        joints = [
+            *d.movable(),
+            *(name for name, joint in d.joints.items() if joint.kind == "slot" and d.chance(0.5)),
+        ]
         joints = list(dict.fromkeys(joints))
         if len(joints) < 2:
             return False
         pair = [str(j) for j in d.rng.choice(joints, 2, replace=False)]
-        if min(abs(d.coordinate(j)) for j in pair) < 0.05:  # where their product is none, it may stay so in two ways
+        if (
+            min(abs(d.coordinate(j)) for j in pair) < 0.05
+        ):  # where their product is none, it may stay so in two ways
             return False
         first, second = (d.measured("coordinate", j) for j in pair)
         (q,), (r,) = first, second
-        text = d.choose(f"{q} * {r}", f"{q} + {d.between(-1, 1)!r} * {r}**2", f"sin({q}) - {d.between(0.2, 1)!r} * {r}")
+        text = d.choose(
+            f"{q} * {r}",
+            f"{q} + {d.between(-1, 1)!r} * {r}**2",
+            f"sin({q}) - {d.between(0.2, 1)!r} * {r}",
+        )
         d.constraint(d.held(text, first | second))
     return None

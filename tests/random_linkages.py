@@ -1,7 +1,7 @@
 """Linkages that are known by name, each with numbers of its own: of pins, guides and slots.
 
-Their structure is what chance alone would not draw: right angles, equal lengths, pins on one line, more equations than unknowns.
-Each returns joints that may turn all the way round.
+Their structure is what chance alone would not draw: right angles, equal lengths, pins on one line,
+more equations than unknowns. Each returns joints that may turn all the way round.
 """
 
 from __future__ import annotations
@@ -108,7 +108,9 @@ def inverted(d: Draft) -> list[str]:
 
 
 def guided_bar(d: Draft) -> list[str]:
-    """A bar with pins on two lines, or both on one; guided by masses, by slots, or held by equations of a user."""
+    """A bar with pins on two lines, or both on one; guided by masses, by slots, or held by
+    equations of a user.
+    """
     at, turned = frame(d)
     l, phi = d.between(0.3, 0.8), d.between(0.3, 1.2)
     across = d.choose(math.pi / 2, d.between(1.0, 2.0))
@@ -129,11 +131,16 @@ def guided_bar(d: Draft) -> list[str]:
             hung = True
         else:
             d.line("slot", "ground", spot, turned(way))
-    if d.chance(0.5):  # driven by the middle: a pin of a crank in a slot of the bar, or of the crank in the bar's
+    if d.chance(
+        0.5
+    ):  # driven by the middle: a pin of a crank in a slot of the bar, or of the crank in the bar's
         share = d.choose(0.5, d.between(0.2, 0.8))
         middle = d.at(near.body, near.x + share * (far.x - near.x))
         place = d.place(middle)
-        crank = d.link(math.dist(place, at(0.0, 0.0)) + 0.1, ("mass=0.0", {"density": lambda u: 0.0}) if d.chance(0.6) else None)
+        crank = d.link(
+            math.dist(place, at(0.0, 0.0)) + 0.1,
+            ("mass=0.0", {"density": lambda u: 0.0}) if d.chance(0.6) else None,
+        )
         home = at(0.0, 0.0)
         way = math.atan2(place[1] - home[1], place[0] - home[0])
         d.put(d.base(crank), home, way)
@@ -145,7 +152,9 @@ def guided_bar(d: Draft) -> list[str]:
 
 @exactly
 def scott_russell(d: Draft) -> list[str]:
-    """A crank of half a bar's length at its middle, the bar's foot on a line; perhaps its head too, which repeats it."""
+    """A crank of half a bar's length at its middle, the bar's foot on a line; perhaps its head too,
+    which repeats it.
+    """
     at, turned = frame(d)
     a, phi = d.between(0.15, 0.3), d.between(0.4, 1.1)
     foot, head = (2 * a * math.cos(phi), 0.0), (0.0, 2 * a * math.sin(phi))
@@ -169,8 +178,15 @@ def scott_russell(d: Draft) -> list[str]:
 def parallel_cranks(d: Draft) -> list[str]:
     """Two or three equal cranks on one bar."""
     at, turned = frame(d)
-    r, phi = d.number(d.between(0.1, 0.3), 0.2), d.choose(math.pi / 2, d.between(0.4, 2.7), d.between(-2.7, -0.4))
-    feet = [(0.0, 0.0), (d.between(0.3, 0.5), 0.0), (d.between(0.7, 0.9), d.choose(0.0, d.between(0.1, 0.3)))]
+    r, phi = (
+        d.number(d.between(0.1, 0.3), 0.2),
+        d.choose(math.pi / 2, d.between(0.4, 2.7), d.between(-2.7, -0.4)),
+    )
+    feet = [
+        (0.0, 0.0),
+        (d.between(0.3, 0.5), 0.0),
+        (d.between(0.7, 0.9), d.choose(0.0, d.between(0.1, 0.3))),
+    ]
     arm = (r.value * math.cos(phi), r.value * math.sin(phi))
     bar = d.link(1.0)
     d.put(d.base(bar), at(*arm), turned(0.0))
@@ -193,7 +209,11 @@ def two_guides(d: Draft) -> list[str]:
     way = d.choose(0.0, d.angle())
     d.put(d.base(bar), at(0.1, 0.2), turned(d.choose(way, d.angle())))
     for _ in range(2):
-        d.line("prismatic", *d.choose(("ground", d.spot(bar)), (bar, d.ground(at(d.between(-0.3, 0.3), 0.1)))), turned(way))
+        d.line(
+            "prismatic",
+            *d.choose(("ground", d.spot(bar)), (bar, d.ground(at(d.between(-0.3, 0.3), 0.1)))),
+            turned(way),
+        )
     return []
 
 
@@ -201,9 +221,14 @@ def two_guides(d: Draft) -> list[str]:
 def wedges(d: Draft) -> list[str]:
     """A loop of slides alone."""
     at, turned = frame(d)
-    first, second = (block(d, at(d.between(-0.3, 0.3), d.between(-0.3, 0.3)), turned(d.angle())) for _ in range(2))
+    first, second = (
+        block(d, at(d.between(-0.3, 0.3), d.between(-0.3, 0.3)), turned(d.angle()))
+        for _ in range(2)
+    )
     ways = [d.choose(0.0, d.angle()), d.choose(math.pi / 2, d.angle()), d.angle()]
-    for (carrier, spot), way in zip((("ground", first), (first.body, second), ("ground", second)), ways, strict=True):
+    for (carrier, spot), way in zip(
+        (("ground", first), (first.body, second), ("ground", second)), ways, strict=True
+    ):
         if carrier != "ground" and d.chance(0.5):
             carrier, spot = spot.body, d.base(carrier)
         d.line("prismatic", carrier, spot, turned(way))
@@ -256,24 +281,45 @@ def scissor_lift(d: Draft) -> list[str]:
 def platform(d: Draft) -> list[str]:
     """A platform on three legs of two links each, the first of them driven; or on telescopes."""
     at, _ = frame(d)
-    corners = [(d.between(-0.1, 0.1) + 0.25 * math.cos(k), d.between(-0.1, 0.1) + 0.25 * math.sin(k)) for k in (0.3, 2.4, 4.5)]
-    plate = d.link(0.3, ("mass=1.0, centre=(0.0, 0.0), inertia=0.02", {"mass": 1.0, "centre": (0.0, 0.0), "inertia": 0.02}))
+    corners = [
+        (d.between(-0.1, 0.1) + 0.25 * math.cos(k), d.between(-0.1, 0.1) + 0.25 * math.sin(k))
+        for k in (0.3, 2.4, 4.5)
+    ]
+    plate = d.link(
+        0.3,
+        (
+            "mass=1.0, centre=(0.0, 0.0), inertia=0.02",
+            {"mass": 1.0, "centre": (0.0, 0.0), "inertia": 0.02},
+        ),
+    )
     d.put(d.base(plate), at(0.0, 0.0), d.angle())
     for k, corner in enumerate(corners):
-        foot = (0.9 * math.cos(0.3 + 2.1 * k) + d.between(-0.1, 0.1), 0.9 * math.sin(0.3 + 2.1 * k) + d.between(-0.1, 0.1))
+        foot = (
+            0.9 * math.cos(0.3 + 2.1 * k) + d.between(-0.1, 0.1),
+            0.9 * math.sin(0.3 + 2.1 * k) + d.between(-0.1, 0.1),
+        )
         spot = d.meet(plate, at(*corner))
         assert spot is not None
         if d.chance(0.3):
             (x, y), (u, v) = at(*foot), at(*corner)
             way = math.atan2(v - y, u - x)
-            lower, upper = d.link(0.6 * math.dist(foot, corner)), d.link(0.6 * math.dist(foot, corner))
+            lower, upper = (
+                d.link(0.6 * math.dist(foot, corner)),
+                d.link(0.6 * math.dist(foot, corner)),
+            )
             d.put(d.base(lower), (x, y), way)
             d.put(d.tip(upper), (u, v), way)
             d.pin(d.ground((x, y)), d.base(lower))
             d.pin(d.tip(upper), spot)
             d.line("prismatic", *d.choose((lower, d.base(upper)), (upper, d.tip(lower))), way)
             continue
-        knee = meeting(foot, math.dist(foot, corner) * 0.6, corner, math.dist(foot, corner) * 0.65, d.choose(-1, 1))
+        knee = meeting(
+            foot,
+            math.dist(foot, corner) * 0.6,
+            corner,
+            math.dist(foot, corner) * 0.65,
+            d.choose(-1, 1),
+        )
         lower, top = d.bar(at(*foot), at(*knee))
         near, far = d.bar(at(*knee), at(*corner))
         d.pin(d.ground(at(*foot)), lower)
@@ -290,7 +336,11 @@ def truss(d: Draft) -> list[str]:
     spots = [d.ground(at(*places[0])), d.ground(at(*places[1]))]
     for k in range(d.choose(1, 2, 3)):
         a, b = k, k + 1
-        top = places[2] if k == 0 else (places[k + 1][0] + 0.3, places[k + 1][1] + d.choose(-0.35, 0.3))
+        top = (
+            places[2]
+            if k == 0
+            else (places[k + 1][0] + 0.3, places[k + 1][1] + d.choose(-0.35, 0.3))
+        )
         if k:
             places.append(top)
         (n1, f1), (n2, f2) = (d.bar(at(*places[i]), at(*top)) for i in (a, b))

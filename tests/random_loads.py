@@ -23,7 +23,10 @@ def load(d: Draft) -> None:
         turns = d.bodies[spot.body].oriented and d.chance(0.3)
         x, y = _amount(d, size), _amount(d, size)
         name = d.new("f")
-        d.lines.append(f'm.force("{name}", {spot.text}, x={x.text}, y={y.text}{", turning=True" if turns else ""})')
+        d.lines.append(
+            f'm.force("{name}", {spot.text}, x={x.text},'
+            f" y={y.text}{', turning=True' if turns else ''})"
+        )
         d.loads[name] = functools.partial(_force, spot=spot, x=x, y=y, turns=turns)
     elif kind == "torque" and turning:
         spot, other = d.spot(d.choose(*turning)), d.spot(d.choose("ground", *turning))
@@ -37,9 +40,15 @@ def load(d: Draft) -> None:
         first, second = d.spot(anything(d)), d.spot(d.choose(*d.bodies))
         if first.body == second.body or math.dist(d.place(first), d.place(second)) < 0.1:
             return
-        stiffness, length = (0.0, 0.0) if kind == "damper" else (d.between(1, 50) * size, d.between(0.0, 0.5))
+        stiffness, length = (
+            (0.0, 0.0) if kind == "damper" else (d.between(1, 50) * size, d.between(0.0, 0.5))
+        )
         damping = d.choose(0.0, d.between(0.1, 5.0)) if kind == "spring" else d.between(0.1, 5.0)
-        numbers = f"stiffness={stiffness!r}, length={length!r}, damping={damping!r}" if kind == "spring" else f"damping={damping!r}"
+        numbers = (
+            f"stiffness={stiffness!r}, length={length!r}, damping={damping!r}"
+            if kind == "spring"
+            else f"damping={damping!r}"
+        )
         name = d.new("f")
         d.lines.append(f'm.{kind}("{name}", {first.text}, {second.text}, {numbers})')
         numbers = {"stiffness": stiffness, "length": length, "damping": damping}
@@ -48,7 +57,12 @@ def load(d: Draft) -> None:
         joints = [j for j in d.movable() if not d.joints[j].slides and abs(d.coordinate(j)) < 2.0]
         if not joints:
             return
-        joint, stiffness, angle, damping = d.choose(*joints), d.between(0.1, 5), d.between(-1, 1), d.choose(0.0, d.between(0.01, 1))
+        joint, stiffness, angle, damping = (
+            d.choose(*joints),
+            d.between(0.1, 5),
+            d.between(-1, 1),
+            d.choose(0.0, d.between(0.01, 1)),
+        )
         numbers = f"stiffness={stiffness!r}, angle={angle!r}, damping={damping!r}"
         name = d.new("f")
         d.lines.append(f'm.torsion_spring("{name}", {joint}, {numbers})')
@@ -57,24 +71,37 @@ def load(d: Draft) -> None:
 
 
 def line_load(d: Draft, rng: np.random.Generator) -> None:
-    """A load along a link, or a part of it: even, linear, or a polynomial of the distance; by a generator of its own."""
+    """A load along a link, or a part of it: even, linear, or a polynomial of the distance; by a
+    generator of its own.
+    """
     links = [name for name, body in d.bodies.items() if body.length]
     drawn, d.rng = d.rng, rng
     if links and d.chance(0.4):
         link, size = d.choose(*links), 10.0 ** d.choose(0, 1, 2, 4)
         length, turns, name = d.bodies[link].length, d.chance(0.4), d.new("f")
-        start, end = (0.0, length) if d.chance(0.4) else (d.between(0.0, 0.4) * length, d.between(0.5, 0.95) * length)
+        start, end = (
+            (0.0, length)
+            if d.chance(0.4)
+            else (d.between(0.0, 0.4) * length, d.between(0.5, 0.95) * length)
+        )
         part = "" if end == length else f", between=({start!r}, {end!r})"
         shapes = [_shape(d, size / length, start, end) for _ in "xy"]
         texts = [text.format(amount.text) for text, amount, _ in shapes]
-        d.lines.append(f'm.line_load("{name}", {link}, x={texts[0]}, y={texts[1]}{part}{", turning=True" if turns else ""})')
+        d.lines.append(
+            f'm.line_load("{name}", {link}, x={texts[0]},'
+            f" y={texts[1]}{part}{', turning=True' if turns else ''})"
+        )
         parts = [(amount, powers) for _, amount, powers in shapes]
-        d.spreads[name] = functools.partial(_spread, link=link, start=start, end=end, parts=parts, turns=turns)
+        d.spreads[name] = functools.partial(
+            _spread, link=link, start=start, end=end, parts=parts, turns=turns
+        )
     d.rng = drawn
 
 
 def _shape(d: Draft, size: float, start: float, end: float):
-    """How a component is written around its amount, the amount, and coefficients of what it is times, by powers of the distance."""
+    """How a component is written around its amount, the amount, and coefficients of what it is
+    times, by powers of the distance.
+    """
     kind, amount = d.choose("even", "linear", "power"), _amount(d, size)
     if kind == "even":
         return "{0}", amount, [1.0]
@@ -83,7 +110,11 @@ def _shape(d: Draft, size: float, start: float, end: float):
         slope = (last - first) / (end - start)
         return f"({first!r} * ({{0}}), {last!r} * ({{0}}))", amount, [first - slope * start, slope]
     powers = [d.between(-1, 1) / end**k for k in range(d.choose(3, 4, 6))]
-    return f"lambda x: ({{0}}) * ({' + '.join(f'{c!r} * x**{k}' for k, c in enumerate(powers))})", amount, powers
+    return (
+        f"lambda x: ({{0}}) * ({' + '.join(f'{c!r} * x**{k}' for k, c in enumerate(powers))})",
+        amount,
+        powers,
+    )
 
 
 def _spread(place, t, link, start, end, parts, turns):
@@ -92,7 +123,10 @@ def _spread(place, t, link, start, end, parts, turns):
     c, s = (math.cos(phi), math.sin(phi)) if turns else (1.0, 0.0)
 
     def at(x):
-        fx, fy = (size * sum(p * x**k for k, p in enumerate(powers)) for size, powers in zip(sizes, (px, py), strict=True))
+        fx, fy = (
+            size * sum(p * x**k for k, p in enumerate(powers))
+            for size, powers in zip(sizes, (px, py), strict=True)
+        )
         return c * fx - s * fy, s * fx + c * fy
 
     return [Spread(link, start, end, at)]
@@ -101,7 +135,17 @@ def _spread(place, t, link, start, end, parts, turns):
 def _amount(d: Draft, size: float) -> Formula:
     """A load by numbers, time, places, rates, coordinates or parameters."""
     value = repr(d.between(-1.0, 1.0) * size)
-    kinds = ("number", "time", "velocity", "place", "rate", "coordinate", "direction", "table", "parameter")
+    kinds = (
+        "number",
+        "time",
+        "velocity",
+        "place",
+        "rate",
+        "coordinate",
+        "direction",
+        "table",
+        "parameter",
+    )
     kind = d.choose(*kinds, weights=[5, 2, 1, 1, 1, 1, 1, 1, 1])
     joints = d.movable()
     if kind == "time":
@@ -125,7 +169,9 @@ def _amount(d: Draft, size: float) -> Formula:
         places, values = [low, low + 0.237, low + 0.551], [d.between(-1, 1) for _ in range(3)]
         if values[0] > 0.0:
             places, values = [*places, low + 0.8], [*values, values[0]]
-            return d.formula(f"{value} * curve({places}, {values}, periodic=True)({d.choose(*names)})", names)
+            return d.formula(
+                f"{value} * curve({places}, {values}, periodic=True)({d.choose(*names)})", names
+            )
         return d.formula(f"{value} * table({d.choose(*names)}, {places}, {values})", names)
     if kind == "parameter" and d.parametric:
         number = d.number(float(value), 0.5)

@@ -1,7 +1,8 @@
 """Random mechanisms of any pattern that can be declared, each reproduced by its seed.
 
-:func:`draw` draws a mechanism in a posture, first by a pattern that has a name or by chance alone, then with whatever else can be
-joined to it; then what drives it, what loads it, and how it is evaluated. The oracle follows its motion, and says how far it goes.
+:func:`draw` draws a mechanism in a posture, first by a pattern that has a name or by chance alone,
+then with whatever else can be joined to it; then what drives it, what loads it, and how it is
+evaluated. The oracle follows its motion, and says how far it goes.
 """
 
 from __future__ import annotations
@@ -32,10 +33,11 @@ _DRIVEN = (0.1, 0.03, 1e-4)
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A random mechanism: what declares it, how it is evaluated, and the path that the oracle follows over the instants.
+    """A random mechanism: what declares it, how it is evaluated, and the path that the oracle
+    follows over the instants.
 
-    ``instants`` are the scene's, ``keywords`` what :func:`evaluate` is given. ``told`` is whether the posture says all that may be
-    asked for.
+    ``instants`` are the scene's, ``keywords`` what :func:`evaluate` is given. ``told`` is whether
+    the posture says all that may be asked for.
     """
 
     seed: int
@@ -86,7 +88,9 @@ def draw(seed: int) -> Drawn:
 def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
     """A mechanism without drives; None where chance made too much of it, or nothing."""
     d = Draft(f"random_{seed}", rng)
-    d.parametric, d.far = d.choose((0.0, 0.0), (0.2, 1.0), (0.5, 1.0), (0.2, 0.0), weights=[5, 3, 1, 1])
+    d.parametric, d.far = d.choose(
+        (0.0, 0.0), (0.2, 1.0), (0.5, 1.0), (0.2, 0.0), weights=[5, 3, 1, 1]
+    )
     d.start = d.choose(0.0, d.between(-2.0, 5.0), weights=[3, 1])
     whole: list[str] = []
     if d.chance(0.7):
@@ -121,7 +125,9 @@ def _structure(seed: int, rng: np.random.Generator) -> Draft | None:
 
 
 def _drive(d: Draft) -> bool:
-    """Choose drives for all that is free, and their laws; False where nothing that can be driven moves it well."""
+    """Choose drives for all that is free, and their laws; False where nothing that can be driven
+    moves it well.
+    """
     joints = [j for j in d.movable() if j not in d.laws]
     order = [j for j in d.leads if j in joints]
     order += [str(j) for j in d.rng.permutation(joints) if j not in order]
@@ -180,9 +186,17 @@ def _law(d: Draft, joint: str) -> None:
     elif kind in ("line", "polynomial"):
         c1 = d.number(speed - 2 * gain * s if kind == "polynomial" else speed, None if s else 0.3)
         c2 = gain if kind == "polynomial" else 0.0
-        c0 = d.number(here - c1.value * s - c2 * s * s, None if s else 0.3 if d.whole else 0.005, d.defaults.get(joint))
+        c0 = d.number(
+            here - c1.value * s - c2 * s * s,
+            None if s else 0.3 if d.whole else 0.005,
+            d.defaults.get(joint),
+        )
         more = f", {c2!r}" if kind == "polynomial" else ""
-        d.drive(joint, f"motion.polynomial({c0.text}, {c1.text}{more})", f"{c0.text} + {c1.text} * t + {c2!r} * t**2")
+        d.drive(
+            joint,
+            f"motion.polynomial({c0.text}, {c1.text}{more})",
+            f"{c0.text} + {c1.text} * t + {c2!r} * t**2",
+        )
     elif kind == "harmonic":
         size, hertz, phase = speed / 3.0, d.between(0.2, 0.8), d.between(-3.0, 3.0)
         mean = here - size * math.sin(math.tau * hertz * s + phase)
@@ -200,7 +214,9 @@ def _law(d: Draft, joint: str) -> None:
 
 def _finish(seed: int, d: Draft) -> Drawn:
     """Loads, gravity, instants, posture; and the path."""
-    d.gravity = d.choose((0.0, -9.81), (0.0, 0.0), (d.between(-10, 10), d.between(-10, 10)), weights=[5, 1, 2])
+    d.gravity = d.choose(
+        (0.0, -9.81), (0.0, 0.0), (d.between(-10, 10), d.between(-10, 10)), weights=[5, 1, 2]
+    )
     if d.gravity != (0.0, -9.81):
         x, y = (d.number(value, 0.5) for value in d.gravity)
         d.lines.append(f"m.set_gravity({x.text}, {y.text})")
@@ -219,8 +235,13 @@ def _finish(seed: int, d: Draft) -> Drawn:
     path = follow(d, grid[1], 0.05 if d.whole else 0.1)
     if path.end < grid[1] and d.chance(0.8) and path.end > grid[0] + 0.05:
         stop = grid[0] + float(f"{0.9 * (path.end - grid[0]):.2g}")
-        scene_grid, grid = (scene_grid[0], max(stop, scene_grid[0] + 0.01), scene_grid[2]), (grid[0], stop, grid[2])
-    if all(text.startswith("motion.polynomial") and "," not in text for text, _ in d.laws.values()) and d.chance(0.5):  # at rest
+        scene_grid, grid = (
+            (scene_grid[0], max(stop, scene_grid[0] + 0.01), scene_grid[2]),
+            (grid[0], stop, grid[2]),
+        )
+    if all(
+        text.startswith("motion.polynomial") and "," not in text for text, _ in d.laws.values()
+    ) and d.chance(0.5):  # at rest
         scene_grid = grid = (d.start, d.start, 1)
     noise = d.choose(0.0, 0.02, 0.05, weights=[1, 4, 2])
     posture = {}
@@ -236,10 +257,16 @@ def _finish(seed: int, d: Draft) -> Drawn:
     if d.chance(0.3):
         d.lines = _shuffled(d)
     keywords = {"t": grid}
-    if moved := {name: value for name, (default, value) in d.parameters.items() if default != value}:
+    if moved := {
+        name: value for name, (default, value) in d.parameters.items() if default != value
+    }:
         keywords["parameters"] = moved
     if d.chance(0.1):
-        names = [f"section:{link}" for link in d.limited] + [f"reaction:{joint}" for joint in d.joints] + ["effort"]
+        names = (
+            [f"section:{link}" for link in d.limited]
+            + [f"reaction:{joint}" for joint in d.joints]
+            + ["effort"]
+        )
         keywords["wanted"] = ["motion", *(name for name in sorted(names) if d.chance(0.4))]
     return Drawn(seed, d, scene_grid, posture, keywords, path.until(grid[1]), told)
 
@@ -247,7 +274,12 @@ def _finish(seed: int, d: Draft) -> Drawn:
 def _shuffled(d: Draft) -> list[str]:
     """The declaration in another order, each line after those whose names it takes."""
     waiting, known, found = [str(line) for line in d.rng.permutation(d.lines)], set(), []
-    made = {name: line for line in d.lines for name in re.findall(r"\w+", line.partition(" = m.")[0]) if " = m." in line}
+    made = {
+        name: line
+        for line in d.lines
+        for name in re.findall(r"\w+", line.partition(" = m.")[0])
+        if " = m." in line
+    }
     while waiting:
         for line in waiting:
             own = {name for name in re.findall(r"\w+", line) if name in made and made[name] != line}

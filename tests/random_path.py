@@ -25,8 +25,8 @@ _OFF = 0.1
 class Path:
     """Motions at some instants, in the order of time.
 
-    ``end`` is how far they go, ``steadiness`` the least on the way, ``passes`` after which instant it first goes through zero:
-    there the mechanism may go on in two ways.
+    ``end`` is how far they go, ``steadiness`` the least on the way, ``passes`` after which instant
+    it first goes through zero: there the mechanism may go on in two ways.
     """
 
     times: list[float]
@@ -52,7 +52,8 @@ def ahead(motion: oracle.Result, h: float) -> dict[str, tuple[float, float, floa
 
 
 def follow(d, stop: float, largest: float, start: float | None = None, poses=None) -> Path:
-    """The path of a draft to an instant, from its posture or from other poses at another start, or as far as it goes.
+    """The path of a draft to an instant, from its posture or from other poses at another start, or
+    as far as it goes.
 
     ``largest`` is how far anything may move in a step, in radians and sizes of the mechanism.
     """
@@ -64,9 +65,19 @@ def follow(d, stop: float, largest: float, start: float | None = None, poses=Non
         return _path([], [], t)
     times, motions = [t], [motion]
     while t < stop and motion.steadiness > oracle.LEAST_STEADY:
-        parts = [(x, scale) for q in motion.q.values() for x, scale in zip(q, (size, size, 1.0), strict=True)]
-        speed, bend = max(abs(x.d) / scale for x, scale in parts), max(abs(x.a) / scale for x, scale in parts)
-        h, found = min(stop - t, largest / max(speed, math.sqrt(largest * bend), largest / (stop - t))), None
+        parts = [
+            (x, scale)
+            for q in motion.q.values()
+            for x, scale in zip(q, (size, size, 1.0), strict=True)
+        ]
+        speed, bend = (
+            max(abs(x.d) / scale for x, scale in parts),
+            max(abs(x.a) / scale for x, scale in parts),
+        )
+        h, found = (
+            min(stop - t, largest / max(speed, math.sqrt(largest * bend), largest / (stop - t))),
+            None,
+        )
         for _ in range(_TRIES):
             found = _step(d, motion, t, h if h < stop - t else stop - t, size)
             if found is not None:
@@ -82,7 +93,9 @@ def follow(d, stop: float, largest: float, start: float | None = None, poses=Non
 
 def _path(times, motions, end):
     steadiness = min((motion.steadiness for motion in motions), default=0.0)
-    passes = (times[k] for k, pair in enumerate(itertools.pairwise(motions)) if oracle.passed(*pair))
+    passes = (
+        times[k] for k, pair in enumerate(itertools.pairwise(motions)) if oracle.passed(*pair)
+    )
     return Path(times, motions, end, steadiness, next(passes, math.inf))
 
 
@@ -94,6 +107,14 @@ def _step(d, motion, t, h, size):
     except oracle.OpenLoopError:
         return None
     scales = (size, size, 1.0)
-    off = max(abs(x.v - y) / s for name in guess for x, y, s in zip(found.q[name], guess[name], scales, strict=True))
-    gone = max(abs(x.v - y.v) / s for name in guess for x, y, s in zip(found.q[name], motion.q[name], scales, strict=True))
+    off = max(
+        abs(x.v - y) / s
+        for name in guess
+        for x, y, s in zip(found.q[name], guess[name], scales, strict=True)
+    )
+    gone = max(
+        abs(x.v - y.v) / s
+        for name in guess
+        for x, y, s in zip(found.q[name], motion.q[name], scales, strict=True)
+    )
     return found if off <= _OFF * gone + 1e-9 else None

@@ -1,4 +1,5 @@
-"""Patterns that are tied by gears, equations of a user's and non-holonomic rows, or grown; and the list of all patterns.
+"""Patterns that are tied by gears, equations of a user's and non-holonomic rows, or grown; and the
+list of all patterns.
 
 As in :mod:`random_linkages`, each returns joints that may turn all the way round.
 """
@@ -14,7 +15,9 @@ from random_linkages import block, meeting
 
 
 def planetary(d: Draft) -> list[str]:
-    """An arm with planets, a sun that turns or is held, geared by joints' coordinates or by directions."""
+    """An arm with planets, a sun that turns or is held, geared by joints' coordinates or by
+    directions.
+    """
     at, turned = frame(d)
     arm = d.link(d.between(0.1, 0.3))
     d.put(d.base(arm), at(0.0, 0.0), turned(d.angle()))
@@ -27,7 +30,11 @@ def planetary(d: Draft) -> list[str]:
         if d.chance(0.5):
             d.gear(d.choose(shaft, main), pin, d.between(0.5, 3.0) * d.choose(-1, 1))
         else:
-            names = {**d.measured("direction", planet.body), **d.measured("direction", sun.body), **d.measured("direction", arm)}
+            names = {
+                **d.measured("direction", planet.body),
+                **d.measured("direction", sun.body),
+                **d.measured("direction", arm),
+            }
             p, s, a = names
             k = d.between(0.5, 2.0)
             d.constraint(d.held(f"({p} - {a}) + {k!r} * ({s} - {a})", names))
@@ -38,7 +45,10 @@ def geared_five_bar(d: Draft) -> list[str]:
     """Two cranks geared to each other, and two rods between them."""
     at, _ = frame(d)
     phi, psi, r = d.angle(), d.angle(), d.between(0.06, 0.12)
-    elbows = [(r * math.cos(phi), r * math.sin(phi)), (0.4 + 0.8 * r * math.cos(psi), 0.8 * r * math.sin(psi))]
+    elbows = [
+        (r * math.cos(phi), r * math.sin(phi)),
+        (0.4 + 0.8 * r * math.cos(psi), 0.8 * r * math.sin(psi)),
+    ]
     knee = meeting(elbows[0], d.between(0.4, 0.5), elbows[1], d.between(0.4, 0.5), d.choose(-1, 1))
     joints, ends = [], []
     for foot, elbow in zip(((0.0, 0.0), (0.4, 0.0)), elbows, strict=True):
@@ -68,7 +78,13 @@ def led_arm(d: Draft) -> list[str]:
         names = d.measured("place", spot)
         x = list(names)[axis if d.chance(0.8) else 1 - axis]
         law = d.choose("0.2 * t", "0.1 * sin(3.0 * t)", "0.3 * t**2", "0.1 * (cos(2.0 * t) - 1.0)")
-        attempt(d, lambda d, x=x, names=names, law=law: d.constraint(d.held(f"{x} - {law}", names)) and None, takes=1)
+        attempt(
+            d,
+            lambda d, x=x, names=names, law=law: (
+                d.constraint(d.held(f"{x} - {law}", names)) and None
+            ),
+            takes=1,
+        )
     return []
 
 
@@ -86,19 +102,33 @@ def rack(d: Draft) -> list[str]:
 def cam(d: Draft) -> list[str]:
     """A follower that an equation ties to the angle of a cam."""
     at, turned = frame(d)
-    wheel, follower = block(d, at(0.0, 0.0)), d.mass_point(at(0.0, d.between(0.2, 0.4)), d.between(0.1, 1.0))
+    wheel, follower = (
+        block(d, at(0.0, 0.0)),
+        d.mass_point(at(0.0, d.between(0.2, 0.4)), d.between(0.1, 1.0)),
+    )
     main = d.pin(d.ground(at(0.0, 0.0)), wheel)
     way = d.line("prismatic", "ground", follower, turned(math.pi / 2))
     q, s = d.measured("coordinate", main), d.measured("coordinate", way)
     (a,), (b,) = q, s
-    d.constraint(d.held(f"{b} - {d.between(0.02, 0.1)!r} * sin({a}) - {d.between(0.0, 0.03)!r} * cos(2.0 * {a})", q | s))
+    d.constraint(
+        d.held(
+            f"{b} - {d.between(0.02, 0.1)!r} * sin({a}) - {d.between(0.0, 0.03)!r} * cos(2.0 *"
+            f" {a})",
+            q | s,
+        )
+    )
     return [main]
 
 
 def sleigh(d: Draft) -> list[str]:
-    """A body on a skate that takes a curve: its motion is prescribed, the blade bears what one drive would."""
+    """A body on a skate that takes a curve: its motion is prescribed, the blade bears what one
+    drive would.
+    """
     at, turned = frame(d)
-    cross, pivot = block(d, at(0.0, 0.0), turned(d.angle())), block(d, at(0.0, 0.0), turned(d.angle()))
+    cross, pivot = (
+        block(d, at(0.0, 0.0), turned(d.angle())),
+        block(d, at(0.0, 0.0), turned(d.angle())),
+    )
     body = d.link(d.between(0.3, 0.6))
     d.put(d.base(body), at(0.0, 0.0), turned(0.0))
     x = d.line("prismatic", "ground", cross, turned(0.0), d.ground(at(0.0, 0.0)))
@@ -106,7 +136,11 @@ def sleigh(d: Draft) -> list[str]:
     turn = d.joint("revolute", pivot, d.base(body))
     w, r = d.between(0.3, 1.5) * d.choose(-1, 1), d.between(0.3, 2.0)
     t, first = f"{w!r} * (t - {d.start!r})", d.coordinate(turn)
-    for joint, law in ((x, f"{r!r} * sin({t})"), (y, f"{r!r} - {r!r} * cos({t})"), (turn, f"{first!r} + {t}")):
+    for joint, law in (
+        (x, f"{r!r} * sin({t})"),
+        (y, f"{r!r} - {r!r} * cos({t})"),
+        (turn, f"{first!r} + {t}"),
+    ):
         d.drive(joint, f"motion.expression(lambda t: {law})", law)
     speed, q = d.measured("place", d.base(body), rate=True), d.measured("direction", body)
     (vx, vy), (heading,) = speed, q

@@ -1,4 +1,6 @@
-"""What a random mechanism's evaluation is worth: right by the oracle, refused in words, or neither."""
+"""What a random mechanism's evaluation is worth: right by the oracle, refused
+in words, or neither.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,12 @@ class TooLongError(BaseException):
 
 @dataclass
 class Verdict:
-    """``kind`` is right, refused, wrong, broken (an exception that is not ours) or slow; ``why`` says it in a line.
+    """``kind`` is right, refused, wrong, broken (an exception that is not ours) or slow; ``why``
+    says it in a line.
 
-    ``regular`` tells of the whole motion that its loops close far from any dead centre, so that a refusal wants a reason. ``notes``
-    are doubts about a right result: condemned by its certificate, unique forces withheld, another assembly than in the posture.
+    ``regular`` tells of the whole motion that its loops close far from any dead centre, so that a
+    refusal wants a reason. ``notes`` are doubts about a right result: condemned by its certificate,
+    unique forces withheld, another assembly than in the posture.
     """
 
     seed: int
@@ -38,7 +42,9 @@ class Verdict:
     details: list[str] = field(default_factory=list)
 
 
-def judge(drawn: Drawn, seconds: float = 120.0, tolerance: float = TOLERANCE, claims: float = 0.0, **rung) -> Verdict:
+def judge(
+    drawn: Drawn, seconds: float = 120.0, tolerance: float = TOLERANCE, claims: float = 0.0, **rung
+) -> Verdict:
     """Evaluate a random mechanism, and compare with the oracle.
 
     A quantity may also be off by ``claims`` times what the solution itself says it may be.
@@ -46,32 +52,51 @@ def judge(drawn: Drawn, seconds: float = 120.0, tolerance: float = TOLERANCE, cl
     said = {"seed": drawn.seed, "regular": is_regular(drawn)}
     try:
         with _within(seconds), warnings.catch_warnings():
-            warnings.simplefilter("ignore", CertificateWarning)  # what the certificate says is among the notes
+            warnings.simplefilter(
+                "ignore", CertificateWarning
+            )  # what the certificate says is among the notes
             solution = evaluate(drawn.scene(), **drawn.keywords, **rung)
     except LagrangeCasadiError as error:
         return Verdict(kind="refused", why=f"{type(error).__name__}: {error}", **said)
     except TooLongError:
         return Verdict(kind="slow", why=f"no result after {seconds:g} s of the processor", **said)
     except Exception as error:  # whatever it is, it is not ours
-        return Verdict(kind="broken", why=f"{type(error).__name__}: {error}", details=[traceback.format_exc()], **said)
+        return Verdict(
+            kind="broken",
+            why=f"{type(error).__name__}: {error}",
+            details=[traceback.format_exc()],
+            **said,
+        )
     return compare(drawn, solution, tolerance, claims)
 
 
 def is_regular(drawn: Drawn) -> bool:
-    """Whether nothing stands against a result: all was told, the drives fit, and no dead centre is near."""
+    """Whether nothing stands against a result: all was told, the drives fit, and no dead centre is
+    near.
+    """
     path = drawn.path
-    return drawn.told and drawn.draft.fits and path.end >= drawn.grid[1] and path.steadiness > NEAR and path.passes == math.inf
+    return (
+        drawn.told
+        and drawn.draft.fits
+        and path.end >= drawn.grid[1]
+        and path.steadiness > NEAR
+        and path.passes == math.inf
+    )
 
 
 def compare(drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0) -> Verdict:
     """A solution beside the oracle."""
     said = {"seed": drawn.seed, "regular": is_regular(drawn)}
     if not drawn.draft.fits:
-        return Verdict(kind="wrong", why="there is a result, but the drives do not fit the freedoms", **said)
+        return Verdict(
+            kind="wrong", why="there is a result, but the drives do not fit the freedoms", **said
+        )
     found = Comparison(drawn, solution, tolerance, claims)
     found.look()
     kind = "wrong" if found.faults else "right"
-    return Verdict(kind=kind, why=(found.faults or [""])[0], notes=found.notes, details=found.faults, **said)
+    return Verdict(
+        kind=kind, why=(found.faults or [""])[0], notes=found.notes, details=found.faults, **said
+    )
 
 
 def reason(why: str) -> str:

@@ -14,7 +14,12 @@ from lagrange_casadi.motion import polynomial
 
 CASES = Path(__file__).parent.parent / "cases"
 
-HOSTILE = ("<script>window.told = 1</script>", "</script><!--", '"><img src=x onerror=window.told=1>', "a & b 'c' ξ 日本")
+HOSTILE = (
+    "<script>window.told = 1</script>",
+    "</script><!--",
+    '"><img src=x onerror=window.told=1>',
+    "a & b 'c' ξ 日本",
+)
 """Names that would be markup where a page took them for such."""
 
 
@@ -30,14 +35,20 @@ def solved(name, count=41):
 def press(t=(0, 0.628, 9), wanted=("all",), unit="m"):
     """The slider-crank of the README."""
     m = Mechanism("press")
-    crank, rod = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=m.parameter("l", 0.5, unit, low=0.0), mass=2.0)
+    crank, rod = (
+        m.link("crank", length=0.1, mass=1.2),
+        m.link("rod", length=m.parameter("l", 0.5, unit, low=0.0), mass=2.0),
+    )
     ram = m.point_mass("ram", 15.0)
     drive = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.output("own", m.rate(drive), unit=unit)
-    return evaluate(Scene(m, {"O": polynomial(0, 10)}, t=t, posture={"rod": 1.5}, wanted=list(wanted)), backend="vm")
+    return evaluate(
+        Scene(m, {"O": polynomial(0, 10)}, t=t, posture={"rod": 1.5}, wanted=list(wanted)),
+        backend="vm",
+    )
 
 
 @functools.cache
@@ -47,16 +58,33 @@ def snowed(space=False):
     bar = m.link("bar", length=m.parameter("l", 2.0, "m", low=0.0), mass=3.0)
     m.revolute("O", m.ground, bar, **({"axis": (0, 0, 1)} if space else {}))
     m.force("push", bar.at(0.7), x=1.0, y=20.0)
-    m.line_load("snow", bar, x=(1.0, 2.0), y=(-40.0, 0.0), **({"z": (5.0, 60.0)} if space else {}), between=(0.3, 1.4))
+    m.line_load(
+        "snow",
+        bar,
+        x=(1.0, 2.0),
+        y=(-40.0, 0.0),
+        **({"z": (5.0, 60.0)} if space else {}),
+        between=(0.3, 1.4),
+    )
     return evaluate(Scene(m, {"O": polynomial(0, 3)}, t=(0, 1, 9)), backend="vm")
 
 
 @functools.cache
 def wound():
-    """A bar in space that tumbles, whose slices have rotary inertia that changes along it, under a load along a part of it."""
+    """A bar in space that tumbles, whose slices have rotary inertia that changes along it, under a
+    load along a part of it.
+    """
     m = SpatialMechanism("wound")
-    slices = {"yy": density.polynomial(0.02, 0.03, -0.01), "zz": density.polynomial(0.05), "yz": density.polynomial(0.0, 4e-3)}
-    bar = m.link("bar", length=m.parameter("l", 0.8, "m"), density=density.thick(density.polynomial(3.0, 1.0), **slices))
+    slices = {
+        "yy": density.polynomial(0.02, 0.03, -0.01),
+        "zz": density.polynomial(0.05),
+        "yz": density.polynomial(0.0, 4e-3),
+    }
+    bar = m.link(
+        "bar",
+        length=m.parameter("l", 0.8, "m"),
+        density=density.thick(density.polynomial(3.0, 1.0), **slices),
+    )
     m.spherical("O", m.ground, bar)
     m.line_load("snow", bar, y=(-40.0, 0.0), z=(5.0, 60.0), between=(0.3, 0.5))
     m.force("push", bar.at(0.2), x=1.0, y=20.0, z=-4.0)
@@ -76,8 +104,17 @@ def hostile():
             return [renamed(one) for one in value]
         return names.get(value, value) if isinstance(value, str) else value
 
-    outputs = {replace(output, part=names.get(output.part, output.part)): values for output, values in solution.outputs.items()}
-    return replace(solution, case=HOSTILE[0], outputs=outputs, description=renamed(solution.description), errors={})
+    outputs = {
+        replace(output, part=names.get(output.part, output.part)): values
+        for output, values in solution.outputs.items()
+    }
+    return replace(
+        solution,
+        case=HOSTILE[0],
+        outputs=outputs,
+        description=renamed(solution.description),
+        errors={},
+    )
 
 
 def held(text):

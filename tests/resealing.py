@@ -1,6 +1,8 @@
-"""Files damaged at random and sealed anew, so that HDF5 sees the damage, each read in a process of its own.
+"""Files damaged at random and sealed anew, so that HDF5 sees the damage, each read in a process of
+its own.
 
-``python resealing.py FILE SEED COUNT`` prints how each reading ended, a line each; of a journal too, whose lines get new checksums.
+``python resealing.py FILE SEED COUNT`` prints how each reading ended, a line each; of a journal
+too, whose lines get new checksums.
 """
 
 from __future__ import annotations
@@ -40,11 +42,20 @@ _MADE_BY = {"schema_version", "versions", "backend", "precision", "compiler", "f
 ONCE = {
     SCHEMA: _MADE_BY | {"figures", "error_estimate"},
     f"{SCHEMA}-sweep": _MADE_BY | {"keep", "sources", "scene"},
-    f"{SCHEMA}-optimum": {"case", "minimised", "unit", "residual", "curvature", "transmission", "evaluations", "multiplier"},
+    f"{SCHEMA}-optimum": {
+        "case",
+        "minimised",
+        "unit",
+        "residual",
+        "curvature",
+        "transmission",
+        "evaluations",
+        "multiplier",
+    },
 }
-"""Attributes that nothing else in a file tells, and from which nothing else follows: with what numbers were made, how far they may
-be off, what a search was for. Only the seal tells whether they were changed, so a forged seal hides that. Versions of a schema that
-are read are all read alike."""
+"""Attributes that nothing else in a file tells, and from which nothing else follows: with what
+numbers were made, how far they may be off, what a search was for. Only the seal tells whether they
+were changed, so a forged seal hides that. Versions of a schema that are read are all read alike."""
 
 
 def contents(path: Path, once: Container[str]) -> str:
@@ -52,8 +63,14 @@ def contents(path: Path, once: Container[str]) -> str:
     said: list[str] = []
 
     def visit(place: str, item: object) -> None:
-        attributes = {name: repr(value) for name, value in item.attrs.items() if name not in LISTS and name not in once}
-        said.append(f"{place} {attributes} {item[()].tobytes() if isinstance(item, h5py.Dataset) else ''}")
+        attributes = {
+            name: repr(value)
+            for name, value in item.attrs.items()
+            if name not in LISTS and name not in once
+        }
+        said.append(
+            f"{place} {attributes} {item[()].tobytes() if isinstance(item, h5py.Dataset) else ''}"
+        )
 
     with h5py.File(path) as file:
         visit("/", file)
@@ -68,7 +85,10 @@ def read_file(path: Path, out: int, original: str, once: Container[str]) -> None
         answer(str(path))
         file.seek(0)
         told = json.loads(file.read())
-    if "cannot be read: " in told["refused"] and "Error" in told["refused"].partition("cannot be read: ")[2].partition(":")[0]:
+    if (
+        "cannot be read: " in told["refused"]
+        and "Error" in told["refused"].partition("cannot be read: ")[2].partition(":")[0]
+    ):
         word = f"traceback {told['refused']}"
     elif told["refused"] or told["findings"]:
         word = "refused" if told["refused"] else "found"
@@ -119,10 +139,26 @@ def ending(read, *arguments: object) -> str:
 
 
 def checked(path: Path) -> str:
-    """What the command itself makes of a file that crashes or stalls: a line and status 1, or else this tells."""
-    command = [sys.executable, "-m", "lagrange_casadi", "check", "--untrusted", "--time-limit", f"{SECONDS:g}", str(path)]
+    """What the command itself makes of a file that crashes or stalls: a line and status 1, or else
+    this tells.
+    """
+    command = [
+        sys.executable,
+        "-m",
+        "lagrange_casadi",
+        "check",
+        "--untrusted",
+        "--time-limit",
+        f"{SECONDS:g}",
+        str(path),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=6 * SECONDS, check=False)
-    one = done.returncode == 1 and not done.stdout and done.stderr.count("\n") == 1 and done.stderr.startswith("error: ")
+    one = (
+        done.returncode == 1
+        and not done.stdout
+        and done.stderr.count("\n") == 1
+        and done.stderr.startswith("error: ")
+    )
     return "told" if one else f"unnoticed: {done.returncode} {done.stdout}{done.stderr}"
 
 

@@ -1,7 +1,9 @@
-"""Friction beside the oracle: its law by fixed-point iteration, to convergence, around vector Newton-Euler on free bodies.
+"""Friction beside the oracle: its law by fixed-point iteration, to convergence, around vector
+Newton-Euler on free bodies.
 
-It shares nothing with the package: rates come from the oracle's power series. Reactions are linear in the frictions' forces, so a
-balance of all bodies for each of these alone tells them all; the one with what was found in the end must agree.
+It shares nothing with the package: rates come from the oracle's power series. Reactions are linear
+in the frictions' forces, so a balance of all bodies for each of these alone tells them all; the one
+with what was found in the end must agree.
 """
 
 from __future__ import annotations
@@ -43,7 +45,10 @@ class Rub:
         c, s = self.arithmetic.cos(turned.v), self.arithmetic.sin(turned.v)
         dx, dy = cx.v - bx.v, cy.v - by.v
         there = (parent, c * dx + s * dy, c * dy - s * dx)
-        return [(child, self.force * x, self.force * y, 0.0), (there, -self.force * x, -self.force * y, 0.0)]
+        return [
+            (child, self.force * x, self.force * y, 0.0),
+            (there, -self.force * x, -self.force * y, 0.0),
+        ]
 
     def axis(self, place: Callable) -> tuple[float, float]:
         turned = place((self.joint.parent[0], 0.0, 0.0))[2].v
@@ -51,7 +56,9 @@ class Rub:
         return c * x - s * y, s * x + c * y
 
     def rate(self, place: Callable) -> float:
-        """The rate of the joint's coordinate: of the angle, or of the distance along the carried line."""
+        """The rate of the joint's coordinate: of the angle, or of the distance along the carried
+        line.
+        """
         (px, py, turned), (cx, cy, other) = place(self.joint.parent), place(self.joint.child)
         if not self.joint.slides:
             return other.d - turned.d
@@ -95,7 +102,12 @@ def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
     slopes = np.stack([(balanced(unit)[1] - alone) / size for unit in units], axis=-1)
     forces = a.zeros(n)
     for _ in range(PASSES):
-        before, forces = forces, a.array([rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)])
+        before, forces = (
+            forces,
+            a.array(
+                [rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
+            ),
+        )
         if np.max(np.abs(forces - before)) <= a.tolerance / 10 * size:
             break
     result, reactions = balanced(forces)
@@ -105,17 +117,24 @@ def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
 
 
 def solve(oracle: Oracle, m, values, drives, guess) -> Result:
-    """The oracle of a mechanism of the package's, with the frictions that are declared in that, if any."""
+    """The oracle of a mechanism of the package's, with the frictions that are declared in that, if
+    any.
+    """
     a, joints = oracle.arithmetic, {joint.name: joint for joint in oracle.joints}
     rubs: dict[str, Rub] = {}
     for load in m.loads.values():
         if type(load).__name__ == "Friction":
-            numbers = {word: a.number(m.number(number, values)) for word, number in load.numbers.items()}
+            numbers = {
+                word: a.number(m.number(number, values)) for word, number in load.numbers.items()
+            }
             rubs[load.name] = Rub(joints[load.joint.name], **numbers, arithmetic=a)
     if not rubs:
         return oracle.solve(drives, guess)
     result = solve_rubbing(oracle, [*rubs.values()], oracle._numbers(drives), guess)
     place = oracle.places(result)
     for name, rub in rubs.items():
-        result.frictions |= {f"friction:{name}:along": rub.force, f"friction:{name}:loss": -rub.force * rub.rate(place)}
+        result.frictions |= {
+            f"friction:{name}:along": rub.force,
+            f"friction:{name}:loss": -rub.force * rub.rate(place),
+        }
     return result

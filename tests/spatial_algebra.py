@@ -1,7 +1,7 @@
 """Vectors, turns and linear equations in space, of an :mod:`arithmetic`'s numbers.
 
-Linear equations are solved in any number of digits by refinement: a pseudo-inverse in doubles gains about fourteen digits a pass,
-whatever the digits of the residual. Singular values tell the rank.
+Linear equations are solved in any number of digits by refinement: a pseudo-inverse in doubles gains
+about fourteen digits a pass, whatever the digits of the residual. Singular values tell the rank.
 """
 
 from __future__ import annotations
@@ -32,7 +32,10 @@ def vector(arithmetic, values):
 
 
 def cross(a, b):
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], dtype=a.dtype)
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]],
+        dtype=a.dtype,
+    )
 
 
 def skew(a):
@@ -70,7 +73,9 @@ def orthonormal(arithmetic, matrix):
     y = unit(arithmetic, columns[1] - x * (x @ columns[1]))
     z = cross(x, y)
     for given, column in zip(columns, (x, y, z), strict=True):
-        assert max(abs(given - column)) < 1e-4, "an orientation is three unit columns at right angles, right-handed"
+        assert max(abs(given - column)) < 1e-4, (
+            "an orientation is three unit columns at right angles, right-handed"
+        )
     return np.array([x, y, z], dtype=x.dtype).T
 
 
@@ -88,8 +93,8 @@ class InconsistentError(AssertionError):
 class Factored:
     """A matrix with its pseudo-inverse in doubles, its rows and columns in comparable units.
 
-    ``null`` spans what the matrix sends to zero, in those units; ``vague`` where a singular value is neither zero nor clearly
-    another number; ``least`` is the smallest one that is not zero.
+    ``null`` spans what the matrix sends to zero, in those units; ``vague`` where a singular value
+    is neither zero nor clearly another number; ``least`` is the smallest one that is not zero.
     """
 
     matrix: np.ndarray
@@ -126,7 +131,9 @@ class Factored:
             step = self.inverse @ left.astype(float)
             found = found + vector(arithmetic, step)
             size = float(max(abs(step)))
-            if size <= arithmetic.tolerance * float(max(abs(found))) / 100 or (before is not None and size >= before / 2):
+            if size <= arithmetic.tolerance * float(max(abs(found))) / 100 or (
+                before is not None and size >= before / 2
+            ):
                 break
             before = size
         left = max(abs(right - self.matrix @ found))

@@ -1,7 +1,9 @@
-"""Random mechanisms as users tell them: any joints, told from either body, in loops or not, with hard points or relative.
+"""Random mechanisms as users tell them: any joints, told from either body, in loops or not, with
+hard points or relative.
 
-Bodies are put anywhere, and joints where they are then, so that all coordinates are zero at the start. Axes are anyhow, or along
-the axes of a body or of the ground. What is driven is drawn from all coordinates, what bears the efforts once more.
+Bodies are put anywhere, and joints where they are then, so that all coordinates are zero at the
+start. Axes are anyhow, or along the axes of a body or of the ground. What is driven is drawn from
+all coordinates, what bears the efforts once more.
 """
 
 from __future__ import annotations
@@ -12,7 +14,18 @@ import numpy as np
 from arithmetic import DOUBLE
 from spatial_bodies import AXES, GROUND, Joint, Mechanism, Rigid, Rod
 from spatial_bridge import across_axis
-from spatial_draft import Drawn, Law, across, acting, body, direction, frame, orientation, point_on, rod
+from spatial_draft import (
+    Drawn,
+    Law,
+    across,
+    acting,
+    body,
+    direction,
+    frame,
+    orientation,
+    point_on,
+    rod,
+)
 from spatial_mechanisms import STEADY, steady
 from spatial_motion import Motion, OpenLoopError
 
@@ -30,7 +43,15 @@ HANGING = {
 }
 """The joints on which bodies hang, and how often each."""
 
-CLOSING = {"revolute": 1, "prismatic": 1, "cylindrical": 3, "universal": 3, "spherical": 5, "planar": 2, "slot": 3}
+CLOSING = {
+    "revolute": 1,
+    "prismatic": 1,
+    "cylindrical": 3,
+    "universal": 3,
+    "spherical": 5,
+    "planar": 2,
+    "slot": 3,
+}
 """Those that close loops. A screw there is told to be driven itself."""
 
 DRIVEN = ("revolute", "prismatic", "cylindrical", "universal", "screw", "planar")
@@ -55,7 +76,9 @@ class _Draft:
         r, R = self.poses[name]
         if name == GROUND:
             return self.rng.normal(size=3) * 0.4
-        return r + R @ (point_on(self.rng, self.bodies[name]) if self.rng.random() < 0.8 else np.zeros(3))
+        return r + R @ (
+            point_on(self.rng, self.bodies[name]) if self.rng.random() < 0.8 else np.zeros(3)
+        )
 
     def put(self, one, r, R) -> None:
         self.bodies[one.name], self.poses[one.name] = one, (r, R)
@@ -74,13 +97,17 @@ class _Draft:
         u, v = R.T @ axis, R.T @ across(rng, axis)
         turns = np.array([u, v, np.cross(u, v)]) if rng.random() < 0.6 else np.array(AXES, float)
         if kind == "slot":
-            turns = np.array(across_axis(axis)) @ R if {parent, child} <= self.hard else across_axis(u)
+            turns = (
+                np.array(across_axis(axis)) @ R if {parent, child} <= self.hard else across_axis(u)
+            )
         lead = rng.uniform(0.05, 0.4) * rng.choice([-1, 1]) if kind == "screw" else 0
         ends = self._on(parent, R.T @ (at - r)), self._on(child, S.T @ (at - s))
         self.joints.append(Joint(name, kind, parent, child, *ends, u, v, lead, turns, R.T @ S))
 
     def _on(self, name, point):
-        """A point of a rod lies within it, and on its axis or at its ends to the last digit where it does at all."""
+        """A point of a rod lies within it, and on its axis or at its ends to the last digit where
+        it does at all.
+        """
         one = self.bodies.get(name)
         if not isinstance(one, Rod):
             return point
@@ -91,7 +118,9 @@ class _Draft:
         return np.array([x, *aside])
 
     def hang(self, one, name) -> None:
-        """Hang a body on one before it, or on the ground; now and then its axes lie along the other's."""
+        """Hang a body on one before it, or on the ground; now and then its axes lie along the
+        other's.
+        """
         rng = self.rng
         parent = str(rng.choice([*self.bodies])) if self.bodies and rng.random() < 0.75 else GROUND
         at, R = self.place(parent), orientation(rng)
@@ -113,7 +142,12 @@ class _Draft:
         if np.array_equal(start, end):
             raise OpenLoopError("a rod has no length")
         bar = rng.random() < 0.3
-        link = rod(rng, f"bar{number}" if bar else f"rod{number}", float(np.linalg.norm(end - start)), slender=bar)
+        link = rod(
+            rng,
+            f"bar{number}" if bar else f"rod{number}",
+            float(np.linalg.norm(end - start)),
+            slender=bar,
+        )
         self.put(link, start, frame(end - start, rng))
         for name, far, at in ((f"p{number}", one, start), (f"q{number}", other, end)):
             self.join(name, "spherical" if bar else self.pick(CLOSING), far, link.name, at)
@@ -152,7 +186,10 @@ def anyhow(rng) -> Drawn:
     acts = acting(rng, [one for one in bodies if one.name not in bars])
     mechanism = Mechanism(bodies, draft.joints, **acts)
     guess = {name: pose for name, pose in draft.poses.items() if name != GROUND}
-    laws = {key: Law(0.0, rng.uniform(-1, 1), rng.uniform(0, 0.05), 3.0) for key in _driven(rng, mechanism, guess, len(bars))}
+    laws = {
+        key: Law(0.0, rng.uniform(-1, 1), rng.uniform(0, 0.05), 3.0)
+        for key in _driven(rng, mechanism, guess, len(bars))
+    }
     pushed = _driven(rng, mechanism, guess, len(bars)) if rng.random() < 0.35 else None
     drawn = Drawn(mechanism, laws, guess, pushed, span=0.3, idle=len(bars))
     return dataclasses.replace(drawn, hard=frozenset(draft.hard))

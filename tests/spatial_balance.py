@@ -1,9 +1,11 @@
 """The balance of force and moment of every free body, for the wrenches that all joints pass.
 
-The unknowns are six a joint: what the parent does to the child, ground axes, its moment about the child's point. A coordinate
-without an effort passes no power: one more equation each. The effort of another is its power for a unit rate, and what that
-effort does is taken out of the reaction. A coupling is one more unknown: its multiplier acts on its coordinates as efforts do. So
-does that of a non-holonomic constraint, and on points as forces; the motion is given, and looked at whether it fulfils it.
+The unknowns are six a joint: what the parent does to the child, ground axes, its moment about the
+child's point. A coordinate without an effort passes no power: one more equation each. The effort of
+another is its power for a unit rate, and what that effort does is taken out of the reaction. A
+coupling is one more unknown: its multiplier acts on its coordinates as efforts do. So does that of
+a non-holonomic constraint, and on points as forces; the motion is given, and looked at whether it
+fulfils it.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from spread import weights
 
 @dataclass(frozen=True)
 class Acting:
-    """A force and a moment on a body at a place, ground axes; ``of`` is the load along the body that it is a share of."""
+    """A force and a moment on a body at a place, ground axes; ``of`` is the load along the body
+    that it is a share of.
+    """
 
     body: str
     place: np.ndarray
@@ -34,17 +38,26 @@ def shares(arithmetic, spread, pose, low, high) -> list[Acting]:
     """Forces that do what a load along a body does between two distances."""
     found = []
     for place, weight in weights() if low < high else ():
-        place, weight = (arithmetic.number(x.numerator) / arithmetic.number(x.denominator) for x in (place, weight))
+        place, weight = (
+            arithmetic.number(x.numerator) / arithmetic.number(x.denominator)
+            for x in (place, weight)
+        )
         x = low + (high - low) * place
         force = arithmetic.array(spread.at(x)) * (weight * (high - low))
         force = pose.R @ force if spread.turning else force
-        found.append(Acting(spread.body, pose.at(arithmetic.array([x, x * 0, x * 0])), force, force * 0, spread))
+        found.append(
+            Acting(
+                spread.body, pose.at(arithmetic.array([x, x * 0, x * 0])), force, force * 0, spread
+            )
+        )
     return found
 
 
 @dataclass(frozen=True)
 class Tie:
-    """What a unit of a multiplier does: efforts by (joint, index), and forces at places, each (body, place, force)."""
+    """What a unit of a multiplier does: efforts by (joint, index), and forces at places, each
+    (body, place, force).
+    """
 
     name: str
     terms: dict
@@ -53,7 +66,9 @@ class Tie:
 
 @dataclass(frozen=True)
 class Wrenches:
-    """What all joints pass, ``found`` six numbers each, and multipliers by tie; ``null`` (in doubles) varies them at will."""
+    """What all joints pass, ``found`` six numbers each, and multipliers by tie; ``null`` (in
+    doubles) varies them at will.
+    """
 
     found: dict[str, Any]
     null: list[dict[str, Any]]
@@ -76,17 +91,36 @@ class Balance:
 
     @cached_property
     def ties(self) -> list[Tie]:
-        """Couplings and rows. Raises :class:`spatial_algebra.InconsistentError` where the motion does not fulfil a row."""
+        """Couplings and rows.
+
+        Raises :class:`spatial_algebra.InconsistentError` where the motion does not fulfil a row.
+        """
         a = self.motion.arithmetic
-        found = [Tie(c.name, {key: a.number(x) for key, x in c.terms.items()}, []) for c in self.mechanism.couplings]
+        found = [
+            Tie(c.name, {key: a.number(x) for key, x in c.terms.items()}, [])
+            for c in self.mechanism.couplings
+        ]
         for row in self.mechanism.rows:
             terms, directions = row.of(a, {key: self.values[key][0] for key in row.keys})
             points = [(body, vector(a, point), way) for (body, point), way in directions.items()]
             parts = [x * self.values[key][1] for key, x in terms.items()]
-            parts += [x * v for body, point, way in points for x, v in zip(way, self.poses[body].velocity(point), strict=True)]
+            parts += [
+                x * v
+                for body, point, way in points
+                for x, v in zip(way, self.poses[body].velocity(point), strict=True)
+            ]
             if abs(sum(parts)) > 1000 * a.tolerance * max(map(abs, parts)):
                 raise InconsistentError(f"the motion does not fulfil '{row.name}'")
-            found.append(Tie(row.name, terms, [(body, self.poses[body].at(point), a.array(way)) for body, point, way in points]))
+            found.append(
+                Tie(
+                    row.name,
+                    terms,
+                    [
+                        (body, self.poses[body].at(point), a.array(way))
+                        for body, point, way in points
+                    ],
+                )
+            )
         return found
 
     @property
@@ -98,16 +132,21 @@ class Balance:
         return self.poses[joint.child].at(self.motion.at_child[joint.name])
 
     def twists(self, joint: Joint):
-        """Of every axis, what the child's point and the child do for a unit rate: index (None for a loose turn), v, w."""
+        """Of every axis, what the child's point and the child do for a unit rate: index (None for a
+        loose turn), v, w.
+        """
         kept = self.motion.kept(joint)
         passage = self.motion.passage(joint, self.poses[joint.parent], self.values)
-        idle = len(joint.turning) == 3 and not {(joint.name, k) for k in joint.turning} & self.active
+        idle = (
+            len(joint.turning) == 3 and not {(joint.name, k) for k in joint.turning} & self.active
+        )
         for k, u in zip(kept, passage.directions, strict=True):
             axis = self.motion.axes[joint.name][k]
             if not (idle and axis.turns):
                 yield k, u * axis.slide, u if axis.turns else u * 0
         if idle:
-            # Three turns, whatever their axes: no moment about any, so that nothing is singular where axes meet.
+            # Three turns, whatever their axes: no moment about any, so that nothing is singular
+            # where axes meet.
             for e in identity(self.motion.arithmetic):
                 yield None, e * 0, e
 
@@ -121,14 +160,21 @@ class Balance:
                 force, torque = pose.R @ force, pose.R @ torque
             found.append(Acting(load.body, pose.at(vector(arithmetic, load.point)), force, torque))
         for spring in self.mechanism.springs:
-            (a, at_a), (b, at_b) = ((name, vector(arithmetic, point)) for name, point in spring.ends)
+            (a, at_a), (b, at_b) = (
+                (name, vector(arithmetic, point)) for name, point in spring.ends
+            )
             way = self.poses[b].at(at_b) - self.poses[a].at(at_a)
             length = arithmetic.sqrt(way @ way)
             speed = (self.poses[b].velocity(at_b) - self.poses[a].velocity(at_a)) @ way / length
-            tension = arithmetic.number(spring.stiffness) * (length - arithmetic.number(spring.free))
+            tension = arithmetic.number(spring.stiffness) * (
+                length - arithmetic.number(spring.free)
+            )
             tension += arithmetic.number(spring.damping) * speed
             pull = way * (tension / length)
-            found += [Acting(a, self.poses[a].at(at_a), pull, way * 0), Acting(b, self.poses[b].at(at_b), -pull, way * 0)]
+            found += [
+                Acting(a, self.poses[a].at(at_a), pull, way * 0),
+                Acting(b, self.poses[b].at(at_b), -pull, way * 0),
+            ]
         for spread in self.mechanism.spreads:
             ends = arithmetic.number(spread.start), arithmetic.number(spread.end)
             found += shares(arithmetic, spread, self.poses[spread.body], *ends)
@@ -140,9 +186,15 @@ class Balance:
         for joint in self.mechanism.joints:
             force, moment = wrenches[joint.name][:3], wrenches[joint.name][3:]
             at = self.point(joint)
-            found += [Acting(joint.child, at, force, moment), Acting(joint.parent, at, -force, -moment)]
+            found += [
+                Acting(joint.child, at, force, moment),
+                Acting(joint.parent, at, -force, -moment),
+            ]
         for tie in self.ties:
-            found += [Acting(body, place, force * wrenches[tie.name], force * 0) for body, place, force in tie.forces]
+            found += [
+                Acting(body, place, force * wrenches[tie.name], force * 0)
+                for body, place, force in tie.forces
+            ]
         return [one for one in found if one.body != GROUND]
 
     def inertia(self, body):
@@ -154,8 +206,15 @@ class Balance:
         return force, inertia @ pose.alpha + cross(pose.w, inertia @ pose.w), pose.at(centre)
 
     def solve(self) -> Wrenches:
-        """The wrenches of all joints. Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies."""
-        arithmetic, joints, bodies = self.motion.arithmetic, self.mechanism.joints, self.mechanism.bodies
+        """The wrenches of all joints.
+
+        Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies.
+        """
+        arithmetic, joints, bodies = (
+            self.motion.arithmetic,
+            self.mechanism.joints,
+            self.mechanism.bodies,
+        )
         nought, size = arithmetic.number(0), self.mechanism.size
         needs = {b.name: self.inertia(b) for b in bodies}
         row = {b.name: 6 * i for i, b in enumerate(bodies)}
@@ -192,16 +251,22 @@ class Balance:
         columns = np.array(([1.0] * 3 + [size] * 3) * len(joints) + [size] * len(self.ties))
         rows = np.array(([1.0] * 3 + [size] * 3) * len(bodies) + units)
         factored = Factored.of(matrix, rows, columns)
-        found = factored.solve(arithmetic, right, "the spatial oracle's forces do not balance its bodies")
+        found = factored.solve(
+            arithmetic, right, "the spatial oracle's forces do not balance its bodies"
+        )
 
         def named(column):
             multipliers = {tie.name: column[c] for c, tie in enumerate(self.ties, 6 * len(joints))}
             return {j.name: column[6 * i : 6 * i + 6] for i, j in enumerate(joints)} | multipliers
 
-        return Wrenches(named(found), [named(columns * column) for column in factored.null.T], factored.vague)
+        return Wrenches(
+            named(found), [named(columns * column) for column in factored.null.T], factored.vague
+        )
 
     def split(self, joint: Joint, wrenches):
-        """The efforts of a joint's pushed axes by index, and its reaction without them and couplings, of what all joints pass."""
+        """The efforts of a joint's pushed axes by index, and its reaction without them and
+        couplings, of what all joints pass.
+        """
         wrench = wrenches[joint.name]
         force, moment, efforts = wrench[:3], wrench[3:], {}
         twists = {k: (v, w) for k, v, w in self.twists(joint) if k is not None}
@@ -210,7 +275,10 @@ class Balance:
                 continue
             power = wrench[:3] @ v + wrench[3:] @ w
             if (joint.name, k) in self.pushed:
-                coupled = [tie.terms.get((joint.name, k), power * 0) * wrenches[tie.name] for tie in self.ties]
+                coupled = [
+                    tie.terms.get((joint.name, k), power * 0) * wrenches[tie.name]
+                    for tie in self.ties
+                ]
                 efforts[k] = power - sum(coupled, power * 0)
             if k not in joint.turning:
                 force = force - v * power
@@ -218,7 +286,9 @@ class Balance:
                 moment = moment - w * power
             else:
                 # A couple that does its power on this turn and none on the two others.
-                _, b, c = (twists[joint.turning[(joint.turning.index(k) + i) % 3]][1] for i in range(3))
+                _, b, c = (
+                    twists[joint.turning[(joint.turning.index(k) + i) % 3]][1] for i in range(3)
+                )
                 across = cross(b, c)
                 moment = moment - across * (power / (across @ w))
         return efforts, np.concatenate([force, moment])

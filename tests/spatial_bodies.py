@@ -1,4 +1,7 @@
-"""What the spatial oracle is told of a mechanism: plain data of its own. Numbers may be doubles, strings or of any arithmetic."""
+"""What the spatial oracle is told of a mechanism: plain data of its own.
+
+Numbers may be doubles, strings or of any arithmetic.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,18 @@ GROUND = "ground"
 NIL = (0, 0, 0)
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 _TURNS = {"spherical": 3, "slot": 3, "free": 3, "universal": 2, "prismatic": 0, "weld": 0}
-KINDS = ("revolute", "prismatic", "cylindrical", "universal", "spherical", "screw", "planar", "slot", "weld", "free")
+KINDS = (
+    "revolute",
+    "prismatic",
+    "cylindrical",
+    "universal",
+    "spherical",
+    "screw",
+    "planar",
+    "slot",
+    "weld",
+    "free",
+)
 
 
 @dataclass(frozen=True)
@@ -42,9 +56,10 @@ class Rigid:
 class Rod:
     """A straight body from its origin along its x.
 
-    ``density`` is mass per length (kg/m) over the ratio xi; ``polar``, ``lateral_y``, ``lateral_z`` are a slice's moments of
-    inertia per length about x, y and z through its centre, ``product`` its yz entry (kg m). Each is a function of xi, or the
-    coefficients of a polynomial in it; smooth between ``breaks``.
+    ``density`` is mass per length (kg/m) over the ratio xi; ``polar``, ``lateral_y``, ``lateral_z``
+    are a slice's moments of inertia per length about x, y and z through its centre, ``product`` its
+    yz entry (kg m). Each is a function of xi, or the coefficients of a polynomial in it; smooth
+    between ``breaks``.
     """
 
     name: str
@@ -57,7 +72,9 @@ class Rod:
     breaks: Vector = (0, 1)
 
     def slices(self, arithmetic, start=0, end=1):
-        """Slices between two ratios: places along the rod, masses, and moments of inertia (3x3), by Gauss' rule."""
+        """Slices between two ratios: places along the rod, masses, and moments of inertia (3x3), by
+        Gauss' rule.
+        """
         nodes, weights = arithmetic.gauss
         length, zero = arithmetic.number(self.length), arithmetic.number(0)
         for a, b in itertools.pairwise(vector(arithmetic, self.breaks)):
@@ -66,7 +83,10 @@ class Rod:
                 continue
             for node, weight in zip(nodes, weights, strict=True):
                 xi, w = a + (node + 1) / 2 * (b - a), weight * (b - a) / 2 * length
-                j, y, z, p = (_value(arithmetic, law, xi) * w for law in (self.polar, self.lateral_y, self.lateral_z, self.product))
+                j, y, z, p = (
+                    _value(arithmetic, law, xi) * w
+                    for law in (self.polar, self.lateral_y, self.lateral_z, self.product)
+                )
                 inertia = arithmetic.array([[j, zero, zero], [zero, y, p], [zero, p, z]])
                 yield xi * length, _value(arithmetic, self.density, xi) * w, inertia
 
@@ -97,7 +117,9 @@ def uniform(name, length, mass) -> Rod:
 
 
 def second_moments(yy: Law, zz: Law, yz: Law = ()) -> dict[str, Law]:
-    """The slices' laws of a rod from its second moments of mass per length: sums of y y, z z and y z over the section."""
+    """The slices' laws of a rod from its second moments of mass per length: sums of y y, z z and y
+    z over the section.
+    """
 
     def at(law, xi):
         return law(xi) if callable(law) else sum(c * xi**k for k, c in enumerate(law))
@@ -112,7 +134,9 @@ def second_moments(yy: Law, zz: Law, yz: Law = ()) -> dict[str, Law]:
 
 @dataclass(frozen=True)
 class Axis:
-    """One coordinate of a joint: a turn about ``direction``, or a slide along it; ``slide`` is the way a unit of it makes."""
+    """One coordinate of a joint: a turn about ``direction``, or a slide along it; ``slide`` is the
+    way a unit of it makes.
+    """
 
     direction: np.ndarray
     turns: bool
@@ -123,9 +147,10 @@ class Axis:
 class Joint:
     """A joint: axes in sequence, each carried by the turns before it.
 
-    ``at_parent`` and ``at_child`` are its point in both bodies' axes; ``axis`` (and ``axis2``, at coordinates zero) are in the
-    parent's axes; ``frame`` lists the three directions of a spherical joint's turns, a slot's, and a free one's slides and turns;
-    ``orientation`` is the child's against the parent at coordinates zero. The ``lead`` is a screw's slide for a whole turn.
+    ``at_parent`` and ``at_child`` are its point in both bodies' axes; ``axis`` (and ``axis2``, at
+    coordinates zero) are in the parent's axes; ``frame`` lists the three directions of a spherical
+    joint's turns, a slot's, and a free one's slides and turns; ``orientation`` is the child's
+    against the parent at coordinates zero. The ``lead`` is a screw's slide for a whole turn.
     """
 
     name: str
@@ -146,7 +171,15 @@ class Joint:
     @property
     def count(self) -> int:
         """How many coordinates it has."""
-        return {"cylindrical": 2, "universal": 2, "spherical": 3, "planar": 3, "slot": 4, "weld": 0, "free": 6}.get(self.kind, 1)
+        return {
+            "cylindrical": 2,
+            "universal": 2,
+            "spherical": 3,
+            "planar": 3,
+            "slot": 4,
+            "weld": 0,
+            "free": 6,
+        }.get(self.kind, 1)
 
     @property
     def turning(self) -> range:
@@ -180,7 +213,11 @@ class Joint:
             case "screw":
                 return [Axis(first, True, arithmetic.number(self.lead) / (2 * pi(arithmetic)))]
             case "planar":
-                return [Axis(first, False, one), Axis(second, False, one), Axis(cross(first, second), True, 0 * one)]
+                return [
+                    Axis(first, False, one),
+                    Axis(second, False, one),
+                    Axis(cross(first, second), True, 0 * one),
+                ]
             case "spherical":
                 return turns
             case "slot":
@@ -193,7 +230,9 @@ class Joint:
 
 @dataclass(frozen=True)
 class Load:
-    """A constant force and torque on a body's point, in ground axes, or in the body's where it is ``turning`` with it."""
+    """A constant force and torque on a body's point, in ground axes, or in the body's where it is
+    ``turning`` with it.
+    """
 
     body: str
     point: Vector = NIL
@@ -204,7 +243,9 @@ class Load:
 
 @dataclass(frozen=True)
 class Spread:
-    """A force per length along a rod from ``start`` to ``end`` [m]: a row of powers of the distance for each component."""
+    """A force per length along a rod from ``start`` to ``end`` [m]: a row of powers of the distance
+    for each component.
+    """
 
     body: str
     start: float
@@ -219,7 +260,9 @@ class Spread:
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring and damper between two points, each (body, point): tension = stiffness (length - free) + damping length'."""
+    """A spring and damper between two points, each (body, point): tension = stiffness (length -
+    free) + damping length'.
+    """
 
     ends: tuple[tuple[str, Vector], tuple[str, Vector]]
     stiffness: Any = 0
@@ -229,7 +272,9 @@ class Spring:
 
 @dataclass(frozen=True)
 class Coupling:
-    """Gears and the like: the sum of coefficients times coordinates, by (joint, index), is the ``offset``."""
+    """Gears and the like: the sum of coefficients times coordinates, by (joint, index), is the
+    ``offset``.
+    """
 
     name: str
     terms: dict
@@ -238,10 +283,12 @@ class Coupling:
 
 @dataclass(frozen=True)
 class Row:
-    """A non-holonomic constraint: coefficients times rates of coordinates, and directions times velocities of points, are nothing.
+    """A non-holonomic constraint: coefficients times rates of coordinates, and directions times
+    velocities of points, are nothing.
 
-    ``of(arithmetic, q)`` tells coefficients by (joint, index), and directions in ground axes by (body, point); ``q`` are the
-    coordinates of ``keys``, all that it is written in. No effort is at the coordinate that it ``replaces``.
+    ``of(arithmetic, q)`` tells coefficients by (joint, index), and directions in ground axes by
+    (body, point); ``q`` are the coordinates of ``keys``, all that it is written in. No effort is at
+    the coordinate that it ``replaces``.
     """
 
     name: str
@@ -252,7 +299,9 @@ class Row:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """Bodies, joints, gravity (m/s^2, ground axes), what acts, and what couples coordinates and rates."""
+    """Bodies, joints, gravity (m/s^2, ground axes), what acts, and what couples coordinates and
+    rates.
+    """
 
     bodies: Sequence[Rigid | Rod]
     joints: Sequence[Joint]

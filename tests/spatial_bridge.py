@@ -1,4 +1,6 @@
-"""Mechanisms of the spatial oracle declared to the package, and the package's graphs at instants."""
+"""Mechanisms of the spatial oracle declared to the package, and the
+package's graphs at instants.
+"""
 
 from __future__ import annotations
 
@@ -36,30 +38,48 @@ def coordinate(joint, index: int) -> str:
 
 
 def plain(drawn: Drawn) -> Drawn:
-    """The same with rods joined between their ends, and with turns of slots about the axes that the package has there."""
+    """The same with rods joined between their ends, and with turns of slots about the axes that the
+    package has there.
+    """
     rods = {b.name for b in drawn.mechanism.bodies if isinstance(b, Rod)}
     joints = []
     for joint in drawn.mechanism.joints:
         x, y, z = map(float, joint.at_child)
         at_child = (abs(x) if joint.child in rods else x, y, z)
-        frame = across_axis(joint.axis) if joint.kind == "slot" and not drawn.is_hard(joint) else joint.frame
+        frame = (
+            across_axis(joint.axis)
+            if joint.kind == "slot" and not drawn.is_hard(joint)
+            else joint.frame
+        )
         joints.append(dataclasses.replace(joint, at_child=at_child, frame=frame))
     return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
 
-def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), beams: Mapping[str, Any] = NO_BEAMS, **options) -> Scene:
-    """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has them at an instant.
+def declared(
+    drawn: Drawn,
+    t: float = 0.0,
+    rubs: Sequence[Rub] = (),
+    beams: Mapping[str, Any] = NO_BEAMS,
+    **options,
+) -> Scene:
+    """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has
+    them at an instant.
 
-    Rods may have ``beams``, by their names; a bar that has one is told by places, and so is its y axis.
+    Rods may have ``beams``, by their names; a bar that has one is told by places, and so is its y
+    axis.
     """
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
     m.set_gravity(*map(float, one.gravity))
-    told = {body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)}
+    told = {
+        body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)
+    }
     told |= bars_of(drawn) & {*beams}
     parts = {GROUND: m.ground}
     for b in one.bodies:
-        parts[b.name] = _body(m, b, drawn.guess[b.name] if b.name in told else None, beams.get(b.name))
+        parts[b.name] = _body(
+            m, b, drawn.guess[b.name] if b.name in told else None, beams.get(b.name)
+        )
 
     def at(body, point):
         return parts[body].at(*map(float, point))
@@ -76,49 +96,90 @@ def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), beams: Mapp
             getattr(m, kind)(f"{kind}{k}", at(load.body, load.point), **given, turning=load.turning)
     for k, spread in enumerate(one.spreads):
         given = dict(
-            zip("xyz", ((lambda x, row=row: sum(c * x**j for j, c in enumerate(row))) for row in spread.powers), strict=True)
+            zip(
+                "xyz",
+                (
+                    (lambda x, row=row: sum(c * x**j for j, c in enumerate(row)))
+                    for row in spread.powers
+                ),
+                strict=True,
+            )
         )
-        m.line_load(f"spread{k}", parts[spread.body], **given, between=(spread.start, spread.end), turning=spread.turning)
+        m.line_load(
+            f"spread{k}",
+            parts[spread.body],
+            **given,
+            between=(spread.start, spread.end),
+            turning=spread.turning,
+        )
     for k, spring in enumerate(one.springs):
         ends = (at(body, point) for body, point in spring.ends)
-        m.spring(f"spring{k}", *ends, stiffness=spring.stiffness, length=spring.free, damping=spring.damping)
+        m.spring(
+            f"spring{k}",
+            *ends,
+            stiffness=spring.stiffness,
+            length=spring.free,
+            damping=spring.damping,
+        )
     for rub in rubs:
         m.friction(rub.name, m.joints[rub.joint.name], along=rub.along, **rub.numbers)
     for row in one.rows:
         m.nonholonomic(row.name, _rates(m, one, row, parts), replaces=m.joints[row.replaces[0]])
     laws = {coordinate(one.joint(name), k): _law(law) for (name, k), law in drawn.laws.items()}
-    drives = None if drawn.pushed is None or one.rows else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
+    drives = (
+        None
+        if drawn.pushed is None or one.rows
+        else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
+    )
     posture = postures(drawn, t)
     rough = {name: posture[name] for name in m.coordinates if name in posture and name not in laws}
     if drawn.hard:
-        rough = {name: value for name, value in rough.items() if not drawn.is_hard(one.joint(name.partition(":")[0]))}
-    return Scene(m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options})
+        rough = {
+            name: value
+            for name, value in rough.items()
+            if not drawn.is_hard(one.joint(name.partition(":")[0]))
+        }
+    return Scene(
+        m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options}
+    )
 
 
 def bars_of(drawn: Drawn) -> set[str]:
     """The rods that may spin about their line."""
     if not drawn.idle:
         return set()
-    ends = {b.name: [j.kind for j in drawn.mechanism.joints if b.name in (j.parent, j.child)] for b in drawn.mechanism.bodies}
+    ends = {
+        b.name: [j.kind for j in drawn.mechanism.joints if b.name in (j.parent, j.child)]
+        for b in drawn.mechanism.bodies
+    }
     return {name for name in drawn.rods if ends[name] == ["spherical"] * 2}
 
 
 def postures(drawn: Drawn, t: float) -> dict[str, float]:
-    """The coordinates at an instant, by the package's names, as they follow from the oracle's poses."""
+    """The coordinates at an instant, by the package's names, as they follow from the oracle's
+    poses.
+    """
     found: dict[str, float] = {}
-    poses = {name: (np.asarray(p.r, float), np.asarray(p.R, float)) for name, p in drawn.solve(t).poses.items()}
+    poses = {
+        name: (np.asarray(p.r, float), np.asarray(p.R, float))
+        for name, p in drawn.solve(t).poses.items()
+    }
     poses[GROUND] = np.zeros(3), np.eye(3)
     for joint in drawn.mechanism.joints:
         (r, R), (s, S) = poses[joint.parent], poses[joint.child]
         turned = R.T @ S @ np.array(joint.orientation, float).T
-        apart = R.T @ (s + S @ np.array(joint.at_child, float) - r - R @ np.array(joint.at_parent, float))
+        apart = R.T @ (
+            s + S @ np.array(joint.at_child, float) - r - R @ np.array(joint.at_parent, float)
+        )
         for k, value in enumerate(_coordinates(joint, turned, apart)):
             found[coordinate(joint, k)] = float(value)
     return found
 
 
 def instants(scene: Scene, times, wanted=None):
-    """The columns of a scene's graph at times, by name: loops are followed from the scene's start."""
+    """The columns of a scene's graph at times, by name: loops are
+    followed from the scene's start.
+    """
     graph = derive(scene, wanted)
     p = [parameter.default for parameter in scene.mechanism.parameters.values()]
     z = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
@@ -136,28 +197,57 @@ def instants(scene: Scene, times, wanted=None):
 
 def _body(m, body, pose=None, beam=None):
     if isinstance(body, Rigid):
-        rows, centre, told = np.array(body.inertia, float), np.array(body.centre, float), {"length": _SIZE}
+        rows, centre, told = (
+            np.array(body.inertia, float),
+            np.array(body.centre, float),
+            {"length": _SIZE},
+        )
         if pose is not None:
-            rows, centre, told = pose[1] @ rows @ pose[1].T, pose[0] + pose[1] @ centre, _lying(*pose, _SIZE)
-        told |= {"centre": tuple(map(float, centre)), "inertia": tuple(tuple(map(float, row)) for row in rows)}
+            rows, centre, told = (
+                pose[1] @ rows @ pose[1].T,
+                pose[0] + pose[1] @ centre,
+                _lying(*pose, _SIZE),
+            )
+        told |= {
+            "centre": tuple(map(float, centre)),
+            "inertia": tuple(tuple(map(float, row)) for row in rows),
+        }
         return m.link(body.name, mass=float(body.mass), **told)
     length, law = float(body.length), body.density
-    matter = density.polynomial(float(law(0.5))) if callable(law) else density.polynomial(*map(float, law))
+    matter = (
+        density.polynomial(float(law(0.5)))
+        if callable(law)
+        else density.polynomial(*map(float, law))
+    )
     if body.polar:
         # Second moments are linear along a rod, see spatial_draft.rod.
         told = {"yy": body.lateral_z, "zz": body.lateral_y, "yz": lambda xi: -body.product(xi)}
         ends = {
-            name: [float(of(xi) if callable(of) else sum(c * xi**k for k, c in enumerate(of))) for xi in (0, 1)]
+            name: [
+                float(of(xi) if callable(of) else sum(c * xi**k for k, c in enumerate(of)))
+                for xi in (0, 1)
+            ]
             for name, of in told.items()
         }
-        matter = density.thick(matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()})
+        matter = density.thick(
+            matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()}
+        )
     made = {} if beam is None else {"beam": beam}
-    return m.link(body.name, density=matter, **made, **({"length": length} if pose is None else _lying(*pose, length)))
+    return m.link(
+        body.name,
+        density=matter,
+        **made,
+        **({"length": length} if pose is None else _lying(*pose, length)),
+    )
 
 
 def _lying(r, R, length):
-    """Where a link lies whose axes are the columns of a matrix; what tells its y axis is neither a unit nor at a right angle."""
-    base, tip, aside = (tuple(map(float, place)) for place in (r, r + R @ [length, 0.0, 0.0], R @ BESIDE))
+    """Where a link lies whose axes are the columns of a matrix; what tells its y axis is neither a
+    unit nor at a right angle.
+    """
+    base, tip, aside = (
+        tuple(map(float, place)) for place in (r, r + R @ [length, 0.0, 0.0], R @ BESIDE)
+    )
     return {"between": (base, tip), "beside": aside}
 
 
@@ -176,7 +266,14 @@ def _join(m, joint, start, end) -> None:
         case "screw":
             m.screw(joint.name, start, end, axis=axis, lead=float(joint.lead), turned=turned)
         case "planar":
-            m.planar(joint.name, start, end, axis=tuple(np.cross(axis, second)), second=axis, turned=turned)
+            m.planar(
+                joint.name,
+                start,
+                end,
+                axis=tuple(np.cross(axis, second)),
+                second=axis,
+                turned=turned,
+            )
         case kind:
             getattr(m, kind)(joint.name, start, end, axis=axis, turned=turned)
 
@@ -184,7 +281,9 @@ def _join(m, joint, start, end) -> None:
 def _join_at(m, joint, parent, child, r, R) -> None:
     """By its place and directions in ground axes, which are not of length one."""
     at = tuple(map(float, r + R @ np.array(joint.at_parent, float)))
-    axis, second = (None if x is None else 7.0 * (R @ np.array(x, float)) for x in (joint.axis, joint.axis2))
+    axis, second = (
+        None if x is None else 7.0 * (R @ np.array(x, float)) for x in (joint.axis, joint.axis2)
+    )
     told = {"axis": axis}
     match joint.kind:
         case "weld":
@@ -222,7 +321,9 @@ def _turns(R):
 
 
 def _coordinates(joint, turned, apart):
-    """A joint's coordinates from how its child is turned, and where its point is, on the parent's axes."""
+    """A joint's coordinates from how its child is turned, and where its point is, on the parent's
+    axes.
+    """
     u = np.array(joint.axis, float) / np.linalg.norm(np.array(joint.axis, float))
     v = np.array(joint.axis2, float) if joint.axis2 is not None else np.array(across_axis(u)[1])
     v = v - u * (v @ u)
@@ -245,7 +346,11 @@ def _coordinates(joint, turned, apart):
         case "weld":
             return ()
     M = frame @ turned @ frame.T
-    turns = (math.atan2(-M[1, 2], M[2, 2]), math.atan2(M[0, 2], math.hypot(M[0, 0], M[0, 1])), math.atan2(-M[0, 1], M[0, 0]))
+    turns = (
+        math.atan2(-M[1, 2], M[2, 2]),
+        math.atan2(M[0, 2], math.hypot(M[0, 0], M[0, 1])),
+        math.atan2(-M[0, 1], M[0, 0]),
+    )
     slides = {"slot": (apart @ u,), "free": tuple(frame @ apart)}.get(joint.kind, ())
     return (*slides, *turns)
 
@@ -255,12 +360,17 @@ def _rates(m, mechanism, row, parts):
 
     def of(key, measure):
         joint = mechanism.joint(key[0])
-        return measure(m.joints[joint.name], *NAMES[joint.kind][key[1] : key[1] + 1] if joint.kind in NAMES else ())
+        return measure(
+            m.joints[joint.name],
+            *NAMES[joint.kind][key[1] : key[1] + 1] if joint.kind in NAMES else (),
+        )
 
     terms, directions = row.of(ca, {key: of(key, m.coordinate) for key in row.keys})
     found = sum(x * of(key, m.rate) for key, x in terms.items())
     for (body, point), way in directions.items():
-        found += sum(x * v for x, v in zip(way, m.velocity(parts[body].at(*map(float, point))), strict=True))
+        found += sum(
+            x * v for x, v in zip(way, m.velocity(parts[body].at(*map(float, point))), strict=True)
+        )
     return found
 
 
@@ -268,6 +378,9 @@ def _law(law):
     parts = getattr(law, "parts", (law,))
 
     def at(t):
-        return sum(one.offset + one.speed * t + one.amplitude * ca.sin(one.frequency * t + one.phase) for one in parts)
+        return sum(
+            one.offset + one.speed * t + one.amplitude * ca.sin(one.frequency * t + one.phase)
+            for one in parts
+        )
 
     return motion.expression(at)

@@ -9,7 +9,19 @@ from dataclasses import dataclass, field
 import numpy as np
 from arithmetic import DOUBLE
 from spatial_algebra import arithmetic_of
-from spatial_bodies import AXES, GROUND, NIL, Joint, Load, Mechanism, Rigid, Rod, Spread, Spring, second_moments
+from spatial_bodies import (
+    AXES,
+    GROUND,
+    NIL,
+    Joint,
+    Load,
+    Mechanism,
+    Rigid,
+    Rod,
+    Spread,
+    Spring,
+    second_moments,
+)
 from spatial_motion import Motion, solve_motion
 from spatial_oracle import Result, solve
 
@@ -29,7 +41,11 @@ class Law:
         a = arithmetic_of(digits)
         t, w, size = a.number(t), a.number(self.frequency), a.number(self.amplitude)
         s, c = a.sin(w * t + a.number(self.phase)), a.cos(w * t + a.number(self.phase))
-        return a.number(self.offset) + a.number(self.speed) * t + size * s, a.number(self.speed) + size * w * c, -size * w * w * s
+        return (
+            a.number(self.offset) + a.number(self.speed) * t + size * s,
+            a.number(self.speed) + size * w * c,
+            -size * w * w * s,
+        )
 
 
 @dataclass(frozen=True)
@@ -40,17 +56,21 @@ class Sum:
 
     def at(self, t, digits=None):
         """The coordinate, its rate and its acceleration."""
-        return tuple(sum(values[1:], values[0]) for values in zip(*(law.at(t, digits) for law in self.parts), strict=True))
+        return tuple(
+            sum(values[1:], values[0])
+            for values in zip(*(law.at(t, digits) for law in self.parts), strict=True)
+        )
 
 
 @dataclass(frozen=True)
 class Drawn:
     """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
 
-    It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are doubles, or of mpmath where a
-    loop closes only by exact ones. A planar mechanism lies in the ``plane`` of the first two columns of that matrix. So
-    many spins are ``idle``: nothing holds them. ``hard`` are bodies that are told by places: of the posture that is guessed, in
-    which all coordinates are zero.
+    It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are
+    doubles, or of mpmath where a loop closes only by exact ones. A planar mechanism lies in the
+    ``plane`` of the first two columns of that matrix. So many spins are ``idle``: nothing holds
+    them. ``hard`` are bodies that are told by places: of the posture that is guessed, in which all
+    coordinates are zero.
     """
 
     mechanism: Mechanism
@@ -77,15 +97,21 @@ class Drawn:
         return solve(self.mechanism, self.drives(t, digits), guess, digits, self.pushed)
 
     def followed(self, t) -> dict:
-        """The posture at t in doubles as a guess, followed from the one at 0; none of an open tree, which needs none."""
+        """The posture at t in doubles as a guess, followed from the one at 0; none of an open tree,
+        which needs none.
+        """
         return [posture for posture, _ in self.traced(t)][-1] if self.guess else {}
 
     def traced(self, t):
-        """The postures, each a guess, at 0 and after every step to t, with the factored slope of the motion there."""
+        """The postures, each a guess, at 0 and after every step to t, with the factored slope of
+        the motion there.
+        """
         guess = self.guess
         for k in range(self.steps + 1):
             motion = Motion(self.mechanism, self.laws, DOUBLE, self.pushed or ())
-            poses, coordinates, slope = solve_motion(motion, self.drives(float(t) * k / self.steps), guess)
+            poses, coordinates, slope = solve_motion(
+                motion, self.drives(float(t) * k / self.steps), guess
+            )
             guess = {b.name: (poses[b.name].r, poses[b.name].R) for b in self.mechanism.bodies}
             guess |= {key: q for key, (q, *_) in coordinates.items()}
             yield guess, slope
@@ -145,13 +171,19 @@ def rigid(rng, name, size=0.3) -> Rigid:
     points, masses = rng.normal(size=(5, 3)) * size / 2, rng.uniform(0.1, 0.6, 5)
     centre = masses @ points / sum(masses)
     arms = points - centre
-    inertia = sum(m * ((x @ x) * np.eye(3) - np.outer(x, x)) for m, x in zip(masses, arms, strict=True))
+    inertia = sum(
+        m * ((x @ x) * np.eye(3) - np.outer(x, x)) for m, x in zip(masses, arms, strict=True)
+    )
     return Rigid(name, float(sum(masses)), centre, inertia)
 
 
 def body(rng, name, length=None, slender=False) -> Rod | Rigid:
     """A rod or, one in three times, a rigid body."""
-    return rigid(rng, name) if not slender and rng.random() < 1 / 3 else rod(rng, name, length, slender)
+    return (
+        rigid(rng, name)
+        if not slender and rng.random() < 1 / 3
+        else rod(rng, name, length, slender)
+    )
 
 
 def point_on(rng, one):
@@ -161,26 +193,50 @@ def point_on(rng, one):
     chance = rng.random()
     if chance < 0.4:
         return np.array([one.length, 0.0, 0.0])
-    return np.array([rng.uniform(0.1, 1.0) * one.length, *(rng.normal(size=2) * 0.1 if chance > 0.8 else (0.0, 0.0))])
+    return np.array(
+        [
+            rng.uniform(0.1, 1.0) * one.length,
+            *(rng.normal(size=2) * 0.1 if chance > 0.8 else (0.0, 0.0)),
+        ]
+    )
 
 
 def swing(rng, around=0.0, size=1.0) -> Law:
     """A law that swings."""
-    return Law(around, 0.0, size * rng.uniform(0.3, 1.0), rng.uniform(1.0, 4.0), rng.uniform(0.0, 6.0))
+    return Law(
+        around, 0.0, size * rng.uniform(0.3, 1.0), rng.uniform(1.0, 4.0), rng.uniform(0.0, 6.0)
+    )
 
 
 def acting(rng, bodies) -> dict:
     """Gravity, loads and springs; ``bodies`` may also be found at the ground."""
     loads = [
-        Load(b.name, point_on(rng, b), rng.normal(size=3) * 5, rng.normal(size=3), bool(rng.random() < 0.5))
+        Load(
+            b.name,
+            point_on(rng, b),
+            rng.normal(size=3) * 5,
+            rng.normal(size=3),
+            bool(rng.random() < 0.5),
+        )
         for b in bodies
         if rng.random() < 0.4
     ]
     springs = []
     if rng.random() < 0.5:
         first, last = bodies[0], bodies[-1]
-        start = (GROUND, direction(rng) * 1.5) if first is last else (first.name, np.array([0.0, 0.05, 0.0]) + point_on(rng, first))
-        springs = [Spring((start, (last.name, point_on(rng, last))), rng.uniform(10, 50), rng.uniform(0.1, 0.4), rng.uniform(0, 3))]
+        start = (
+            (GROUND, direction(rng) * 1.5)
+            if first is last
+            else (first.name, np.array([0.0, 0.05, 0.0]) + point_on(rng, first))
+        )
+        springs = [
+            Spring(
+                (start, (last.name, point_on(rng, last))),
+                rng.uniform(10, 50),
+                rng.uniform(0.1, 0.4),
+                rng.uniform(0, 3),
+            )
+        ]
     gravity = direction(rng) * 9.81
     # By a generator of its own, so that the rest is drawn as it was without.
     own = np.random.default_rng(int(1e9 * abs(gravity[0])))
@@ -190,9 +246,17 @@ def acting(rng, bodies) -> dict:
 
 def spread(rng, rod) -> Spread:
     """A load along a rod, or a part of it."""
-    start, end = (0.0, 1.0) if rng.random() < 0.4 else (rng.uniform(0.0, 0.4), rng.uniform(0.5, 1.0))
+    start, end = (
+        (0.0, 1.0) if rng.random() < 0.4 else (rng.uniform(0.0, 0.4), rng.uniform(0.5, 1.0))
+    )
     powers = [[float(rng.normal() * 10) for _ in range(int(rng.integers(1, 6)))] for _ in range(3)]
-    return Spread(rod.name, float(start * rod.length), float(end * rod.length), powers, bool(rng.random() < 0.5))
+    return Spread(
+        rod.name,
+        float(start * rod.length),
+        float(end * rod.length),
+        powers,
+        bool(rng.random() < 0.5),
+    )
 
 
 def joint(rng, name, kind, parent, child, at_parent=NIL, at_child=NIL) -> Joint:
@@ -200,4 +264,16 @@ def joint(rng, name, kind, parent, child, at_parent=NIL, at_child=NIL) -> Joint:
     axis = direction(rng)
     lead = rng.uniform(0.05, 0.4) * rng.choice([-1, 1]) if kind == "screw" else 0
     turns = orientation(rng).T if rng.random() < 0.5 else AXES
-    return Joint(name, kind, parent, child, at_parent, at_child, axis, across(rng, axis), lead, turns, orientation(rng))
+    return Joint(
+        name,
+        kind,
+        parent,
+        child,
+        at_parent,
+        at_child,
+        axis,
+        across(rng, axis),
+        lead,
+        turns,
+        orientation(rng),
+    )

@@ -1,9 +1,9 @@
 """Places, rates and accelerations of free bodies whose joints' gaps are closed.
 
-The unknowns are six a body and one for every coordinate that is not driven. Every joint leads from its parent to where its child
-must be; the gap is a difference of two places and two orientations. Where none of a joint's three turns is driven, its
-orientations are let go instead, so that nothing is singular by parametrisation. Newton's method closes the gaps; rates and
-accelerations are linear.
+The unknowns are six a body and one for every coordinate that is not driven. Every joint leads from
+its parent to where its child must be; the gap is a difference of two places and two orientations.
+Where none of a joint's three turns is driven, its orientations are let go instead, so that nothing
+is singular by parametrisation. Newton's method closes the gaps; rates and accelerations are linear.
 """
 
 from __future__ import annotations
@@ -14,7 +14,18 @@ from typing import Any
 
 import numpy as np
 from arithmetic import DOUBLE
-from spatial_algebra import Factored, InconsistentError, angle_about, cross, identity, orthonormal, skew, small_turn, turn, vector
+from spatial_algebra import (
+    Factored,
+    InconsistentError,
+    angle_about,
+    cross,
+    identity,
+    orthonormal,
+    skew,
+    small_turn,
+    turn,
+    vector,
+)
 from spatial_bodies import GROUND, Joint, Mechanism
 
 _STEPS = 100
@@ -28,7 +39,9 @@ class OpenLoopError(AssertionError):
 
 @dataclass(frozen=True)
 class Pose:
-    """A body's place and axes (columns) in ground axes, the velocities and the accelerations of its origin and its axes."""
+    """A body's place and axes (columns) in ground axes, the velocities and the accelerations of its
+    origin and its axes.
+    """
 
     r: np.ndarray
     R: np.ndarray
@@ -61,7 +74,8 @@ class Passage:
 
 
 class Motion:
-    """The equations of a mechanism whose coordinates ``known`` (joint, index) are given; see :func:`solve_motion`.
+    """The equations of a mechanism whose coordinates ``known`` (joint, index) are given; see
+    :func:`solve_motion`.
 
     Coordinates of ``pushed`` and coupled ones are followed, though they be not known.
     """
@@ -77,7 +91,11 @@ class Motion:
         self.at_child = {j.name: vector(arithmetic, j.at_child) for j in mechanism.joints}
         self.zero = {j.name: orthonormal(arithmetic, j.orientation) for j in mechanism.joints}
         self.column = {b.name: 6 * i for i, b in enumerate(mechanism.bodies)}
-        self.loose = {j.name for j in mechanism.joints if len(j.turning) == 3 and not {(j.name, k) for k in j.turning} & counted}
+        self.loose = {
+            j.name
+            for j in mechanism.joints
+            if len(j.turning) == 3 and not {(j.name, k) for k in j.turning} & counted
+        }
         for name, k in counted:
             assert k in range(mechanism.joint(name).count), (
                 f"'{name}' has {mechanism.joint(name).count} coordinates, not number {k}"
@@ -97,17 +115,26 @@ class Motion:
         self.ground = Pose(nil, identity(arithmetic), nil, nil, nil, nil)
 
     def kept(self, joint: Joint) -> list[int]:
-        """The indices of the axes that lead from parent to child: all but the turns of a loose joint."""
-        return [k for k in range(joint.count) if not (joint.name in self.loose and k in joint.turning)]
+        """The indices of the axes that lead from parent to child: all but the turns of a loose
+        joint.
+        """
+        return [
+            k for k in range(joint.count) if not (joint.name in self.loose and k in joint.turning)
+        ]
 
     def passage(self, joint: Joint, parent: Pose, values) -> Passage:
-        """From the parent's pose, with rates and accelerations where it has them; ``values`` hold (q, q', q'') by axis."""
+        """From the parent's pose, with rates and accelerations where it has them; ``values`` hold
+        (q, q', q'') by axis.
+        """
         moving, axes = parent.w is not None, self.axes[joint.name]
         p = parent.at(self.at_parent[joint.name])
         R, w, alpha = parent.R, parent.w, parent.alpha
         v = a = None
         if moving:
-            v, a = parent.velocity(self.at_parent[joint.name]), parent.acceleration(self.at_parent[joint.name])
+            v, a = (
+                parent.velocity(self.at_parent[joint.name]),
+                parent.acceleration(self.at_parent[joint.name]),
+            )
         directions = []
         for k in self.kept(joint):
             u, (q, rate, acceleration) = R @ axes[k].direction, values[joint.name, k]
@@ -122,7 +149,13 @@ class Motion:
                 p = p + d
                 if moving:
                     v = v + cross(w, d) + speed
-                    a = a + cross(alpha, d) + cross(w, cross(w, d)) + cross(w, speed) * 2 + u * (axes[k].slide * acceleration)
+                    a = (
+                        a
+                        + cross(alpha, d)
+                        + cross(w, cross(w, d))
+                        + cross(w, speed) * 2
+                        + u * (axes[k].slide * acceleration)
+                    )
         return Passage(Pose(p, R @ self.zero[joint.name], v, w, a, alpha), directions)
 
     def gaps(self, poses, values, kind: int):
@@ -177,47 +210,77 @@ class Motion:
 
     def factored(self, poses, values) -> Factored:
         size = self.mechanism.size
-        rows = [u for j in self.mechanism.joints for u in ([size] * 3 if j.name in self.loose else [size] * 3 + [1.0] * 3)]
+        rows = [
+            u
+            for j in self.mechanism.joints
+            for u in ([size] * 3 if j.name in self.loose else [size] * 3 + [1.0] * 3)
+        ]
         rows += [1.0] * len(self.mechanism.couplings)
         return Factored.of(self.slope(poses, values), np.array(rows), self.units)
 
     def start(self, guess, drives):
-        """Poses and coordinates from a guess: poses by body's name, coordinates by (joint, index); what is missing follows."""
+        """Poses and coordinates from a guess: poses by body's name, coordinates by (joint, index);
+        what is missing follows.
+        """
         a = self.arithmetic
         values = {key: vector(a, given) for key, given in drives.items()}
         nil = a.number(0)
         poses = {GROUND: self.ground}
         for name, (r, R) in ((n, g) for n, g in guess.items() if isinstance(n, str)):
             poses[name] = Pose(vector(a, r), orthonormal(a, R))
-        told = {key: (a.number(q), nil, nil) for key, q in guess.items() if not isinstance(key, str)}
-        told = {(j.name, k): (nil, nil, nil) for j in self.mechanism.joints for k in range(j.count)} | told | values
+        told = {
+            key: (a.number(q), nil, nil) for key, q in guess.items() if not isinstance(key, str)
+        }
+        told = (
+            {(j.name, k): (nil, nil, nil) for j in self.mechanism.joints for k in range(j.count)}
+            | told
+            | values
+        )
         whole = Motion(self.mechanism, told, a)
         for _ in self.mechanism.bodies:
             for joint in self.mechanism.joints:
                 if joint.parent in poses and joint.child not in poses:
                     end = whole.passage(joint, replace(poses[joint.parent], w=None), told).end
                     poses[joint.child] = Pose(end.r - end.R @ self.at_child[joint.name], end.R)
-        assert len(poses) == len(self.mechanism.bodies) + 1, "no joints lead from the ground to every body: guess its pose"
+        assert len(poses) == len(self.mechanism.bodies) + 1, (
+            "no joints lead from the ground to every body: guess its pose"
+        )
         for joint in self.mechanism.joints:
             if [key for key in self.free if key[0] == joint.name and key not in guess]:
                 found = _coordinates(joint, self, poses)
-                values |= {(joint.name, k): (found[k], nil, nil) for k in self.kept(joint) if (joint.name, k) not in values}
+                values |= {
+                    (joint.name, k): (found[k], nil, nil)
+                    for k in self.kept(joint)
+                    if (joint.name, k) not in values
+                }
         return poses, values | {key: told[key] for key in self.free if key not in values}
 
     def moved(self, poses, values, step):
         """Poses and coordinates a step on."""
         new = {GROUND: self.ground}
         for name, c in self.column.items():
-            new[name] = Pose(poses[name].r + step[c : c + 3], small_turn(self.arithmetic, step[c + 3 : c + 6]) @ poses[name].R)
-        return new, values | {key: (values[key][0] + step[c], *values[key][1:]) for key, c in self.number.items()}
+            new[name] = Pose(
+                poses[name].r + step[c : c + 3],
+                small_turn(self.arithmetic, step[c + 3 : c + 6]) @ poses[name].R,
+            )
+        return new, values | {
+            key: (values[key][0] + step[c], *values[key][1:]) for key, c in self.number.items()
+        }
 
     def moving(self, poses, values, rates, accelerations):
         """Poses and coordinates with rates and accelerations."""
         new = {GROUND: self.ground}
         for name, c in self.column.items():
-            v, w, a, alpha = rates[c : c + 3], rates[c + 3 : c + 6], accelerations[c : c + 3], accelerations[c + 3 : c + 6]
+            v, w, a, alpha = (
+                rates[c : c + 3],
+                rates[c + 3 : c + 6],
+                accelerations[c : c + 3],
+                accelerations[c + 3 : c + 6],
+            )
             new[name] = replace(poses[name], v=v, w=w, a=a, alpha=alpha)
-        return new, values | {key: (values[key][0], rates[c], accelerations[c]) for key, c in self.number.items()}
+        return new, values | {
+            key: (values[key][0], rates[c], accelerations[c]) for key, c in self.number.items()
+        }
 
 
 def _between(a, b):
@@ -227,11 +290,16 @@ def _between(a, b):
 
 
 def _coordinates(joint: Joint, motion: Motion, poses) -> list:
-    """Coordinates of a joint whose bodies have these poses, about, in doubles: exact where the poses fit the joint."""
+    """Coordinates of a joint whose bodies have these poses, about, in doubles: exact where the
+    poses fit the joint.
+    """
     parent, child, axes = poses[joint.parent], poses[joint.child], motion.axes[joint.name]
     e = [np.asarray(x.direction, dtype=float) for x in axes]
     turned = (parent.R.T @ child.R @ motion.zero[joint.name].T).astype(float)
-    way = (parent.R.T @ (child.at(motion.at_child[joint.name]) - parent.at(motion.at_parent[joint.name]))).astype(float)
+    way = (
+        parent.R.T
+        @ (child.at(motion.at_child[joint.name]) - parent.at(motion.at_parent[joint.name]))
+    ).astype(float)
     found = [0.0 if x.turns else float(e[k] @ way) for k, x in enumerate(axes)]
     turning = [*joint.turning]
     if len(turning) == 1:
@@ -239,11 +307,17 @@ def _coordinates(joint: Joint, motion: Motion, poses) -> list:
         found[turning[0]] = angle_about(e[turning[0]], aside, turned @ aside)
         if joint.kind == "screw" and joint.lead:
             # Whole turns are seen by the slide alone.
-            found[0] += 2 * math.pi * round((float(e[0] @ way) / float(axes[0].slide) - found[0]) / (2 * math.pi))
+            found[0] += (
+                2
+                * math.pi
+                * round((float(e[0] @ way) / float(axes[0].slide) - found[0]) / (2 * math.pi))
+            )
     elif len(turning) == 2:
         first, second = (e[k] for k in turning)
         found[turning[0]] = angle_about(first, second, turned @ second)
-        found[turning[1]] = angle_about(turned @ second, _turned(first, found[turning[0]], first), turned @ first)
+        found[turning[1]] = angle_about(
+            turned @ second, _turned(first, found[turning[0]], first), turned @ first
+        )
     elif len(turning) == 3:
         x, y, z = (e[k] for k in turning)
         m = np.array([x, y, z]) @ turned @ np.array([x, y, z]).T
@@ -254,11 +328,16 @@ def _coordinates(joint: Joint, motion: Motion, poses) -> list:
 
 
 def _turned(axis, angle, a):
-    return a * math.cos(angle) + np.cross(axis, a) * math.sin(angle) + axis * (axis @ a) * (1 - math.cos(angle))
+    return (
+        a * math.cos(angle)
+        + np.cross(axis, a) * math.sin(angle)
+        + axis * (axis @ a) * (1 - math.cos(angle))
+    )
 
 
 def solve_motion(motion: Motion, drives, guess):
-    """Poses with rates and accelerations, (q, q', q'') of every coordinate that has them, and the factored slope.
+    """Poses with rates and accelerations, (q, q', q'') of every coordinate that has them, and the
+    factored slope.
 
     Raises :class:`OpenLoopError` where Newton's method closes nothing.
     """
@@ -285,25 +364,39 @@ def solve_motion(motion: Motion, drives, guess):
         before, left = left, float(max(abs(step / motion.units)))
         if left < a.tolerance / 10 or (before <= 1e4 * float(a.tolerance) and left > before / 2):
             break
-    left = max((float(abs(x)) for x in motion.gaps(poses, values, 0)), default=0.0) / motion.mechanism.size
+    left = (
+        max((float(abs(x)) for x in motion.gaps(poses, values, 0)), default=0.0)
+        / motion.mechanism.size
+    )
     flipped = [
         j.name
         for j in motion.mechanism.joints
         if j.name not in motion.loose
-        and np.trace((motion.passage(j, poses[j.parent], values).end.R.T @ poses[j.child].R).astype(float)) < 2.9
+        and np.trace(
+            (motion.passage(j, poses[j.parent], values).end.R.T @ poses[j.child].R).astype(float)
+        )
+        < 2.9
     ]
     if not left < 1e4 * float(a.tolerance) or flipped:
-        raise OpenLoopError(f"the spatial oracle does not close its loops: {left:.1e} open, turned over at {flipped}")
+        raise OpenLoopError(
+            f"the spatial oracle does not close its loops: {left:.1e} open, turned over at"
+            f" {flipped}"
+        )
     factored = motion.factored(poses, values)
     zeros = a.zeros(motion.count) * a.number(0)
     still = {
-        key: (q, a.number(0) if key in motion.number else rate, acceleration) for key, (q, rate, acceleration) in values.items()
+        key: (q, a.number(0) if key in motion.number else rate, acceleration)
+        for key, (q, rate, acceleration) in values.items()
     }
     moving, still = motion.moving(poses, still, zeros, zeros)
     try:
-        rates = factored.solve(a, -motion.gaps(moving, still, 1), "the drives' rates contradict each other")
+        rates = factored.solve(
+            a, -motion.gaps(moving, still, 1), "the drives' rates contradict each other"
+        )
         moving, rated = motion.moving(poses, values, rates, zeros)
-        accelerations = factored.solve(a, -motion.gaps(moving, rated, 2), "the drives' accelerations contradict each other")
+        accelerations = factored.solve(
+            a, -motion.gaps(moving, rated, 2), "the drives' accelerations contradict each other"
+        )
     except InconsistentError as error:
         raise OpenLoopError(str(error)) from error
     return (*motion.moving(poses, values, rates, accelerations), factored)

@@ -1,9 +1,11 @@
 """Mechanisms and numbers from elsewhere, in ``spatial_numbers``, told to the spatial oracle.
 
-Sources, each named in its file: SD/FAST's numbers in Simbody's TestMobilizerReactionForces.cpp (``sdfast_*``); OpenSim's joint
-reactions of DoublePendulum3D (``opensim_*``); Adams' numbers in Chrono's data/testing/joints (``adams_*``); the rest were computed
-in 70 digits by equations of the one mechanism (the slider-crank is of IFToMM's library of benchmarks) and checked by two programs.
-Numbers in quotes have 30 digits. Adams' forces are on the ground, their torque about the ground's point.
+Sources, each named in its file: SD/FAST's numbers in Simbody's TestMobilizerReactionForces.cpp
+(``sdfast_*``); OpenSim's joint reactions of DoublePendulum3D (``opensim_*``); Adams' numbers in
+Chrono's data/testing/joints (``adams_*``); the rest were computed in 70 digits by equations of the
+one mechanism (the slider-crank is of IFToMM's library of benchmarks) and checked by two programs.
+Numbers in quotes have 30 digits. Adams' forces are on the ground, their torque about the ground's
+point.
 """
 
 from __future__ import annotations
@@ -61,7 +63,9 @@ class Entry:
         return len(self.data["instants"])
 
     def instant(self, k: int) -> Instant:
-        """The mechanism at an instant: where an orientation is driven, it is the one at coordinates zero."""
+        """The mechanism at an instant: where an orientation is driven, it is the one at coordinates
+        zero.
+        """
         data, told = self.data["instants"][k], self.data["mechanism"]
         drives: dict = {}
         pushed, efforts, orientations = [], {}, {}
@@ -79,7 +83,10 @@ class Entry:
                 found = {(name, i): tuple(numbers([row[i] for row in given])) for i in range(3)}
                 keys = dict(zip(found, ("fx", "fy", "fz"), strict=True))
             else:
-                index = int((joint["type"] == "cylindrical" and kind == "slide") or drive.get("about") == "child")
+                index = int(
+                    (joint["type"] == "cylindrical" and kind == "slide")
+                    or drive.get("about") == "child"
+                )
                 found, keys = {(name, index): tuple(numbers(given))}, {(name, index): ""}
             if mode != "effort":
                 drives |= found
@@ -88,16 +95,24 @@ class Entry:
                 efforts |= {key: f"{drive['name']}.{end}".rstrip(".") for key, end in keys.items()}
         mechanism = Mechanism(
             [_body(name, body) for name, body in told["bodies"].items()],
-            [_joint(name, joint, told["drives"], orientations.get(name)) for name, joint in told["joints"].items()],
+            [
+                _joint(name, joint, told["drives"], orientations.get(name))
+                for name, joint in told["joints"].items()
+            ],
             numbers(told["gravity"]),
             [
                 Load(
-                    load["body"], numbers(load["place"]), numbers(load.get("force", [0] * 3)), numbers(load.get("torque", [0] * 3))
+                    load["body"],
+                    numbers(load["place"]),
+                    numbers(load.get("force", [0] * 3)),
+                    numbers(load.get("torque", [0] * 3)),
                 )
                 for load in told.get("loads", [])
             ],
         )
-        guess = {name: (numbers(pose["r"]), numbers(pose["R"])) for name, pose in data["poses"].items()}
+        guess = {
+            name: (numbers(pose["r"]), numbers(pose["R"])) for name, pose in data["poses"].items()
+        }
         return Instant(mechanism, drives, guess, pushed, efforts, data)
 
 
@@ -106,7 +121,8 @@ def _body(name, body):
         return Rigid(name, number(body["mass"]), numbers(body["centre"]), numbers(body["inertia"]))
     rod = body["rod"]
     mass, polar, lateral = (
-        [number(rod.get(key, 0)) / number(rod["length"])] for key in ("mass", "polar_inertia", "lateral_inertia")
+        [number(rod.get(key, 0)) / number(rod["length"])]
+        for key in ("mass", "polar_inertia", "lateral_inertia")
     )
     return Rod(name, number(rod["length"]), mass, polar, lateral, lateral)
 
@@ -116,12 +132,18 @@ def _joint(name, joint, drives, orientation):
     axis2 = None
     if joint["type"] in ("revolute", "cylindrical"):
         zeros = [d for d in drives if d["joint"] == name and d["coordinate"] == "angle"]
-        ends = [numbers(zeros[0][f"{end}_zero"]) for end in ("parent", "child")] if zeros else [_aside(parent), _aside(child)]
+        ends = (
+            [numbers(zeros[0][f"{end}_zero"]) for end in ("parent", "child")]
+            if zeros
+            else [_aside(parent), _aside(child)]
+        )
         orientation = _axes(parent, ends[0]) @ _axes(child, ends[1]).T
     elif joint["type"] == "universal":
         aside = _axes(parent, _aside(parent))
         orientation = (
-            numbers(joint["zero"]) if "zero" in joint else aside[:, [1, 0, 2]] * [1, 1, -1] @ _axes(child, _aside(child)).T
+            numbers(joint["zero"])
+            if "zero" in joint
+            else aside[:, [1, 0, 2]] * [1, 1, -1] @ _axes(child, _aside(child)).T
         )
         axis2 = orientation @ child
     elif orientation is None:

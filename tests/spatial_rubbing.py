@@ -1,8 +1,9 @@
-"""Friction beside the spatial oracle: its laws by fixed-point iteration, around vector Newton-Euler on free bodies.
+"""Friction beside the spatial oracle: its laws by fixed-point iteration, around vector Newton-Euler
+on free bodies.
 
-It shares nothing with the package. What a friction does is a load on both bodies of its joint. What all joints bear is linear in
-the frictions' forces, so a balance of all bodies for each of these alone tells them all; the instant that is solved again with what
-was found must agree.
+It shares nothing with the package. What a friction does is a load on both bodies of its joint. What
+all joints bear is linear in the frictions' forces, so a balance of all bodies for each of these
+alone tells them all; the instant that is solved again with what was found must agree.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ PASSES = 20000
 
 @dataclass(frozen=True)
 class Rub:
-    """Friction along a coordinate of a joint that turns about one axis, slides along it, or both; or in a spherical joint, against
-    the way in which it turns; by what declares it.
+    """Friction along a coordinate of a joint that turns about one axis, slides along it, or both;
+    or in a spherical joint, against the way in which it turns; by what declares it.
     """
 
     joint: Joint
@@ -54,7 +55,9 @@ class Rub:
     def spin(self, found: Result) -> np.ndarray:
         """The angular velocity of the child beside the parent."""
         nil = np.zeros(3)
-        return found.poses[self.joint.child].w - (nil if self.joint.parent == GROUND else found.poses[self.joint.parent].w)
+        return found.poses[self.joint.child].w - (
+            nil if self.joint.parent == GROUND else found.poses[self.joint.parent].w
+        )
 
     def rate(self, found: Result) -> float:
         if self.joint.kind == "spherical":
@@ -74,7 +77,9 @@ class Rub:
         return acts
 
     def law(self, found: Result, reaction: np.ndarray) -> float:
-        """What the law says of a reaction: bearings by statics, threads by the angles of lead and of friction."""
+        """What the law says of a reaction: bearings by statics, threads by the angles of lead and
+        of friction.
+        """
         n, kind, u = self.numbers, self.joint.kind, self.axis(found)
         v, mu, radius = self.rate(found), n.get("mu", 0.0), n.get("radius", 0.0)
         steady = -n.get("viscous", 0.0) * v
@@ -84,14 +89,24 @@ class Rub:
             lead = abs(self.joint.lead) / math.tau / radius
             lifts = axial * self.joint.lead * v > 0.0
             angle, phi = math.atan(lead if lifts else -lead), math.atan(mu)
-            return steady - math.copysign(radius * abs(axial) * (math.tan(angle + phi) - math.tan(angle)), v)
+            return steady - math.copysign(
+                radius * abs(axial) * (math.tan(angle + phi) - math.tan(angle)), v
+            )
         if kind == "spherical":
             pressed, speed = np.linalg.norm(force), radius * v
         else:
             across, apart = force - axial * u, 2.0 / n["length"] * np.cross(moment, u)
             pressed = np.linalg.norm(across + apart) / 2 + np.linalg.norm(across - apart) / 2
-            pressed += {"revolute": abs(axial), "prismatic": abs(torque) / radius, "cylindrical": 0.0}[kind]
-            slides = [found.coordinates[self.joint.name, k][1] * (radius if k in self.joint.turning else 1.0) for k in self.both]
+            pressed += {
+                "revolute": abs(axial),
+                "prismatic": abs(torque) / radius,
+                "cylindrical": 0.0,
+            }[kind]
+            slides = [
+                found.coordinates[self.joint.name, k][1]
+                * (radius if k in self.joint.turning else 1.0)
+                for k in self.both
+            ]
             speed = math.hypot(*slides)
         if "static" in n:
             mu += (n["static"] - mu) * math.exp(-((speed / n["stribeck"]) ** 2))
@@ -104,12 +119,21 @@ class Rub:
 
 
 def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, dict[str, float]]:
-    """The instant with friction, and the frictions' forces by name. Fails where the iteration does not converge."""
+    """The instant with friction, and the frictions' forces by name.
+
+    Fails where the iteration does not converge.
+    """
     still = drawn.solve(t)
-    guess = {name: (pose.r, pose.R) for name, pose in still.poses.items()} | {k: q for k, (q, *_) in still.coordinates.items()}
+    guess = {name: (pose.r, pose.R) for name, pose in still.poses.items()} | {
+        k: q for k, (q, *_) in still.coordinates.items()
+    }
 
     def balanced(forces):
-        more = [load for rub, force in zip(rubs, forces, strict=True) for load in rub.loads(still, force)]
+        more = [
+            load
+            for rub, force in zip(rubs, forces, strict=True)
+            for load in rub.loads(still, force)
+        ]
         loaded = replace(drawn.mechanism, loads=[*drawn.mechanism.loads, *more])
         result = replace(drawn, mechanism=loaded).solve(t, guess=guess)
         return result, np.array([result.reactions[rub.joint.name] for rub in rubs])
@@ -120,10 +144,18 @@ def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, 
     slopes = np.stack([(balanced(size * unit)[1] - alone) / size for unit in np.eye(n)], axis=-1)
     forces = np.zeros(n)
     for _ in range(PASSES):
-        before, forces = forces, np.array([rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)])
+        before, forces = (
+            forces,
+            np.array(
+                [rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)]
+            ),
+        )
         if np.max(np.abs(forces - before)) <= 1e-16 * size:
             break
     result, reactions = balanced(forces)
-    left = max(abs(rub.law(still, r) - force) for rub, r, force in zip(rubs, reactions, forces, strict=True))
+    left = max(
+        abs(rub.law(still, r) - force)
+        for rub, r, force in zip(rubs, reactions, forces, strict=True)
+    )
     assert left <= 1e-12 * size, "the friction of the spatial oracle does not converge"
     return result, {rub.name: float(force) for rub, force in zip(rubs, forces, strict=True)}

@@ -1,4 +1,6 @@
-"""What is inside a rod: the balance of its slices and of what acts on it, towards the tip of a section or towards its base."""
+"""What is inside a rod: the balance of its slices and of what acts on it, towards the tip of a
+section or towards its base.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +23,12 @@ class Section:
     acting: list[Acting]
 
     def at(self, xi, from_base=False, weight=True):
-        """[N, Vy, Vz, T, My, Mz], body axes: the part towards the tip on that towards the base, at a ratio.
+        """[N, Vy, Vz, T, My, Mz], body axes: the part towards the tip on that towards the base, at
+        a ratio.
 
-        What acts at the section itself acts on the part towards the base; at the very tip beyond it. ``from_base`` balances the
-        part towards the base instead. Without ``weight`` the slices are left out.
+        What acts at the section itself acts on the part towards the base; at the very tip beyond
+        it. ``from_base`` balances the part towards the base instead. Without ``weight`` the slices
+        are left out.
         """
         arithmetic, pose = self.arithmetic, self.pose
         xi, length = arithmetic.number(xi), arithmetic.number(self.rod.length)
@@ -32,12 +36,24 @@ class Section:
         force = arithmetic.zeros(3) + xi * 0
         moment = force
         cut = xi * length
-        acting = [one for one in self.acting if one.of is None and self._beyond(one, xi, length) != from_base]
+        acting = [
+            one
+            for one in self.acting
+            if one.of is None and self._beyond(one, xi, length) != from_base
+        ]
         for spread in {id(one.of): one.of for one in self.acting if one.of is not None}.values():
             low, high = arithmetic.number(spread.start), arithmetic.number(spread.end)
-            acting += shares(arithmetic, spread, pose, *((low, min(high, cut)) if from_base else (max(low, cut), high)))
+            acting += shares(
+                arithmetic,
+                spread,
+                pose,
+                *((low, min(high, cut)) if from_base else (max(low, cut), high)),
+            )
         for one in acting:
-            force, moment = force + one.force, moment + one.moment + cross(one.place - place, one.force)
+            force, moment = (
+                force + one.force,
+                moment + one.moment + cross(one.place - place, one.force),
+            )
         if weight:
             ends = (0, xi) if from_base else (xi, 1)
             for x, mass, inertia in self.rod.slices(arithmetic, *map(arithmetic.number, ends)):
@@ -45,7 +61,10 @@ class Section:
                 needed = (pose.acceleration(point) - self.gravity) * mass
                 inertia = pose.R @ inertia @ pose.R.T
                 couple = inertia @ pose.alpha + cross(pose.w, inertia @ pose.w)
-                force, moment = force - needed, moment - couple - cross(pose.at(point) - place, needed)
+                force, moment = (
+                    force - needed,
+                    moment - couple - cross(pose.at(point) - place, needed),
+                )
         found = np.concatenate([pose.R.T @ force, pose.R.T @ moment])
         return -found if from_base else found
 
@@ -61,4 +80,10 @@ class Section:
 
 def section(arithmetic, rod, pose, gravity, acting) -> Section:
     """The sections of a rod among everything that acts on any body."""
-    return Section(arithmetic, rod, pose, vector(arithmetic, gravity), [one for one in acting if one.body == rod.name])
+    return Section(
+        arithmetic,
+        rod,
+        pose,
+        vector(arithmetic, gravity),
+        [one for one in acting if one.body == rod.name],
+    )

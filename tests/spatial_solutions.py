@@ -20,4 +20,6 @@ def evaluated(name, seed):
 
 def residuals(certificate):
     """The largest of each residual."""
-    return {name: float(values.max()) for name, values in certificate.items() if name != "condition"}
+    return {
+        name: float(values.max()) for name, values in certificate.items() if name != "condition"
+    }

@@ -6,7 +6,9 @@ import numpy as np
 
 
 def by_hand(x, y, periodic):
-    """Value, slope and second derivative of the same spline, from its slopes at the points, by a full matrix."""
+    """Value, slope and second derivative of the same spline, from its slopes at the points, by a
+    full matrix.
+    """
     n, h = x.size, np.diff(x)
     matrix, right = np.zeros((n, n)), np.zeros(n)
     rise = np.diff(y) / h

@@ -1,4 +1,6 @@
-"""Which functions of the package make expressions of CasADi, so constants too, without the lock that one thread has at a time."""
+"""Which functions of the package make expressions of CasADi, so constants too, without the lock
+that one thread has at a time.
+"""
 
 import re
 import sys
@@ -21,27 +23,43 @@ PACKAGE = str(Path(lagrange_casadi.__file__).parent)
 
 def symbols(value):
     """Whether there are expressions among the first few of a value."""
-    return isinstance(value, ca.SX | ca.MX) or (isinstance(value, list | tuple) and any(map(symbols, value[:3])))
+    return isinstance(value, ca.SX | ca.MX) or (
+        isinstance(value, list | tuple) and any(map(symbols, value[:3]))
+    )
 
 
 def spied(monkeypatch):
-    """The set that fills, while CasADi is patched, with functions that had no lock: (its file and name, what it called)."""
+    """The set that fills, while CasADi is patched, with functions that had no lock: (its file and
+    name, what it called).
+    """
     found = set()
 
     def looking(name, function):
         def called(*given):
             told = function(*given)
-            if not symbolic._lock._is_owned() and (name == "new_Function" or symbols(given) or symbols(told)):
+            if not symbolic._lock._is_owned() and (
+                name == "new_Function" or symbols(given) or symbols(told)
+            ):
                 frame = sys._getframe(1)
                 while frame and not frame.f_code.co_filename.startswith(PACKAGE):
                     frame = frame.f_back
                 if frame:
-                    found.add((f"{Path(frame.f_code.co_filename).relative_to(PACKAGE)}: {frame.f_code.co_name}", name))
+                    found.add(
+                        (
+                            (
+                                f"{Path(frame.f_code.co_filename).relative_to(PACKAGE)}:"
+                                f" {frame.f_code.co_name}"
+                            ),
+                            name,
+                        )
+                    )
             return told
 
         return called
 
     names = {name: value for name, value in vars(wrapped._casadi).items() if MAKES.fullmatch(name)}
-    spy = types.SimpleNamespace(**vars(wrapped._casadi) | {name: looking(name, value) for name, value in names.items()})
+    spy = types.SimpleNamespace(
+        **vars(wrapped._casadi) | {name: looking(name, value) for name, value in names.items()}
+    )
     monkeypatch.setattr(wrapped, "_casadi", spy)
     return found

@@ -19,17 +19,27 @@ def pinned(m, name, one, other):
 
 def iterated(wanted=("all",), **keywords):
     """The slider-crank of the other tests, iterated."""
-    return slider_crank(wanted, crank_slider(pinned), posture={"rod": 0.0, "guide": 0.3}, **keywords)
+    return slider_crank(
+        wanted, crank_slider(pinned), posture={"rod": 0.0, "guide": 0.3}, **keywords
+    )
 
 
 def two_rods(motion=MOTION, **keywords):
-    """A crank with two rods across each other: one rod's loop has a closed form, the other one's is iterated."""
+    """A crank with two rods across each other: one rod's loop has a closed form, the other one's is
+    iterated.
+    """
     m, posture = Mechanism("two_rods"), {}
     r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.3, "m")
     crank = m.link("crank", length=r, mass=0.1)
     m.revolute("O", m.ground, crank)
-    for name, length, pin, way in (("closed", l, Mechanism.revolute, (1, 0)), ("stepped", 0.5, pinned, (0, 1))):
-        rod, slider = m.link(f"{name}_rod", length=length, mass=0.1), m.point_mass(f"{name}_slider", 0.1)
+    for name, length, pin, way in (
+        ("closed", l, Mechanism.revolute, (1, 0)),
+        ("stepped", 0.5, pinned, (0, 1)),
+    ):
+        rod, slider = (
+            m.link(f"{name}_rod", length=length, mass=0.1),
+            m.point_mass(f"{name}_slider", 0.1),
+        )
         m.revolute(f"{name}_A", crank.tip, rod)
         pin(m, f"{name}_B", rod.tip, slider)
         m.prismatic(f"{name}_guide", m.ground, slider, axis=way)

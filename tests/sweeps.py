@@ -1,4 +1,6 @@
-"""An engine of plain formulas, for tests of what stands around an engine; and what sweeps leave behind."""
+"""An engine of plain formulas, for tests of what stands around an engine; and what sweeps leave
+behind.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,10 @@ SIZE = 420
 
 
 class Formula:
-    """Numbers that tell the design and the column apart; some have no result. ``pause`` [s] a design."""
+    """Numbers that tell the design and the column apart; some have no result.
+
+    ``pause`` [s] a design.
+    """
 
     quantities = (
         "effort:O",
@@ -37,7 +42,9 @@ class Formula:
     efforts = ("effort:O",)
     doubtful = ()
     cost, room = 1 / 15, 0
-    provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
+    provenance = Provenance(
+        "formula", "double", "", "", "(default)", {"lagrange_casadi": __version__}
+    )
 
     def __init__(self, count=7, pause=0.0):
         laws = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
@@ -52,7 +59,9 @@ class Formula:
         self.calls.append((len(p), threading.get_ident()))
         time.sleep(self.pause * len(p))
         # Not by a product of matrices, whose rounding depends on how many rows there are.
-        seed = sum(factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True))
+        seed = sum(
+            factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True)
+        )
         status = (np.sin(1e3 * seed) > 0.8).astype(np.int8)
 
         def numbers(width, shift):
@@ -60,7 +69,11 @@ class Formula:
             return np.where(status[:, None] == 0, values, np.nan)
 
         value, t, xi = (numbers(len(self.quantities), k) for k in range(3))
-        series = np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1) if histories else None
+        series = (
+            np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1)
+            if histories
+            else None
+        )
         return Outcome(status, value, t, np.abs(xi), numbers(1, 5), numbers(1, 6), series)
 
 
@@ -78,7 +91,9 @@ def scene(**keywords):
 
 def identity(case="x"):
     """What a sweep is of, as parts keep it."""
-    words = dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), "")
+    words = dict.fromkeys(
+        ("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), ""
+    )
     tables = {name: {} for name in ("parameters", "bodies", "joints", "loads", "rows")}
     mechanism = {"name": case, "gravity": [0.0, -9.81], "constraints": [], **tables}
     grid = {"l": "0.1:0.2:11"}
@@ -98,7 +113,9 @@ def identity(case="x"):
 @contextlib.contextmanager
 def process(*command, **keywords):
     """A process of its own that does not outlive its test."""
-    started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **keywords)
+    started = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **keywords
+    )
     try:
         yield started
     finally:

@@ -1,4 +1,6 @@
-"""Cycle tables for tests: of cases, at any angle and motion, and how far they are from their graphs."""
+"""Cycle tables for tests: of cases, at any angle and motion, and how far they are from their
+graphs.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +63,9 @@ def whole_turns_apart(graph):
 
 
 def worst_gap(scene, table, angle, rate, acceleration, wanted=None):
-    """The largest difference between a table and its graph, over each column's peak; of angles less whole turns."""
+    """The largest difference between a table and its graph, over each column's peak; of angles less
+    whole turns.
+    """
     found = np.full((len(table.columns), angle.size), np.nan, table.dtype)
     table.evaluate(*(row.astype(table.dtype) for row in (angle, rate, acceleration)), found)
     gap = found - directly(scene, angle, rate, acceleration, wanted)

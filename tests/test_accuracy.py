@@ -41,7 +41,8 @@ def case(name):
 
 @pytest.mark.sampled(97)
 @pytest.mark.parametrize(
-    ("name", "rung"), [(name, rung) for name in PLANAR for rung in RUNGS if name in ITERATED or "newton" not in rung]
+    ("name", "rung"),
+    [(name, rung) for name in PLANAR for rung in RUNGS if name in ITERATED or "newton" not in rung],
 )
 def test_cases(name, rung):
     scene, exact = case(name)
@@ -52,7 +53,10 @@ def four_bar(pin=Mechanism.revolute):
     """A four-bar whose numbers are parameters."""
     m = Mechanism("random_four_bar")
     numbers = zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
-    a, b, c = (m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w)) for n, l, w in numbers)
+    a, b, c = (
+        m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w))
+        for n, l, w in numbers
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     pin(m, "B", b.tip, c.tip)
@@ -64,7 +68,10 @@ def offset_crank(pin=Mechanism.revolute):
     """An offset slider-crank whose numbers are parameters."""
     m = Mechanism("random_crank")
     numbers = zip("ab", (0.1, 0.35), (0.3, 0.5), strict=True)
-    a, b = (m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w)) for n, l, w in numbers)
+    a, b = (
+        m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w))
+        for n, l, w in numbers
+    )
     s = m.point_mass("s", m.parameter("ms", 0.6))
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
@@ -85,24 +92,37 @@ def declared(build, law, pin):
 def drawn(build, rng):
     """Lengths of a crank that turns all the way round, masses over four decades."""
     a = rng.uniform(0.02, 0.6)
-    masses = {name: 10 ** rng.uniform(-3, 1) for name in ("ma", "mb", "mc" if build is four_bar else "ms")}
+    masses = {
+        name: 10 ** rng.uniform(-3, 1) for name in ("ma", "mb", "mc" if build is four_bar else "ms")
+    }
     if build is offset_crank:
         y = a * rng.choice([0.0, 1e-4, 0.2])
         return masses | {"la": a, "lb": (a + y) * (1 + 10 ** rng.uniform(-3, 1)), "y": y}
     b, c = a * rng.uniform(1.3, 6.0, 2)
     frame, angle = rng.uniform(abs(b - c) + 1.001 * a, b + c - 1.001 * a), rng.uniform(-1.0, 1.0)
-    return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
+    return masses | {
+        "la": a,
+        "lb": b,
+        "lc": c,
+        "x": frame * math.cos(angle),
+        "y": frame * math.sin(angle),
+    }
 
 
-@pytest.mark.filterwarnings("ignore:the certificate fails")  # of a loop that few Newton steps leave open: how far is told
+@pytest.mark.filterwarnings(
+    "ignore:the certificate fails"
+)  # of a loop that few Newton steps leave open: how far is told
 @pytest.mark.sampled(13)
 @pytest.mark.parametrize("law", range(len(LAWS)))
 @pytest.mark.parametrize(
-    ("build", "pin"), [(four_bar, Mechanism.revolute), (offset_crank, Mechanism.revolute), (offset_crank, pinned)]
+    ("build", "pin"),
+    [(four_bar, Mechanism.revolute), (offset_crank, Mechanism.revolute), (offset_crank, pinned)],
 )
 @pytest.mark.parametrize("seed", range(2))
 def test_random_loops(build, law, seed, pin):
-    """On every rung, as far as it goes: steps that are too few are refused where they are no solution at all."""
+    """On every rung, as far as it goes: steps that are too few are refused where they are no
+    solution at all.
+    """
     scene, rng = declared(build, law, pin), np.random.default_rng([seed, law])
     parameters = drawn(build, rng)
     exact = exactly(scene, parameters)
@@ -148,9 +168,13 @@ def test_other_mechanisms(scene):
     ],
 )
 def test_after_many_turns(later, words, certified):
-    """What pairs of singles cannot hold shows, and what a compiler does to pairs when it is allowed to reassociate."""
+    """What pairs of singles cannot hold shows, and what a compiler does to pairs when it is allowed
+    to reassociate.
+    """
     scene = slider_crank(["all"])
-    scene = Scene(scene.mechanism, scene.motion, posture=scene.posture, t=(later, later + 0.08, COUNT))
+    scene = Scene(
+        scene.mechanism, scene.motion, posture=scene.posture, t=(later, later + 0.08, COUNT)
+    )
     with nullcontext() if certified else pytest.warns(CertificateWarning, match="closure"):
         solution = evaluate(scene, **words)
     assert_near(ratios(solution, exactly(scene)))
@@ -159,25 +183,38 @@ def test_after_many_turns(later, words, certified):
 @pytest.mark.sampled(41)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
-    """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""
+    """Some of every kind: none claims less than a tenth of its error, all together are near, and
+    residuals are of rounding.
+    """
     found = []
     for seed in range(3):
         scene = kinds.closing(kind, [seed])
         solution = evaluate(scene, backend="vm")
-        residuals = {name: float(values.max()) for name, values in solution.certificate.items() if name != "condition"}
+        residuals = {
+            name: float(values.max())
+            for name, values in solution.certificate.items()
+            if name != "condition"
+        }
         assert {"balance", "power"} <= set(residuals)
         assert max(residuals.values()) < 1e-13, (seed, residuals)
         found.append(ratios(solution, exactly(scene)))
-        assert min(found[-1].values()) > 1 / FACTOR, (seed, min(found[-1], key=lambda name: found[-1][name]))
+        assert min(found[-1].values()) > 1 / FACTOR, (
+            seed,
+            min(found[-1], key=lambda name: found[-1][name]),
+        )
     every = [value for one in found for value in one.values()]
     assert np.mean([value < FACTOR for value in every]) > 0.95
     assert 0.7 < np.median(every) < 3.0
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kind", [kinds.stephenson_two, kinds.stephenson_driven_last, kinds.platform])
+@pytest.mark.parametrize(
+    "kind", [kinds.stephenson_two, kinds.stephenson_driven_last, kinds.platform]
+)
 def test_too_few_steps_claim_what_they_leave(kind):
-    """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""
+    """Where loops begin near a dead centre the second instant is the worst, for the first is
+    closed.
+    """
     looked = dict.fromkeys((1, 2, 3), 0)
     for seed, steps in itertools.product(range(3), looked):
         if steps == 1:
@@ -189,7 +226,9 @@ def test_too_few_steps_claim_what_they_leave(kind):
             continue
         for name, values in closed.series.items():
             gaps = solution.series[name] - values
-            gaps = np.abs(gaps - math.tau * np.rint(gaps / math.tau)) if _turns(name) else np.abs(gaps)
+            gaps = (
+                np.abs(gaps - math.tau * np.rint(gaps / math.tau)) if _turns(name) else np.abs(gaps)
+            )
             if np.max(gaps) > 100 * closed.errors[name]:
                 looked[steps] += 1
                 assert 0.1 < solution.errors[name] / np.max(gaps) < 10.0, (seed, steps, name)
@@ -198,13 +237,19 @@ def test_too_few_steps_claim_what_they_leave(kind):
 
 
 def _turns(name):
-    return name.endswith(":angle") or (name.startswith("motion:") and not name.endswith(("_rate", "_acceleration")))
+    return name.endswith(":angle") or (
+        name.startswith("motion:") and not name.endswith(("_rate", "_acceleration"))
+    )
 
 
 def test_the_second_instant_may_be_the_worst():
-    """A six-bar that begins near a dead centre, two steps an instant: the first is closed, and errors fall from there."""
+    """A six-bar that begins near a dead centre, two steps an instant: the first is closed, and
+    errors fall from there.
+    """
     scene = kinds.closing(kinds.stephenson_two, [0, 21])
-    solution, closed = (evaluate(scene, backend="vm", newton=steps, t=(0.0, 1.0, 801)) for steps in (2, None))
+    solution, closed = (
+        evaluate(scene, backend="vm", newton=steps, t=(0.0, 1.0, 801)) for steps in (2, None)
+    )
     worst = 0.0
     for name, values in closed.series.items():
         gaps = np.abs(solution.series[name] - values)
@@ -231,7 +276,9 @@ def test_a_residual_that_rounding_does_not_explain_is_an_error(solution):
 
 
 def test_wrong_formulas_raise_the_estimates(monkeypatch):
-    """One column of the graph a thousandth too large: no rounding tells, the balance of the bodies does."""
+    """One column of the graph a thousandth too large: no rounding tells, the balance of the bodies
+    does.
+    """
     scene = slider_crank(["all"])
     graph, before = derive(scene), evaluate(scene)
     inputs = graph.instant.sx_in()
@@ -258,10 +305,14 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         table.out[arguments[0].names.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.instants.from_table"), "run", spoilt)
+    monkeypatch.setattr(
+        importlib.import_module("lagrange_casadi.instants.from_table"), "run", spoilt
+    )
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))
-    assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)
+    assert solution.errors["reaction:A:fx"] == pytest.approx(
+        0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9
+    )
 
 
 def test_without_a_certificate_there_are_no_estimates():
@@ -293,7 +344,9 @@ def test_a_trial_that_comes_to_nothing_says_nothing():
 
 
 def test_half_a_turn_is_as_good_as_less_half_a_turn():
-    """A rod that swings about the direction of -x: where a trial falls on the other side, nothing is off by a turn."""
+    """A rod that swings about the direction of -x: where a trial falls on the other side, nothing
+    is off by a turn.
+    """
     m, _ = offset_crank()
     scene = Scene(m, {"O": harmonic(0.0, 1.0, 1.0)}, posture={"b": math.pi}, t=(0.0, 1.0, 41))
     solution = evaluate(scene, parameters={"y": 0.0})
@@ -302,14 +355,19 @@ def test_half_a_turn_is_as_good_as_less_half_a_turn():
 
 
 def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
-    """One of twenty thousand: between those that are evenly spread, errors are less than a hundredth of those there."""
+    """One of twenty thousand: between those that are evenly spread, errors are less than a
+    hundredth of those there.
+    """
     scene = slider_crank(["all"], t=(0.0, 0.08, 20_001))
     solution = evaluate(scene, parameters={"l": 0.1 * (1 + 1e-7)})
     worst = int(np.argmax(solution.certificate["condition"]))
     spread = np.linspace(0, 20_000, 48).astype(int)
     assert np.min(np.abs(spread - worst)) > 10
     parameters = scene.mechanism.values({"l": 0.1 * (1 + 1e-7)})
-    true = true_errors(solution.during(slice(worst, worst + 1)), truth(scene, solution.t[worst : worst + 1], parameters))
+    true = true_errors(
+        solution.during(slice(worst, worst + 1)),
+        truth(scene, solution.t[worst : worst + 1], parameters),
+    )
     for name in ("effort:O", "reaction:guide:fy", "motion:A_acceleration"):
         assert 0.1 < solution.errors[name] / true[name] < 1e3, name
 
@@ -318,7 +376,10 @@ def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
 def test_one_step_an_instant_begins_with_a_closed_loop(backend):
     """Whatever the parameters: the guess of the graph is that of their defaults."""
     parameters = {"r": 0.07, "l": 0.35}
-    one, closed = (evaluate(iterated(), backend=backend, newton=n, parameters=parameters, t=(0.013, 0.08, 401)) for n in (1, None))
+    one, closed = (
+        evaluate(iterated(), backend=backend, newton=n, parameters=parameters, t=(0.013, 0.08, 401))
+        for n in (1, None)
+    )
     for name in ("motion:guide", "effort:O"):
         gap = np.abs(one.series[name] - closed.series[name])
         assert gap[0] < 1e-9 * np.max(np.abs(closed.series[name]))
@@ -329,7 +390,12 @@ def test_one_step_an_instant_begins_with_a_closed_loop(backend):
 def test_estimates_go_through_the_file(tmp_path, solution):
     save(solution, tmp_path / "x.h5")
     assert load(tmp_path / "x.h5").errors == solution.errors
-    assert set(solution.errors) >= {"effort:O", "section:rod:shear", "section:rod:law:n0", "pose:rod:angle"}
+    assert set(solution.errors) >= {
+        "effort:O",
+        "section:rod:shear",
+        "section:rod:law:n0",
+        "pose:rod:angle",
+    }
 
 
 def test_what_residuals_are_held_to():
@@ -339,12 +405,22 @@ def test_what_residuals_are_held_to():
     assert tolerance(evaluate(iterated(), newton=1)) == LOOSE
     far = evaluate(scene, t=(1e6, 1e6 + 0.08, 11))
     reported = np.max(certify(far)["balance"])
-    assert np.max(far.certificate["balance"]) < TOLERANCE < reported < tolerance(far) < 1e4 * reported
+    assert (
+        np.max(far.certificate["balance"]) < TOLERANCE < reported < tolerance(far) < 1e4 * reported
+    )
 
 
 def test_sections_of_every_density_are_looked_at():
     solution = evaluate(load_case(CASES / "arm").scene, t=(0, 2, 31))
-    links = [body.name for body in load_case(CASES / "arm").scene.mechanism.moving if isinstance(body, Link)]
+    links = [
+        body.name
+        for body in load_case(CASES / "arm").scene.mechanism.moving
+        if isinstance(body, Link)
+    ]
     for link in links:
         for force in ("axial", "shear", "bending"):
-            assert 0 < solution.errors[f"section:{link}:{force}"] < 1e-12 * abs(solution.peak(f"section:{link}:{force}").value)
+            assert (
+                0
+                < solution.errors[f"section:{link}:{force}"]
+                < 1e-12 * abs(solution.peak(f"section:{link}:{force}").value)
+            )

@@ -1,4 +1,6 @@
-"""Estimates of errors where outputs jump: at stations, by loads that switch, and where a spring nearly vanishes."""
+"""Estimates of errors where outputs jump: at stations, by loads that switch, and where a spring
+nearly vanishes.
+"""
 
 import math
 
@@ -51,16 +53,24 @@ def test_a_station_on_a_ratio_that_is_looked_at(station, rung):
 
 
 def friction(load):
-    """A crank under a torque that depends on time, angle and rate, the last zero at instants, and a slider pushed likewise."""
+    """A crank under a torque that depends on time, angle and rate, the last zero at instants, and a
+    slider pushed likewise.
+    """
     m = Mechanism("friction")
-    crank, rod, slider = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0), m.point_mass("slider", 1.0)
+    crank, rod, slider = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("rod", length=0.3, mass=1.0),
+        m.point_mass("slider", 1.0),
+    )
     main = m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)
     guide = m.prismatic("guide", m.ground, slider, axis=(1, 0))
     m.torque("torque", crank, load(m.time, m.coordinate(main), m.rate(main)))
     m.force("force", slider, x=load(m.time, m.coordinate(guide), m.rate(guide)))
-    return Scene(m, {"O": harmonic(0.0, math.pi, 1.0, 0.1)}, posture={"rod": 0.0}, t=(0.0, 1.0, COUNT))
+    return Scene(
+        m, {"O": harmonic(0.0, math.pi, 1.0, 0.1)}, posture={"rod": 0.0}, t=(0.0, 1.0, COUNT)
+    )
 
 
 JUMPS = {
@@ -70,7 +80,9 @@ JUMPS = {
     "from a time on": lambda t, q, w: 1e6 * (t >= 0.3),
     "a stair": lambda t, q, w: 1e5 * ca.floor(t / 0.07),
     "a saw": lambda t, q, w: 1e6 * ca.fmod(t, 0.07),
-    "a table with a step": lambda t, q, w: table(t, [0.0, 0.3, 0.3 + 1e-9, 1.0], [1.0, 1.0, 1e6, 1e6]),
+    "a table with a step": lambda t, q, w: table(
+        t, [0.0, 0.3, 0.3 + 1e-9, 1.0], [1.0, 1.0, 1e6, 1e6]
+    ),
     "several": lambda t, q, w: -1e6 * ca.sign(w) + 3e5 * (q > 0.31) - 1e5 * (t >= 0.3),
 }
 
@@ -90,9 +102,15 @@ def test_a_load_that_jumps(jump, rung):
 
 
 def test_a_load_that_jumps_where_rounding_decides():
-    """At dead centres, where rates are zero but for rounding, packs may take another side than one instant at a time."""
+    """At dead centres, where rates are zero but for rounding, packs may take another side than one
+    instant at a time.
+    """
     m = Mechanism("reversing")
-    crank, rod, slider = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0), m.point_mass("slider", 1.0)
+    crank, rod, slider = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("rod", length=0.3, mass=1.0),
+        m.point_mass("slider", 1.0),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)

@@ -1,4 +1,6 @@
-"""Motors and cylinders: means and energies of closed forms, what a catalogue names, and what is refused."""
+"""Motors and cylinders: means and energies of closed forms, what a catalogue names, and what is
+refused.
+"""
 
 import math
 
@@ -27,7 +29,9 @@ def test_a_harmonic_swing_has_the_means_of_its_closed_form():
     """Torque and speed are sines: what is given in a swing comes back, A^2 w^2 J/2 each quarter."""
     size, hertz, ratio, rotor = 0.4, 1.5, 8.0, 2e-4
     omega = 2 * math.pi * hertz
-    duty = duty_of(turned(harmonic(0.0, size, hertz), (0, 1 / hertz, 2001)), "J", ratio=ratio, inertia=rotor)
+    duty = duty_of(
+        turned(harmonic(0.0, size, hertz), (0, 1 / hertz, 2001)), "J", ratio=ratio, inertia=rotor
+    )
     torque = (INERTIA / ratio + rotor * ratio) * size * omega**2
     assert duty.rms_torque == pytest.approx(torque / math.sqrt(2), rel=1e-6)
     assert duty.peak_torque == pytest.approx(torque, rel=1e-6)
@@ -40,7 +44,9 @@ def test_a_harmonic_swing_has_the_means_of_its_closed_form():
 
 
 def test_a_gearbox_loses_either_way():
-    """Speeding up by a trapezoid the motor gives more than the load takes; slowing down it gets back less."""
+    """Speeding up by a trapezoid the motor gives more than the load takes; slowing down it gets
+    back less.
+    """
     law = moves([move(2.0, time=0.6, law=trapezoid(1 / 3))])
     solution = turned(law, (0, 0.6, 6001))
     duty = duty_of(solution, "J", ratio=5.0, efficiency=0.8)
@@ -55,7 +61,11 @@ def test_a_gearbox_loses_either_way():
 
 
 HEADS = "name,stall_torque,rated_torque,rated_speed,peak_torque,max_speed,inertia"
-ROWS = ["small,0.6,0.5,3000,1.8,5000,1e-5", "middle,1.6,1.3,3000,4.8,5000,4e-5", "large,5,4.2,3000,15,4500,3e-4"]
+ROWS = [
+    "small,0.6,0.5,3000,1.8,5000,1e-5",
+    "middle,1.6,1.3,3000,4.8,5000,4e-5",
+    "large,5,4.2,3000,15,4500,3e-4",
+]
 
 
 def catalogue(folder, rows=ROWS, heads=HEADS):
@@ -76,8 +86,14 @@ def test_the_smallest_motor_that_serves_is_named(here):
     for motor in motors:
         for ratio in (5, 10, 20):
             duty = asked(ratio, motor.inertia)
-            lasting = motor.stall_torque - (motor.stall_torque - motor.rated_torque) * duty.mean_speed / (3000 * math.pi / 30)
-            limits = (duty.rms_torque / lasting, duty.peak_torque / motor.peak_torque, duty.peak_speed / motor.max_speed)
+            lasting = motor.stall_torque - (
+                motor.stall_torque - motor.rated_torque
+            ) * duty.mean_speed / (3000 * math.pi / 30)
+            limits = (
+                duty.rms_torque / lasting,
+                duty.peak_torque / motor.peak_torque,
+                duty.peak_speed / motor.max_speed,
+            )
             if max(limits) <= 1.0:
                 serving.append((motor.rated_power, limits[0], motor.name, ratio, limits))
     _, _, name, ratio, limits = min(serving)
@@ -91,10 +107,14 @@ def test_the_smallest_motor_that_serves_is_named(here):
 
 
 def test_a_rotor_may_be_without_inertia(here):
-    """As that of a catalogue that does not tell it: it counts as none, and there is no ratio of inertias."""
+    """As that of a catalogue that does not tell it: it counts as none, and there is no ratio of
+    inertias.
+    """
     (motor,) = catalogue(here, ["light,1,0.5,3000,2,4000,0"])
     assert motor.inertia == 0.0
-    duty = duty_of(turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia)
+    duty = duty_of(
+        turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia
+    )
     with pytest.raises(DeclarationError, match="expected what the drive feels"):
         assert duty.inertia_ratio
     assert judge(motor, duty).heat > 0.0
@@ -103,34 +123,69 @@ def test_a_rotor_may_be_without_inertia(here):
 def test_where_no_motor_serves_the_nearest_is_named(here):
     solution = turned(harmonic(0.0, 0.8, 6.0), (0, 1 / 6.0, 401))
     with pytest.raises(
-        NoDesignError, match=r"no motor of 3 serves; nearest comes large: (speed|heat|peak torque) \d+ % of what it"
+        NoDesignError,
+        match=(
+            r"no motor of 3 serves; nearest comes large: (speed|heat|peak torque) \d+ % of what it"
+        ),
     ):
-        select(catalogue(here), lambda ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia), ratios=(5, 10))
+        select(
+            catalogue(here),
+            lambda ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia),
+            ratios=(5, 10),
+        )
 
 
 @pytest.mark.parametrize(
     ("rows", "heads", "says"),
     [
-        ([*ROWS, "bad,1,x,3000,2,4000,1e-5"], HEADS, r"motors\.csv, line 5: rated_torque must be a positive number, got 'x'"),
-        ([*ROWS, "bad,1,-1,3000,2,4000,1e-5"], HEADS, "line 5: rated_torque must be a positive number, got '-1'"),
-        ([*ROWS, "bad,1,2,3000,2,4000,1e-5"], HEADS, "line 5: expected rated_torque <= stall_torque <= peak_torque"),
+        (
+            [*ROWS, "bad,1,x,3000,2,4000,1e-5"],
+            HEADS,
+            r"motors\.csv, line 5: rated_torque must be a positive number, got 'x'",
+        ),
+        (
+            [*ROWS, "bad,1,-1,3000,2,4000,1e-5"],
+            HEADS,
+            "line 5: rated_torque must be a positive number, got '-1'",
+        ),
+        (
+            [*ROWS, "bad,1,2,3000,2,4000,1e-5"],
+            HEADS,
+            "line 5: expected rated_torque <= stall_torque <= peak_torque",
+        ),
         ([*ROWS, "bad,1,2"], HEADS, "line 5: 3 cells, expected 7"),
         ([*ROWS, ",1,1,3000,2,4000,1e-5"], HEADS, "line 5: a motor without a name"),
-        (ROWS, HEADS.replace("inertia", "J"), r"motors\.csv, line 1: it lacks the column 'inertia'; expected name, stall_torque"),
+        (
+            ROWS,
+            HEADS.replace("inertia", "J"),
+            r"motors\.csv, line 1: it lacks the column 'inertia'; expected name, stall_torque",
+        ),
         ([*ROWS, ROWS[0]], HEADS, r"motors\.csv, line 5: motor 'small' comes twice"),
         (
             ROWS,
             HEADS.replace("inertia", "inertia [lb in^2]"),
             r"column 'inertia' cannot be in 'lb in\^2'; valid: kg m\^2, kg cm\^2",
         ),
-        ([f"{row},2" for row in ROWS], f"{HEADS},knee_speed", "expected both columns knee_speed and end_torque, or none"),
-        ([f"{row},5000," for row in ROWS], f"{HEADS},knee_speed,end_torque", "line 2: expected both knee_speed and end_torque"),
+        (
+            [f"{row},2" for row in ROWS],
+            f"{HEADS},knee_speed",
+            "expected both columns knee_speed and end_torque, or none",
+        ),
+        (
+            [f"{row},5000," for row in ROWS],
+            f"{HEADS},knee_speed,end_torque",
+            "line 2: expected both knee_speed and end_torque",
+        ),
         (
             [f"{row},2000,20" for row in ROWS],
             f"{HEADS},knee_speed,end_torque",
             "line 2: expected knee_speed <= max_speed, and end_t",
         ),
-        ([f"{row},2" for row in ROWS], f"{HEADS},inertia", "line 1: the column 'inertia' comes twice"),
+        (
+            [f"{row},2" for row in ROWS],
+            f"{HEADS},inertia",
+            "line 1: the column 'inertia' comes twice",
+        ),
         ([], HEADS, "it has no motors, only heads"),
     ],
 )
@@ -159,7 +214,13 @@ def test_misuse_is_named(here):
     with pytest.raises(DeclarationError, match="expected motors, and ratios"):
         select([], lambda ratio, inertia: duty_of(solution, "J"))
     motor = Motor("m", 2.0, 1.0, 300.0, 5.0, 500.0, 0.0)
-    assert motor.lasting(np.array([0.0, 300.0, -300.0, 600.0, 900.0])).tolist() == [2.0, 1.0, 1.0, 0.0, 0.0]
+    assert motor.lasting(np.array([0.0, 300.0, -300.0, 600.0, 900.0])).tolist() == [
+        2.0,
+        1.0,
+        1.0,
+        0.0,
+        0.0,
+    ]
 
 
 def hoist(**options):
@@ -169,13 +230,24 @@ def hoist(**options):
     boom = m.link("boom", length=3.0, mass=150.0)
     m.revolute("foot", m.ground, boom)
     m.weld("grip", boom.tip, m.point_mass("weight", load))
-    made = cylinder(m, "ram", m.ground.at(1.0, -0.2), boom.at(1.5, 0.1), closed=0.5, bore=0.1, rod=0.06, **options)
+    made = cylinder(
+        m,
+        "ram",
+        m.ground.at(1.0, -0.2),
+        boom.at(1.5, 0.1),
+        closed=0.5,
+        bore=0.1,
+        rod=0.06,
+        **options,
+    )
     lifting = moves([move("60 deg", time=3.0)], start="10 deg")
     return made, Scene(m, {"foot": lifting}, t=(0, 3, 301), posture={"ram": 0.2}, drives=["ram"])
 
 
 def test_a_cylinder_bears_what_virtual_work_says():
-    """The force times the speed of the pins' distance is the load's power; pressures balance the force on both areas."""
+    """The force times the speed of the pins' distance is the load's power; pressures balance the
+    force on both areas.
+    """
     back = 4e5
     made, scene = hoist(back_pressure=back, barrel_mass=0.0, rod_mass=0.0)
     solution = evaluate(scene)
@@ -195,8 +267,12 @@ def test_a_cylinder_bears_what_virtual_work_says():
     assert pressures[0] * cap - pressures[1] * ring == pytest.approx(force, rel=1e-12)
     assert np.minimum(*pressures) == pytest.approx(back, rel=1e-12)
     assert (made.cap_area, made.rod_area) == pytest.approx((cap, ring))
-    assert solution.output("ram_flow") == pytest.approx(cap * solution.motion("ram").rate, rel=1e-12)
-    assert solution.output("ram_power") == pytest.approx(force * solution.motion("ram").rate, rel=1e-12)
+    assert solution.output("ram_flow") == pytest.approx(
+        cap * solution.motion("ram").rate, rel=1e-12
+    )
+    assert solution.output("ram_power") == pytest.approx(
+        force * solution.motion("ram").rate, rel=1e-12
+    )
 
 
 def test_a_cylinder_that_pulls_works_on_its_rod_side():
@@ -204,18 +280,36 @@ def test_a_cylinder_that_pulls_works_on_its_rod_side():
     m = Mechanism("hung")
     boom = m.link("boom", length=3.0, mass=150.0)
     m.revolute("foot", m.ground, boom)
-    cylinder(m, "ram", m.ground.at(0.3, 2.5), boom.at(2.0), closed=0.8, bore=0.1, rod=0.06, back_pressure=1e5)
-    scene = Scene(m, {"foot": harmonic(0.0, 0.2, 0.2)}, t=(0, 5, 51), posture={"ram": 1.0}, drives=["ram"])
+    cylinder(
+        m,
+        "ram",
+        m.ground.at(0.3, 2.5),
+        boom.at(2.0),
+        closed=0.8,
+        bore=0.1,
+        rod=0.06,
+        back_pressure=1e5,
+    )
+    scene = Scene(
+        m, {"foot": harmonic(0.0, 0.2, 0.2)}, t=(0, 5, 51), posture={"ram": 1.0}, drives=["ram"]
+    )
     solution = evaluate(scene)
     assert (solution.effort("ram") < 0.0).all()
     cap, ring = math.pi / 4 * 0.1**2, math.pi / 4 * (0.1**2 - 0.06**2)
-    assert solution.output("ram_rod_pressure") == pytest.approx((1e5 * cap - solution.effort("ram")) / ring, rel=1e-12)
+    assert solution.output("ram_rod_pressure") == pytest.approx(
+        (1e5 * cap - solution.effort("ram")) / ring, rel=1e-12
+    )
     assert solution.output("ram_cap_pressure") == pytest.approx(1e5, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     ("options", "says"),
-    [({"bore": 0.05, "rod": 0.06}, "cylinder 'ram': its rod must be thinner than its bore, got 0.06 m in 0.05 m")],
+    [
+        (
+            {"bore": 0.05, "rod": 0.06},
+            "cylinder 'ram': its rod must be thinner than its bore, got 0.06 m in 0.05 m",
+        )
+    ],
 )
 def test_cylinders_that_cannot_be(options, says):
     m = Mechanism("m")

@@ -1,4 +1,6 @@
-"""Cross-sections by finite elements of another package, against closed forms; skipped where it is not installed."""
+"""Cross-sections by finite elements of another package, against closed forms; skipped where it is
+not installed.
+"""
 
 import sys
 
@@ -28,7 +30,9 @@ def test_a_rectangle_is_its_closed_form():
 @pytest.mark.long
 def test_an_angle_leans_as_its_polygon_does():
     pytest.importorskip("sectionproperties")
-    angle = beams.polygon([(0.0, 0.0), (0.05, 0.0), (0.05, 0.004), (0.004, 0.004), (0.004, 0.03), (0.0, 0.03)])
+    angle = beams.polygon(
+        [(0.0, 0.0), (0.05, 0.0), (0.05, 0.004), (0.004, 0.004), (0.004, 0.03), (0.0, 0.03)]
+    )
     found, polygon = beams.analysed(angle).properties(space=True), angle.properties(space=True)
     for name in ("area", "iy", "iz", "iyz"):
         assert getattr(found, name) == pytest.approx(getattr(polygon, name), rel=1e-9)
@@ -40,7 +44,10 @@ def test_an_angle_leans_as_its_polygon_does():
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: beams.rectangle(0.05, 0.03), "expected a polygon whose corners are numbers, got a rectangle"),
+        (
+            lambda: beams.rectangle(0.05, 0.03),
+            "expected a polygon whose corners are numbers, got a rectangle",
+        ),
         (lambda: CORNERS, "expected a polygon, or a Section of sectionproperties"),
     ],
 )

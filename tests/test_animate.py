@@ -1,4 +1,6 @@
-"""Animations: as many frames as are told, of the time that is told, sharp and whole; no name of a user is markup."""
+"""Animations: as many frames as are told, of the time that is told, sharp and whole; no name of a
+user is markup.
+"""
 
 import io
 import stat
@@ -35,7 +37,7 @@ if pathlib.Path(__file__).with_name("fails").exists():
 size = [int(side) for side in told[told.index("-s") + 1].split("x")]
 film = sys.stdin.buffer.read()
 pathlib.Path(told[-1]).write_text(f"{{told[told.index('-r') + 1]}} {{len(film) / (3 * size[0] * size[1]):g}}")
-"""
+"""  # noqa: E501
 
 
 def moved(text, name):
@@ -59,7 +61,9 @@ def test_a_gif_has_the_frames_and_the_time_that_are_told():
         assert (pixels[-1][0] == 255).all()
         assert (pixels[-1] < 128).any()
     assert sum(times) == 2000
-    assert all((one != other).any() for one, other in zip(pixels, pixels[1:] + pixels[:1], strict=True))
+    assert all(
+        (one != other).any() for one, other in zip(pixels, pixels[1:] + pixels[:1], strict=True)
+    )
 
 
 def test_odd_rates_keep_the_time_of_the_cycle():
@@ -73,15 +77,21 @@ def test_odd_rates_keep_the_time_of_the_cycle():
 
 
 def test_bodies_are_where_the_solution_has_them():
-    """The crank, one thick line of the sheet, has its length and its angle at every frame; x to the right, y up."""
+    """The crank, one thick line of the sheet, has its length and its angle at every frame; x to the
+    right, y up.
+    """
     solution = press(TURN)
     picture = picture_of(solution, Film(rate=10, seconds=4.0))
     assert picture.closed
     assert picture.frames == 40
-    crank = next(thing for thing in picture.things if isinstance(thing, Line) and thing.width == 8.0)
+    crank = next(
+        thing for thing in picture.things if isinstance(thing, Line) and thing.width == 8.0
+    )
     way = crank.points[:, 1] - crank.points[:, 0]
     np.testing.assert_allclose(np.hypot(*way.T), np.hypot(*way[0]), rtol=1e-12)
-    np.testing.assert_allclose(np.unwrap(np.arctan2(-way[:, 1], way[:, 0])), solution.pose("crank").angle[:-1], atol=1e-12)
+    np.testing.assert_allclose(
+        np.unwrap(np.arctan2(-way[:, 1], way[:, 0])), solution.pose("crank").angle[:-1], atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("name", ["rssr", "quick_return", "spatial_slider_crank"])
@@ -96,14 +106,18 @@ def test_everything_is_on_the_sheet_at_all_times(name):
 
 
 def picture_size(solution):
-    """The larger side of all places between which something is drawn, over the whole cycle [m]: here joints, at all frames."""
+    """The larger side of all places between which something is drawn, over the whole cycle [m]:
+    here joints, at all frames.
+    """
     x = [0.0, *(solution.pose(body).x[:-1] for body in ("crank", "rod", "ram"))]
     y = [0.0, *(solution.pose(body).y[:-1] for body in ("crank", "rod", "ram"))]
     return max(np.ptp(np.concatenate([np.atleast_1d(one) for one in side])) for side in (x, y))
 
 
 def test_arrows_and_ribbons_have_the_signs_of_the_solution():
-    """Against the solution at the frames' own instants: y is up, ordinates go to the side of n, turns are counter-clockwise."""
+    """Against the solution at the frames' own instants: y is up, ordinates go to the side of n,
+    turns are counter-clockwise.
+    """
     solution = press(TURN)
     picture = picture_of(solution, Film(rate=10, seconds=4.0, forces=True, section="bending"))
     lines = [thing for thing in picture.things if isinstance(thing, Line)]
@@ -114,16 +128,26 @@ def test_arrows_and_ribbons_have_the_signs_of_the_solution():
         reaction, way = solution.reaction(joint), (head.points[:, 0] - shaft.points[:, 0]) * [1, -1]
         force = np.column_stack([reaction.fx, reaction.fy])[:-1]
         np.testing.assert_allclose(
-            way[:, 0] * force[:, 1], way[:, 1] * force[:, 0], atol=1e-9 * np.abs(way).max() * np.abs(force).max()
+            way[:, 0] * force[:, 1],
+            way[:, 1] * force[:, 0],
+            atol=1e-9 * np.abs(way).max() * np.abs(force).max(),
         )
         scales.append(np.sum(way * force) / np.sum(force * force))
     np.testing.assert_allclose(scales, scales[0], rtol=1e-9)
     assert scales[0] > 0
 
     largest = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
-    widest = 0.2 * np.hypot(*(shafts[0].points[0, 0] - shafts[1].points[0, 0])) / 0.1 * picture_size(solution)
+    widest = (
+        0.2
+        * np.hypot(*(shafts[0].points[0, 0] - shafts[1].points[0, 0]))
+        / 0.1
+        * picture_size(solution)
+    )
     for link, both in (("crank", lines[:2]), ("rod", lines[2:4])):
-        angle, values = solution.pose(link).angle[:-1], solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1]
+        angle, values = (
+            solution.pose(link).angle[:-1],
+            solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1],
+        )
         n = np.column_stack([-np.sin(angle), -np.cos(angle)])[:, None]
         for line, kept in zip(both, (np.maximum(values, 0), np.minimum(values, 0)), strict=True):
             ordinates = np.sum((line.points[:, :40:-1] - line.points[:, :41]) * n, axis=-1)
@@ -133,7 +157,11 @@ def test_arrows_and_ribbons_have_the_signs_of_the_solution():
     centre = lines[[line.width for line in lines].index(8.0)].points[:, :1]
     turned = np.unwrap(np.arctan2(-(arc - centre)[..., 1], (arc - centre)[..., 0]), axis=1)
     effort = solution.effort("O")[:-1]
-    np.testing.assert_allclose(turned[:, -1] - turned[:, 0], 1.5 * np.pi * effort / np.abs(solution.effort("O")).max(), atol=1e-9)
+    np.testing.assert_allclose(
+        turned[:, -1] - turned[:, 0],
+        1.5 * np.pi * effort / np.abs(solution.effort("O")).max(),
+        atol=1e-9,
+    )
     ahead, last = head[:, 0] - head[:, 1:].mean(axis=1), arc[:, -1] - arc[:, -2]
     assert (np.sum(ahead * last, axis=1) >= 0).all()
 
@@ -143,13 +171,19 @@ def test_gears_turn_and_have_room():
     m = Mechanism("rotor")
     rotor = m.link("rotor", length=0.3, mass=1.0, centre=(0, 0), inertia=0.1)
     m.revolute("O", m.ground, rotor)
-    solution = evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 2 * np.pi, 41), wanted=["all"]), backend="vm")
+    solution = evaluate(
+        Scene(m, {"O": polynomial(0, 1)}, t=(0, 2 * np.pi, 41), wanted=["all"]), backend="vm"
+    )
     picture = picture_of(solution, Film(rate=10, seconds=4.0))
-    rim, spoke = (thing.points for thing in picture.things if isinstance(thing, Line) and thing.width == 2.4)
+    rim, spoke = (
+        thing.points for thing in picture.things if isinstance(thing, Line) and thing.width == 2.4
+    )
     assert (rim >= 0).all()
     assert (rim <= [picture.width, picture.height]).all()
     radius = spoke[:, 1] - spoke[:, 0]
-    np.testing.assert_allclose(np.hypot(*(rim - spoke[:, :1]).transpose(2, 0, 1)), np.hypot(*radius[0]), rtol=1e-9)
+    np.testing.assert_allclose(
+        np.hypot(*(rim - spoke[:, :1]).transpose(2, 0, 1)), np.hypot(*radius[0]), rtol=1e-9
+    )
     turned = np.unwrap(np.arctan2(-radius[:, 1], radius[:, 0]))
     np.testing.assert_allclose(turned - turned[0], solution.motion("O").value[:-1], atol=1e-9)
 
@@ -164,10 +198,16 @@ def test_the_longest_arrow_and_the_widest_ribbon_tell_the_peaks():
     solution = press(TURN)
     picture = picture_of(solution, Film(rate=10, seconds=4.0, forces=True, section="bending"))
     texts = [one.text for one in ElementTree.fromstring(svg(picture, 4.0)).iter(f"{SVG}text")]
-    force = max(solution.peak(f"reaction:{joint}:resultant").value for joint in ("O", "A", "B", "guide"))
+    force = max(
+        solution.peak(f"reaction:{joint}:resultant").value for joint in ("O", "A", "B", "guide")
+    )
     bending = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
     effort = abs(solution.peak("effort:O").value)
-    assert texts[-1] == f"arrows: up to {force:.3g} N · drives' moments: up to {effort:.3g} N m · bending: up to {bending:.3g} N m"
+    assert (
+        texts[-1]
+        == f"arrows: up to {force:.3g} N · drives' moments: up to {effort:.3g} N m · bending: up to"
+        f" {bending:.3g} N m"
+    )
 
 
 def test_an_svg_moves_by_itself():
@@ -179,21 +219,36 @@ def test_an_svg_moves_by_itself():
         assert found
         assert {len(values) for values in found} == {count}
         assert all((values[0] == values[-1]) == (count == 11) for values in found)
-        assert {one.get("dur") for one in ElementTree.fromstring(text).iter(f"{SVG}animate")} == {"2s"}
+        assert {one.get("dur") for one in ElementTree.fromstring(text).iter(f"{SVG}animate")} == {
+            "2s"
+        }
         assert "href" not in text
 
 
 def test_no_name_is_markup():
     picture = picture_of(hostile(), Film(**SMALL, forces=True))
     root = ElementTree.fromstring(svg(picture, 2.0))
-    kinds = {"svg", "title", "rect", "polyline", "polygon", "circle", "text", "animate", "animateTransform"}
+    kinds = {
+        "svg",
+        "title",
+        "rect",
+        "polyline",
+        "polygon",
+        "circle",
+        "text",
+        "animate",
+        "animateTransform",
+    }
     assert {element.tag.removeprefix(SVG) for element in root.iter()} <= kinds
     words = "".join(root.itertext())
     assert HOSTILE[0] in words
     assert HOSTILE[1] in words
     assert gif(picture, 2.0)  # and letters that no font has are not the end of it
     odd = replace(hostile(), case="a\x00b\x1b$x_1^$")
-    assert ElementTree.fromstring(svg(picture_of(odd, Film(**SMALL)), 2.0)).find(f"{SVG}title").text == "a\ufffdb\ufffd$x_1^$"
+    assert (
+        ElementTree.fromstring(svg(picture_of(odd, Film(**SMALL)), 2.0)).find(f"{SVG}title").text
+        == "a\ufffdb\ufffd$x_1^$"
+    )
 
 
 @pytest.mark.parametrize("ending", ["gif", "svg"])
@@ -229,7 +284,18 @@ def put_ffmpeg(folder, monkeypatch):
 def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
     put_ffmpeg(here / "programs", monkeypatch)
     save(press(TURN), "press.h5")
-    arguments = ["animate", "press.h5", "--out", "a.mp4", "--width", "160", "--rate", "5", "--seconds", "2"]
+    arguments = [
+        "animate",
+        "press.h5",
+        "--out",
+        "a.mp4",
+        "--width",
+        "160",
+        "--rate",
+        "5",
+        "--seconds",
+        "2",
+    ]
     assert main(arguments) == 0
     assert (here / "a.mp4").read_text() == "5 10"
     (here / "programs" / "fails").touch()
@@ -241,8 +307,26 @@ def test_a_film_is_made_by_ffmpeg(here, capsys, monkeypatch):
 
 def test_the_command_shows_a_file_and_a_case(here, capsys):
     save(press(TURN), "press.h5")
-    assert main(["animate", "press.h5", "--forces", "--section", "bending", "--width", "160", "--rate", "5"]) == 0
-    assert main(["animate", "four_bar", "--out", "b.svg", "--forces", "--no-names", "--t", "0:0.5:21"]) == 0
+    assert (
+        main(
+            [
+                "animate",
+                "press.h5",
+                "--forces",
+                "--section",
+                "bending",
+                "--width",
+                "160",
+                "--rate",
+                "5",
+            ]
+        )
+        == 0
+    )
+    assert (
+        main(["animate", "four_bar", "--out", "b.svg", "--forces", "--no-names", "--t", "0:0.5:21"])
+        == 0
+    )
     assert capsys.readouterr().out == "wrote press.gif\nwrote b.svg\n"
     with Image.open("press.gif") as image:
         assert image.n_frames == 20
@@ -254,22 +338,49 @@ def test_the_command_shows_a_file_and_a_case(here, capsys):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["all.h5", "--out", "a.png"], "animation a.png: expected a name that ends in .gif, .mp4, .svg or .glb"),
-        (["all.h5", "--out", "nowhere/a.gif"], "cannot write nowhere/a.gif: folder nowhere does not exist"),
-        (["all.h5", "--out", "a.mp4"], "an MP4 is made by ffmpeg, which is not found; install it, or write a .gif or an .svg"),
+        (
+            ["all.h5", "--out", "a.png"],
+            "animation a.png: expected a name that ends in .gif, .mp4, .svg or .glb",
+        ),
+        (
+            ["all.h5", "--out", "nowhere/a.gif"],
+            "cannot write nowhere/a.gif: folder nowhere does not exist",
+        ),
+        (
+            ["all.h5", "--out", "a.mp4"],
+            "an MP4 is made by ffmpeg, which is not found; install it, or write a .gif or an .svg",
+        ),
         (
             ["effort.h5"],
-            "an animation shows the mechanism in motion, and there is no motion of 'crank', 'rod', 'ram'; want motion too",
+            (
+                "an animation shows the mechanism in motion, and there is no motion of 'crank',"
+                " 'rod', 'ram'; want motion too"
+            ),
         ),
-        (["motion.h5", "--forces"], "there is no reaction, effort or load to be shown; want reaction too"),
-        (["motion.h5", "--section", "bending"], "there is no section force to be shown; want section too"),
-        (["all.h5", "--section", "torsion"], "unknown section force 'torsion'; valid: axial, shear, bending"),
+        (
+            ["motion.h5", "--forces"],
+            "there is no reaction, effort or load to be shown; want reaction too",
+        ),
+        (
+            ["motion.h5", "--section", "bending"],
+            "there is no section force to be shown; want section too",
+        ),
+        (
+            ["all.h5", "--section", "torsion"],
+            "unknown section force 'torsion'; valid: axial, shear, bending",
+        ),
         (["one.h5"], "an animation shows a motion, and there is 1 instant; ask for more"),
-        (["all.h5", "--width", "81"], "width: expected an even number of pixels from 80 to 3840, got 81"),
+        (
+            ["all.h5", "--width", "81"],
+            "width: expected an even number of pixels from 80 to 3840, got 81",
+        ),
         (["all.h5", "--rate", "0"], "rate: expected frames a second above 0, got 0.0"),
         (["all.h5", "--rate", "51"], "rate: expected 50 frames a second at most, got 51.0"),
         (["all.h5", "--seconds", "nan"], "seconds: expected seconds a cycle above 0, got nan"),
-        (["all.h5", "--seconds", "1e9"], "rate and seconds: expected 3000 frames at most, got 2.5e+10"),
+        (
+            ["all.h5", "--seconds", "1e9"],
+            "rate and seconds: expected 3000 frames at most, got 2.5e+10",
+        ),
         (["all.h5", "--t", "0:1:5"], "--set, --t and --over go with a case, not with a file"),
         (["nothing.h5"], "nothing.h5: no such file"),
     ],

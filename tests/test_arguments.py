@@ -1,4 +1,6 @@
-"""Numbers and texts with units, wherever a declaration takes a number; and what solutions give to NumPy, notebooks and printers."""
+"""Numbers and texts with units, wherever a declaration takes a number; and what solutions give to
+NumPy, notebooks and printers.
+"""
 
 import math
 import sys
@@ -18,14 +20,35 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 @pytest.mark.parametrize(
     ("text", "unit", "value"),
-    [("100 mm", "m", 0.1), ("0.3mm", "m", 0.0003), ("500 g", "kg", 0.5), ("20 ms", "s", 0.02), ("90 deg/s", "rad/s", math.pi / 2)],
+    [
+        ("100 mm", "m", 0.1),
+        ("0.3mm", "m", 0.0003),
+        ("500 g", "kg", 0.5),
+        ("20 ms", "s", 0.02),
+        ("90 deg/s", "rad/s", math.pi / 2),
+    ],
 )
 def test_texts_are_numbers_of_their_unit(text, unit, value):
     assert number(text, unit) == value
     assert typed(text) == (value, unit)
 
 
-@pytest.mark.parametrize("value", [True, np.True_, "3", "3 deg", b"3", 10**400, None, [1.0], np.ones(1), 1j, np.datetime64("2020")])
+@pytest.mark.parametrize(
+    "value",
+    [
+        True,
+        np.True_,
+        "3",
+        "3 deg",
+        b"3",
+        10**400,
+        None,
+        [1.0],
+        np.ones(1),
+        1j,
+        np.datetime64("2020"),
+    ],
+)
 def test_what_is_no_length_is_refused(value):
     m = Mechanism("m")
     with pytest.raises(DeclarationError):
@@ -43,9 +66,19 @@ def swing(law, t=(0, 1, 5), **texts):
 
 def test_texts_give_the_same_forces_to_the_bit():
     plain = evaluate(swing(polynomial(math.pi / 4, 2 * math.pi)))
-    told = evaluate(swing(polynomial("45 deg", "360 deg/s"), t=("0 s", "1000 ms", 5), length="100 mm", mass="500 g"))
+    told = evaluate(
+        swing(
+            polynomial("45 deg", "360 deg/s"),
+            t=("0 s", "1000 ms", 5),
+            length="100 mm",
+            mass="500 g",
+        )
+    )
     np.testing.assert_array_equal(told.effort("O"), plain.effort("O"))
-    for law in (harmonic("1 deg", "2 deg", 1.0), samples([0, 1, 2, 3], ["0 deg", "1 deg", "3 deg", "2 deg"])):
+    for law in (
+        harmonic("1 deg", "2 deg", 1.0),
+        samples([0, 1, 2, 3], ["0 deg", "1 deg", "3 deg", "2 deg"]),
+    ):
         assert law.unit == "rad"
     with pytest.raises(DeclarationError, match="it is told in m, and its coordinate is in rad"):
         swing(polynomial("10 mm"))
@@ -75,7 +108,9 @@ def test_what_a_solution_gives(tmp_path):
 
 def test_a_warning_is_at_the_users_line(monkeypatch):
     """However many functions of the package are between, as those that look at arguments."""
-    monkeypatch.setitem(sys.modules, "lagrange_casadi.made", made := ModuleType("lagrange_casadi.made"))
+    monkeypatch.setitem(
+        sys.modules, "lagrange_casadi.made", made := ModuleType("lagrange_casadi.made")
+    )
     inner = vars(made)
     inner.update(warn=warn, public=public)
     exec("@public\ndef outer(n: int):\n    inside()\ndef inside():\n    warn('so it is')", inner)
@@ -87,9 +122,18 @@ def test_a_warning_is_at_the_users_line(monkeypatch):
 def test_arrays_of_names_and_huge_counts():
     scene = swing(polynomial(0.0, 1.0))
     assert prepare(scene, wanted=np.array(["effort"]), backend="vm").outputs == ("effort:O",)
-    with pytest.raises(DeclarationError, match=r"wanted: expected a list of output names, got array"):
+    with pytest.raises(
+        DeclarationError, match=r"wanted: expected a list of output names, got array"
+    ):
         prepare(scene, wanted=np.array([1.0, 2.0]), backend="vm")
     m = Mechanism("m")
     m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.1, "m"), mass=0.5))
-    with pytest.raises(DeclarationError, match="starts: expected a whole number from 1 to 16777216"):
-        optimise(Scene(m, {"O": polynomial(0.0, 1.0)}), minimise="l", over={"l": (0.1, 0.2)}, starts=10**40)
+    with pytest.raises(
+        DeclarationError, match="starts: expected a whole number from 1 to 16777216"
+    ):
+        optimise(
+            Scene(m, {"O": polynomial(0.0, 1.0)}),
+            minimise="l",
+            over={"l": (0.1, 0.2)},
+            starts=10**40,
+        )

@@ -19,8 +19,13 @@ VALUES = dict(zip("pqr", LONG, strict=True))
 
 def four_bar(lengths, rocker=1.5, **more):
     m = Mechanism("four_bar")
-    sides = [m.parameter(name, length, "m", low=0.0) for name, length in zip("pqr", lengths, strict=True)]
-    a, b, c = (m.link(name, length=l, mass=w) for name, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True))
+    sides = [
+        m.parameter(name, length, "m", low=0.0) for name, length in zip("pqr", lengths, strict=True)
+    ]
+    a, b, c = (
+        m.link(name, length=l, mass=w)
+        for name, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
@@ -36,9 +41,13 @@ def assert_same(one, other):
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("rocker", [1.5, -1.5])
-@pytest.mark.parametrize("options", [{}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str)
+@pytest.mark.parametrize(
+    "options", [{}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str
+)
 def test_what_can_be_assembled_is_evaluated(options, rocker):
-    """To the last bit what it is where these values are the defaults, in the branch that the posture tells."""
+    """To the last bit what it is where these values are the defaults, in the branch that the
+    posture tells.
+    """
     found = evaluate(four_bar(SHORT, rocker), parameters=VALUES, **options)
     assert_same(found, evaluate(four_bar(LONG, rocker), **options))
     assert np.sign(np.sin(found.pose("c").angle[0])) == np.sign(rocker)
@@ -47,7 +56,9 @@ def test_what_can_be_assembled_is_evaluated(options, rocker):
 def test_one_after_another_each_is_assembled_with_its_own_values():
     scene = four_bar(SHORT)
     for q in (0.35, 0.3, 0.4, 0.35):
-        assert_same(evaluate(scene, parameters=VALUES | {"q": q}), evaluate(four_bar((0.1, q, 0.25))))
+        assert_same(
+            evaluate(scene, parameters=VALUES | {"q": q}), evaluate(four_bar((0.1, q, 0.25)))
+        )
 
 
 def test_where_defaults_serve_they_choose():
@@ -59,15 +70,24 @@ def test_where_defaults_serve_they_choose():
 
 
 def test_a_scene_is_compiled_with_values_where_its_own_do_not_serve():
-    """With those where they are needed, and only there; one that has been compiled so needs the scene no more."""
+    """With those where they are needed, and only there; one that has been compiled so needs the
+    scene no more.
+    """
     with pytest.raises(AssemblyError):
         compile_scene(four_bar(SHORT), ["effort"])
-    program, own = compile_scene(four_bar(SHORT), ["effort"], parameters=VALUES), compile_scene(four_bar(LONG), ["effort"])
+    program, own = (
+        compile_scene(four_bar(SHORT), ["effort"], parameters=VALUES),
+        compile_scene(four_bar(LONG), ["effort"]),
+    )
     p = list(VALUES.values())
     t, motion = 0.1, program.motion(0.1, p)
-    np.testing.assert_array_equal(program.instant(t, *motion, [], p).full(), own.instant(t, *motion, [], p).full())
+    np.testing.assert_array_equal(
+        program.instant(t, *motion, [], p).full(), own.instant(t, *motion, [], p).full()
+    )
     scene = four_bar(LONG)
-    assert compile_scene(scene, ["effort"], parameters={"q": 0.4}) is compile_scene(scene, ["effort"])
+    assert compile_scene(scene, ["effort"], parameters={"q": 0.4}) is compile_scene(
+        scene, ["effort"]
+    )
     with pytest.raises(UnknownNameError):
         compile_scene(scene, ["effort"], parameters={"z": 1.0})
 
@@ -75,10 +95,17 @@ def test_a_scene_is_compiled_with_values_where_its_own_do_not_serve():
 def test_it_is_said_with_what_it_was_tried():
     scene = four_bar(SHORT)
     with pytest.raises(
-        AssemblyError, match=r"at the start of the motion, .*; with the default parameters p = 0\.1, q = 0\.05, r = 0\.05"
+        AssemblyError,
+        match=(
+            r"at the start of the motion, .*; with the default parameters p = 0\.1, q = 0\.05, r ="
+            r" 0\.05"
+        ),
     ):
         evaluate(scene)
-    with pytest.raises(AssemblyError, match=r"at the start of the motion, .*; with the parameters p = 1, q = 0\.05, r = 0\.05"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"at the start of the motion, .*; with the parameters p = 1, q = 0\.05, r = 0\.05",
+    ):
         evaluate(scene, parameters={"p": 1.0})
 
 
@@ -92,7 +119,12 @@ def test_a_scene_may_say_itself_with_what_it_is_assembled():
 
 @pytest.mark.parametrize(
     ("assembly", "error"),
-    [({"z": 1.0}, UnknownNameError), ({"p": -1.0}, ParameterError), ({"p": "x"}, ParameterError), (3, DeclarationError)],
+    [
+        ({"z": 1.0}, UnknownNameError),
+        ({"p": -1.0}, ParameterError),
+        ({"p": "x"}, ParameterError),
+        (3, DeclarationError),
+    ],
 )
 def test_misuse_is_named(assembly, error):
     with pytest.raises(error):
@@ -112,7 +144,10 @@ def test_sweeps_begin_with_the_first_design_that_can_be_assembled():
 
 def test_peaks_between_instants():
     scene = four_bar(SHORT)
-    peaks = [refine(s, evaluate(s, parameters=VALUES), ["effort:O", "section:b:bending"]) for s in (scene, four_bar(LONG))]
+    peaks = [
+        refine(s, evaluate(s, parameters=VALUES), ["effort:O", "section:b:bending"])
+        for s in (scene, four_bar(LONG))
+    ]
     assert peaks[0] == peaks[1]
 
 
@@ -122,7 +157,10 @@ def test_exported_c(tmp_path):
     export(four_bar(LONG), tmp_path / "other")
     for file in ("four_bar.h", "four_bar.c", "selftest.c"):
         # But for the scene's own hash.
-        one, other = (re.sub(r"[0-9a-f]{32}|0x[0-9a-f]{8}u", "", (tmp_path / name / file).read_text()) for name in ("one", "other"))
+        one, other = (
+            re.sub(r"[0-9a-f]{32}|0x[0-9a-f]{8}u", "", (tmp_path / name / file).read_text())
+            for name in ("one", "other")
+        )
         assert one == other
     with pytest.raises(AssemblyError, match="with the default parameters"):
         export(four_bar(SHORT), tmp_path / "none")
@@ -142,7 +180,7 @@ def scene():
     m.revolute("B", rod.tip, slider)
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     return Scene(m, {"O": polynomial(1.5, 9.0)}, posture={"rod": 0.0}, t=(0.0, 0.5, 51))
-"""
+"""  # noqa: E501
 
 
 def test_the_command_line(here, capsys):

@@ -1,4 +1,6 @@
-"""What moves along a link and stays at its tip, or at its base, misses that by rounding: sections must not see it by chance."""
+"""What moves along a link and stays at its tip, or at its base, misses that by rounding: sections
+must not see it by chance.
+"""
 
 import numpy as np
 import pytest
@@ -18,7 +20,9 @@ SHIFT = {"vm": 1e-12, "c": 1e-12, "lanes": 1e-12, "single": 2e-5}
 
 
 def rail(end):
-    """A crank moves a pin in the slot of a rail; an arm beside the rail holds the pin at the rail's tip, or at its base."""
+    """A crank moves a pin in the slot of a rail; an arm beside the rail holds the pin at the rail's
+    tip, or at its base.
+    """
     m = Mechanism("rail")
     l = m.parameter("l", LENGTH, "m")
     crank, coupler = m.link("crank", length=0.1, mass=0.3), m.link("coupler", length=0.35, mass=0.5)
@@ -32,7 +36,13 @@ def rail(end):
     at = 1.0 if end == "tip" else 0.0
     m.output("felt", m.results.section(bar, at).shear, unit="N")
     lean = 1.5 if end == "tip" else 1.5 - np.pi
-    return Scene(m, {"O": polynomial(0.3, 5.0)}, t=(0, 1.2, 13), posture={"arm": 1.5, "bar": lean}, xi=(0, 1, 5)), at
+    return Scene(
+        m,
+        {"O": polynomial(0.3, 5.0)},
+        t=(0, 1.2, 13),
+        posture={"arm": 1.5, "bar": lean},
+        xi=(0, 1, 5),
+    ), at
 
 
 @pytest.mark.sampled(4)
@@ -81,7 +91,14 @@ def test_sweeps_have_the_refined_peaks(end):
 @pytest.mark.parametrize("end", ["tip", "base"])
 def test_sections_that_sweeps_keep_see_it_in_single_precision_too(end):
     scene, at = rail(end)
-    kept = sweep(scene, {"l": [LENGTH]}, wanted=["section:bar"], precision="single", xi=(0, 1, 3), keep="histories")
+    kept = sweep(
+        scene,
+        {"l": [LENGTH]},
+        wanted=["section:bar"],
+        precision="single",
+        xi=(0, 1, 3),
+        keep="histories",
+    )
     shear = evaluate(scene).section("bar").shear[:, -1 if at else 0]
     found = kept["history:section:bar:shear"][0][:, -1 if at else 0]
     assert np.abs(found - shear).max() < SHIFT["single"] * np.abs(shear).max()
@@ -96,4 +113,11 @@ def test_exported_c_sees_what_the_api_does(precision, tmp_path):
         made, told = exported(scene, folder, precision=precision)
         solution = solve(scene, precision)
         found = by_c99(folder, told, instants(solution.t, precision))
-        compare(found, expected(scene, told, solution), told, made, solution, exact=precision == "double")
+        compare(
+            found,
+            expected(scene, told, solution),
+            told,
+            made,
+            solution,
+            exact=precision == "double",
+        )

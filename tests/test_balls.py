@@ -1,4 +1,6 @@
-"""Joints with three turns that loops set: no posture of theirs is special, in every way of evaluating them."""
+"""Joints with three turns that loops set: no posture of theirs is special, in every way of
+evaluating them.
+"""
 
 import dataclasses
 import functools
@@ -30,17 +32,29 @@ def made(name):
     """What was drawn, the scene of it, and what is true at the instants."""
     drawn = plain(MADE[name]())
     scene = dataclasses.replace(declared(drawn, AROUND[0]), t=AROUND, xi=(0, 1, 3))
-    return drawn, scene, {k: drawn.solve(float(t)) for k, t in enumerate(np.linspace(*AROUND)) if k in (4, 5)}
+    return (
+        drawn,
+        scene,
+        {k: drawn.solve(float(t)) for k, t in enumerate(np.linspace(*AROUND)) if k in (4, 5)},
+    )
 
 
 def turns_of(solution):
     """The turns of the ball."""
-    return [output.part for output in solution.outputs if output.group == "motion" and "turn_" in output.part and not output.member]
+    return [
+        output.part
+        for output in solution.outputs
+        if output.group == "motion" and "turn_" in output.part and not output.member
+    ]
 
 
 def compare(drawn, solution, true, rounding=1e-12):
     """All forces, and where bodies are, beside the oracle's."""
-    force = max(float(np.abs(x[:3].astype(float)).max()) for one in true.values() for x in one.reactions.values())
+    force = max(
+        float(np.abs(x[:3].astype(float)).max())
+        for one in true.values()
+        for x in one.reactions.values()
+    )
     moment = force * drawn.solve(0.0).size
     sizes = [force] * 3 + [moment] * 3
     for k, one in true.items():
@@ -49,24 +63,36 @@ def compare(drawn, solution, true, rounding=1e-12):
             assert abs(own - float(effort)) < rounding * moment, joint
         for joint, reaction in one.reactions.items():
             for member, value, size in zip(REACTION, reaction, sizes, strict=True):
-                own = solution.outputs.get(Output("reaction", joint, member), np.zeros_like(solution.t))[k]
+                own = solution.outputs.get(
+                    Output("reaction", joint, member), np.zeros_like(solution.t)
+                )[k]
                 assert abs(own - float(value)) < rounding * size, (joint, member)
         for body, pose in one.poses.items():
             if body != GROUND and body not in solution.description["bars"]:
-                assert np.allclose(solution.pose(body).axes[k], np.array(pose.R, float).T, rtol=0, atol=rounding), body
+                assert np.allclose(
+                    solution.pose(body).axes[k], np.array(pose.R, float).T, rtol=0, atol=rounding
+                ), body
         for rod in (
-            () if not solution.links_with_sections else (body.name for body in drawn.mechanism.bodies if isinstance(body, Rod))
+            ()
+            if not solution.links_with_sections
+            else (body.name for body in drawn.mechanism.bodies if isinstance(body, Rod))
         ):
             for i, xi in enumerate(solution.xi):
                 told = one.sections[rod].at(float(xi)).astype(float)
                 own = np.array([getattr(solution.section(rod), name)[k, i] for name in SECTION])
                 if rod in solution.description["bars"]:
                     # A bar's cross-section has axes of its own.
-                    told, own = (np.array([x[0], np.hypot(*x[1:3]), 0, x[3], np.hypot(*x[4:]), 0]) for x in (told, own))
+                    told, own = (
+                        np.array([x[0], np.hypot(*x[1:3]), 0, x[3], np.hypot(*x[4:]), 0])
+                        for x in (told, own)
+                    )
                 assert (np.abs(own - told) < rounding * np.array(sizes)).all(), rod
 
 
-@pytest.mark.parametrize("name", ["on a leg", *(pytest.param(name, marks=pytest.mark.long) for name in ("free", "under a leg"))])
+@pytest.mark.parametrize(
+    "name",
+    ["on a leg", *(pytest.param(name, marks=pytest.mark.long) for name in ("free", "under a leg"))],
+)
 def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     drawn, scene, true = made(name)
     solution = evaluate(scene, backend="vm")
@@ -77,7 +103,9 @@ def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     members = [f"motion:{turn}{end}" for turn in turns for end in ("", "_rate", "_acceleration")]
     assert set(solution.undetermined) == set(members) - {f"motion:{turns[1]}"}
     (note,) = solution.notes
-    assert note.startswith(f"joint '{turns[0].partition(':')[0]}' is in gimbal lock at t = 0.2 s: two of its turns")
+    assert note.startswith(
+        f"joint '{turns[0].partition(':')[0]}' is in gimbal lock at t = 0.2 s: two of its turns"
+    )
     beside = evaluate(scene, t=(0.1, 0.3, 8), backend="vm")
     assert beside.certified
     assert not beside.undetermined
@@ -90,8 +118,12 @@ def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     near = evaluate(scene, t=(0.12 - step, 0.12 + step, 3), backend="vm")
     for turn in turns_of(near):
         told = near.motion(turn)
-        assert told.rate[1] == pytest.approx((told.value[2] - told.value[0]) / (2 * step), rel=1e-4, abs=1e-5)
-        assert told.acceleration[1] == pytest.approx((told.rate[2] - told.rate[0]) / (2 * step), rel=1e-4, abs=1e-4)
+        assert told.rate[1] == pytest.approx(
+            (told.value[2] - told.value[0]) / (2 * step), rel=1e-4, abs=1e-5
+        )
+        assert told.acceleration[1] == pytest.approx(
+            (told.rate[2] - told.rate[0]) / (2 * step), rel=1e-4, abs=1e-4
+        )
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,6 @@
-"""What links are made of: properties against polygons, quadrature, tables of textbooks; masses, and what cannot be."""
+"""What links are made of: properties against polygons, quadrature, tables of textbooks; masses, and
+what cannot be.
+"""
 
 import itertools
 import math
@@ -22,11 +24,34 @@ def corners_of(kind):
     h, b = H / 2, B / 2
     if kind == "i_section":
         half = [(h, b), (h, -b), (h - TF, -b), (h - TF, -TW / 2)]
-        return [*half, *((-y, z) for y, z in reversed(half)), *((-y, -z) for y, z in half), *((y, -z) for y, z in reversed(half))]
+        return [
+            *half,
+            *((-y, z) for y, z in reversed(half)),
+            *((-y, -z) for y, z in half),
+            *((y, -z) for y, z in reversed(half)),
+        ]
     if kind == "t_section":
-        return [(H, b), (H, -b), (H - TF, -b), (H - TF, -TW / 2), (0, -TW / 2), (0, TW / 2), (H - TF, TW / 2), (H - TF, b)]
+        return [
+            (H, b),
+            (H, -b),
+            (H - TF, -b),
+            (H - TF, -TW / 2),
+            (0, -TW / 2),
+            (0, TW / 2),
+            (H - TF, TW / 2),
+            (H - TF, b),
+        ]
     if kind == "c_section":
-        return [(h, B), (h, 0), (-h, 0), (-h, B), (-h + TF, B), (-h + TF, TW), (h - TF, TW), (h - TF, B)]
+        return [
+            (h, B),
+            (h, 0),
+            (-h, 0),
+            (-h, B),
+            (-h + TF, B),
+            (-h + TF, TW),
+            (h - TF, TW),
+            (h - TF, B),
+        ]
     y, z = h - TF, b - TW
     return [(h, b), (h, -b), (-h, -b), (-h, b), (h, b), (y, z), (-y, z), (-y, -z), (y, -z), (y, z)]
 
@@ -57,7 +82,9 @@ def test_walls_are_the_polygon_of_their_outline(kind):
     assert min(f.y for f in found.fibres) == pytest.approx(min(f.y for f in outline.fibres))
     assert max(f.z for f in found.fibres) == pytest.approx(max(f.z for f in outline.fibres))
     if kind != "box":  # a seam would be two widths
-        assert max(f.along_y[0] for f in found.fibres) == pytest.approx(outline.fibres[-1].along_y[0], rel=1e-12)
+        assert max(f.along_y[0] for f in found.fibres) == pytest.approx(
+            outline.fibres[-1].along_y[0], rel=1e-12
+        )
 
 
 @pytest.mark.parametrize("kind", ["rectangle", "ellipse", "tube"])
@@ -71,7 +98,9 @@ def test_full_ones_are_their_integrals(kind):
     }[kind]
     cell = (0.06 / 2000) ** 2
     for name, integrand in (("area", 1.0), ("iz", y * y), ("iy", z * z)):
-        assert getattr(found, name) == pytest.approx(float((inside * integrand).sum() * cell), rel=2e-3), name
+        assert getattr(found, name) == pytest.approx(
+            float((inside * integrand).sum() * cell), rel=2e-3
+        ), name
 
 
 @pytest.mark.parametrize(
@@ -96,12 +125,18 @@ def test_torsion_of_rectangles_is_the_textbooks(ratio, constant, modulus):
 
 
 def test_torsion_of_a_rectangle_is_prandtls_function_on_a_grid():
-    """A membrane by finite differences: twice its volume, and its slopes in the middles of the sides."""
+    """A membrane by finite differences: twice its volume, and its slopes in the middles of the
+    sides.
+    """
     a, b, n = 0.03, 0.02, 120
     hy, hz = a / (3 * n // 2), b / n
     rows, columns = 3 * n // 2 - 1, n - 1
-    second = {size: 2 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1) for size in (rows, columns)}
-    (ey, vy), (ez, vz) = (np.linalg.eigh(second[size] / step**2) for size, step in ((rows, hy), (columns, hz)))
+    second = {
+        size: 2 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1) for size in (rows, columns)
+    }
+    (ey, vy), (ez, vz) = (
+        np.linalg.eigh(second[size] / step**2) for size, step in ((rows, hy), (columns, hz))
+    )
     phi = vy @ ((vy.T @ np.full((rows, columns), 2.0) @ vz) / (ey[:, None] + ez[None])) @ vz.T
     torsion = 2 * phi.sum() * hy * hz
     found = beams.rectangle(a, b).properties()
@@ -118,15 +153,32 @@ def test_dimensions_may_be_expressions(kind):
     symbols = {name: ca.SX.sym(name) for name in shape.dimensions}
     found = beams.Shape(kind, symbols).properties()
     numbers = shape.properties()
-    names = ("area", "iy", "iz", "torsion", "shear_y", "shear_z", "wy", "wz", "centre_y", "centre_z")
-    f = ca.Function("f", list(symbols.values()), [ca.vertcat(*(ca.SX(getattr(found, name)) for name in names))])
+    names = (
+        "area",
+        "iy",
+        "iz",
+        "torsion",
+        "shear_y",
+        "shear_z",
+        "wy",
+        "wz",
+        "centre_y",
+        "centre_z",
+    )
+    f = ca.Function(
+        "f", list(symbols.values()), [ca.vertcat(*(ca.SX(getattr(found, name)) for name in names))]
+    )
     expected = [float(getattr(numbers, name)) for name in names]
-    np.testing.assert_allclose(f(*shape.dimensions.values()).full().ravel(), expected, rtol=1e-13, atol=1e-18)
+    np.testing.assert_allclose(
+        f(*shape.dimensions.values()).full().ravel(), expected, rtol=1e-13, atol=1e-18
+    )
     assert shape.area == pytest.approx(numbers.area, rel=1e-14)
 
 
 def test_the_shear_centre_of_a_thin_c_is_the_textbooks():
-    """Roark's 3 b^2 / (h + 6 b) beyond the web's middle, for walls of one thickness, b and h between middles."""
+    """Roark's 3 b^2 / (h + 6 b) beyond the web's middle, for walls of one thickness, b and h
+    between middles.
+    """
     t, b, h = 1e-5, 0.02, 0.05
     found = beams.c_section(h + t, b + t / 2, t, t).properties()
     back = -min(fibre.z for fibre in found.fibres)
@@ -149,7 +201,9 @@ def test_mass_follows_from_area_and_density_along_a_taper(kind):
     stop = start.mapped(lambda _, value: 0.6 * value)
     course = beams.along([0, 0.3, 0.3, 1], [start, stop, start, stop])
     places, weights = np.polynomial.legendre.leggauss(3)
-    areas = [start.mapped(lambda _, value, s=s: value * (1 - 0.4 * s)).area for s in (places + 1) / 2]
+    areas = [
+        start.mapped(lambda _, value, s=s: value * (1 - 0.4 * s)).area for s in (places + 1) / 2
+    ]
     expected = STEEL.density * 0.4 * float(np.dot(weights / 2, areas))
     description = evaluate(arm(beams.Beam(course, STEEL)), certificate=False).description
     assert description["bodies"]["arm"]["mass"] == pytest.approx(
@@ -170,14 +224,19 @@ def test_loads_know_a_thicker_rod():
 
 
 def test_a_mass_of_its_own_beside_the_beam():
-    solution = evaluate(arm(beams.Beam(beams.rectangle(0.02, 0.01), STEEL), mass=3.0), certificate=False)
+    solution = evaluate(
+        arm(beams.Beam(beams.rectangle(0.02, 0.01), STEEL), mass=3.0), certificate=False
+    )
     assert solution.description["bodies"]["arm"]["mass"] == 3.0
     assert "beam" in solution.description["bodies"]["arm"]
 
 
 def test_a_beam_is_told_in_numbers_and_back():
     rod = beams.Beam(
-        beams.stepped([0.4], [beams.tube(0.03, 0.002), beams.tube(0.03, 0.004)]), STEEL, [beams.Notch(0.4, 1.5, 1.7)], (1, 0.7)
+        beams.stepped([0.4], [beams.tube(0.03, 0.002), beams.tube(0.03, 0.004)]),
+        STEEL,
+        [beams.Notch(0.4, 1.5, 1.7)],
+        (1, 0.7),
     )
     told = told_beam(rod, float)
     again = beam_told(told)
@@ -193,12 +252,30 @@ def test_a_beam_is_told_in_numbers_and_back():
 
 
 REFUSED = {
-    "wall of its tube": (beams.tube(0.02, -0.001), r"link 'arm': wall of its tube must be positive, got -0\.001"),
-    "thick wall": (beams.tube(0.02, 0.012), r"link 'arm': inner diameter of its tube must be positive, got -0\.004"),
-    "flanges": (beams.i_section(0.02, 0.02, 0.004, 0.012), "height between the flanges of its i_section must be positive"),
-    "web": (beams.box(0.02, 0.02, 0.012, 0.004), "width beside the webs of its box must be positive"),
-    "clockwise": (beams.polygon([(0, 0), (0, 1), (1, 0)]), "area, of corners counter-clockwise, of its polygon must be"),
-    "not a number": (beams.rectangle(math.nan, 0.1), "height of its cross-section must be finite, got nan"),
+    "wall of its tube": (
+        beams.tube(0.02, -0.001),
+        r"link 'arm': wall of its tube must be positive, got -0\.001",
+    ),
+    "thick wall": (
+        beams.tube(0.02, 0.012),
+        r"link 'arm': inner diameter of its tube must be positive, got -0\.004",
+    ),
+    "flanges": (
+        beams.i_section(0.02, 0.02, 0.004, 0.012),
+        "height between the flanges of its i_section must be positive",
+    ),
+    "web": (
+        beams.box(0.02, 0.02, 0.012, 0.004),
+        "width beside the webs of its box must be positive",
+    ),
+    "clockwise": (
+        beams.polygon([(0, 0), (0, 1), (1, 0)]),
+        "area, of corners counter-clockwise, of its polygon must be",
+    ),
+    "not a number": (
+        beams.rectangle(math.nan, 0.1),
+        "height of its cross-section must be finite, got nan",
+    ),
     "text": (
         beams.Shape("rectangle", {"height": None, "width": 0.1}),
         "height of its cross-section must be a number or an expression in parameters, got None",
@@ -216,22 +293,33 @@ def test_impossible_cross_sections_are_one_line(why):
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: beams.along([0, 0.5], [beams.round_bar(1)] * 2), r"ratios must rise from 0 to 1, got 0, 0\.5"),
-        (lambda: beams.along([0, 1], [beams.round_bar(1), beams.rectangle(1, 1)]), "cannot become a rectangle; put a step"),
+        (lambda: beams.along([0, 0.5], [beams.round_bar(1)] * 2),
+            r"ratios must rise from 0 to 1, got 0, 0\.5"),
+        (lambda: beams.along([0, 1], [beams.round_bar(1), beams.rectangle(1, 1)]),
+            "cannot become a rectangle; put a step"),
         (lambda: beams.along([0, 1], [1, 2]), "along: shapes: expected a list, each a Shape"),
-        (lambda: beams.stepped([0.5], [beams.round_bar(1)]), "one step fewer than shapes, got 1 steps and 1 shapes"),
+        (lambda: beams.stepped([0.5], [beams.round_bar(1)]),
+            "one step fewer than shapes, got 1 steps and 1 shapes"),
         (lambda: beams.polygon([(0, 1)]), "three corners or more, got 1"),
         (lambda: beams.Beam(3, STEEL), "shape: expected a Shape or a Course, got 3"),
-        (lambda: beams.Beam(beams.round_bar(1), "steel"), "material: expected a Material, got 'steel'"),
-        (lambda: beams.Beam(beams.round_bar(1), STEEL, [1.5]), "notches: expected a list, each a Notch"),
-        (lambda: beams.Beam(beams.round_bar(1), STEEL, columns=(1, 0)), "two effective lengths, positive"),
+        (lambda: beams.Beam(beams.round_bar(1), "steel"),
+            "material: expected a Material, got 'steel'"),
+        (lambda: beams.Beam(beams.round_bar(1), STEEL, [1.5]),
+            "notches: expected a list, each a Notch"),
+        (lambda: beams.Beam(beams.round_bar(1), STEEL, columns=(1, 0)),
+            "two effective lengths, positive"),
         (lambda: beams.Notch(1.2), "Notch: at: expected a number from 0 to 1, got 1.2"),
-        (lambda: beams.Notch(0.2, bending=0.5), "Notch: bending: expected a number of at least 1, got 0.5"),
-        (lambda: beams.Notch(0.2, sensitivity=2), "Notch: sensitivity: expected a number from 0 to 1, got 2"),
+        (lambda: beams.Notch(0.2, bending=0.5),
+            "Notch: bending: expected a number of at least 1, got 0.5"),
+        (lambda: beams.Notch(0.2, sensitivity=2),
+            "Notch: sensitivity: expected a number from 0 to 1, got 2"),
         (lambda: beams.Material("x", -1.0), "material 'x': density must be a positive number"),
-        (lambda: beams.Material("x", 1.0, yield_strength=2.0, ultimate=1.0), "yield_strength 2 Pa is above ultimate 1 Pa"),
-        (lambda: beams.Material("x", 1.0, ultimate=1.0, endurance=0.95), r"endurance 0\.95 Pa must be below 0\.9 of the ultimate"),
-        (lambda: beams.Material("x", 1.0).needs("a test", "elasticity", "ultimate"), "no elasticity and no ultimate, which a"),
+        (lambda: beams.Material("x", 1.0, yield_strength=2.0, ultimate=1.0),
+            "yield_strength 2 Pa is above ultimate 1 Pa"),
+        (lambda: beams.Material("x", 1.0, ultimate=1.0, endurance=0.95),
+            r"endurance 0\.95 Pa must be below 0\.9 of the ultimate"),
+        (lambda: beams.Material("x", 1.0).needs("a test", "elasticity", "ultimate"),
+            "no elasticity and no ultimate, which a"),
         (lambda: beams.material("cheese"), "unknown material 'cheese'; valid: S235"),
     ],
 )  # fmt: skip
@@ -242,21 +330,42 @@ def test_what_cannot_be_is_one_line(make, says):
 
 def test_links_refuse_what_is_no_beam():
     m = Mechanism("m")
-    with pytest.raises(DeclarationError, match=r"link 'a': expected a beam of lagrange_casadi\.beams, got 7"):
+    with pytest.raises(
+        DeclarationError, match=r"link 'a': expected a beam of lagrange_casadi\.beams, got 7"
+    ):
         m.link("a", length=1.0, beam=7)
-    with pytest.raises(DeclarationError, match="a beam has sections, and where centre and inertia are given there are none"):
-        m.link("a", length=1.0, mass=1.0, centre=(0, 0), inertia=1.0, beam=beams.Beam(beams.round_bar(0.01), STEEL))
+    with pytest.raises(
+        DeclarationError,
+        match="a beam has sections, and where centre and inertia are given there are none",
+    ):
+        m.link(
+            "a",
+            length=1.0,
+            mass=1.0,
+            centre=(0, 0),
+            inertia=1.0,
+            beam=beams.Beam(beams.round_bar(0.01), STEEL),
+        )
     x = ca.SX.sym("x")
-    with pytest.raises(DeclarationError, match="diameter of its cross-section depends on 'x', not a parameter"):
+    with pytest.raises(
+        DeclarationError, match="diameter of its cross-section depends on 'x', not a parameter"
+    ):
         m.link("a", length=1.0, beam=beams.Beam(beams.round_bar(x), STEEL))
 
 
 def test_in_space_too():
     m = SpatialMechanism("m")
-    m.revolute("O", m.ground, m.link("arm", length=0.4, beam=beams.Beam(beams.round_bar(0.02), STEEL)), axis=(0, 1, 0))
+    m.revolute(
+        "O",
+        m.ground,
+        m.link("arm", length=0.4, beam=beams.Beam(beams.round_bar(0.02), STEEL)),
+        axis=(0, 1, 0),
+    )
     solution = evaluate(Scene(m, {"O": motion.polynomial(0.3, 2.0)}, t=(0, 1, 11)))
     assert solution.certified
-    assert solution.description["bodies"]["arm"]["mass"] == pytest.approx(math.pi / 4 * 0.02**2 * 0.4 * 7850)
+    assert solution.description["bodies"]["arm"]["mass"] == pytest.approx(
+        math.pi / 4 * 0.02**2 * 0.4 * 7850
+    )
 
 
 def test_every_pair_of_fibres_has_a_name_of_its_own():

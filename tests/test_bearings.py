@@ -5,7 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, bearings, evaluate, load, save, sweep
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    bearings,
+    evaluate,
+    load,
+    save,
+    sweep,
+)
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
@@ -15,7 +25,9 @@ SPEED = 40.0
 
 
 def rotor(*parts, scale=1.0):
-    """A rotor of 2 kg whose centre is 0.05 m beside its axis, turning evenly: its reaction is m w^2 r and its weight."""
+    """A rotor of 2 kg whose centre is 0.05 m beside its axis, turning evenly: its reaction is m w^2
+    r and its weight.
+    """
     m = Mechanism("rotor")
     r = m.parameter("r", 0.05 * scale, "m", low=0.0)
     disc = m.link("disc", length=0.2, mass=2.0, centre=(r, 0.0), inertia=0.01)
@@ -30,7 +42,9 @@ def reaction(t):
 
 
 def test_a_rating_of_a_textbook():
-    """Shigley, Mechanical Engineering Design, 9th edition, example 11-1: 400 lbf, 5000 h at 1725 1/min need 14.3 kN."""
+    """Shigley, Mechanical Engineering Design, 9th edition, example 11-1: 400 lbf, 5000 h at 1725
+    1/min need 14.3 kN.
+    """
     assert bearings.rated_hours(14.3e3, 1.78e3, 1725.0) == pytest.approx(5000.0, rel=0.01)
 
 
@@ -44,8 +58,12 @@ def test_the_cubic_mean_of_a_load_that_swings():
 def test_loads_one_after_another():
     """By the sum of wear: turns over lives of each load are one over the whole life."""
     loads, turns, c = np.array([2e3, 5e3, 1e3]), np.array([3.0, 1.0, 6.0]), 30e3
-    wear = sum(n / (c / load) ** (10 / 3) for n, load in zip(turns, loads, strict=True)) / turns.sum()
-    assert (c / bearings.equivalent_load(loads, turns, 10 / 3)) ** (10 / 3) == pytest.approx(1 / wear, rel=1e-12)
+    wear = (
+        sum(n / (c / load) ** (10 / 3) for n, load in zip(turns, loads, strict=True)) / turns.sum()
+    )
+    assert (c / bearings.equivalent_load(loads, turns, 10 / 3)) ** (10 / 3) == pytest.approx(
+        1 / wear, rel=1e-12
+    )
 
 
 def test_a_pin_bends_as_a_beam_does():
@@ -84,7 +102,9 @@ def test_factors_follow_from_the_reaction(solution):
     cubic = (force[:-1] ** 3).mean() ** (1 / 3)
     hours = (5e3 / cubic) ** 3 * 1e6 / (60 * SPEED * 60 / math.tau)
     told["life of bearing"] = (hours / 2000.0) ** (1 / 3)
-    assert {verdict.against: verdict.factor for verdict in found.verdicts} == pytest.approx(told, rel=1e-9)
+    assert {verdict.against: verdict.factor for verdict in found.verdicts} == pytest.approx(
+        told, rel=1e-9
+    )
     assert found.is_open == ()
 
 
@@ -99,7 +119,9 @@ def test_in_space_the_force_along_the_pin_is_axial():
     joint = m.revolute("O", m.ground, disc, axis=(0, 0, 1))
     m.force("push", disc.base, z=-100.0)
     bearings.fit(m, joint, bearings.Rolling(5e3, hours=1.0, static=1e3, radial=0.5, axial=1.5))
-    solution = evaluate(Scene(m, {"O": polynomial(0.0, SPEED)}, t=(0, 0.1, 21)), wanted=["safety:O"])
+    solution = evaluate(
+        Scene(m, {"O": polynomial(0.0, SPEED)}, t=(0, 0.1, 21)), wanted=["safety:O"]
+    )
     radial = 2.0 * SPEED**2 * 0.1
     factor = 1e3 / (0.5 * radial + 1.5 * (100.0 + 2.0 * 9.81))
     assert solution.safety("O").against("static load") == pytest.approx(factor, rel=1e-9)
@@ -108,7 +130,10 @@ def test_in_space_the_force_along_the_pin_is_axial():
 def test_what_is_open_is_told():
     scene = rotor(bearings.Plain(0.012, 0.02, heating=1e6), bearings.Rolling(5e3, hours=1.0))
     solution = evaluate(scene, wanted=["reaction:O"])
-    assert [told.partition(":")[0] for told in solution.safety("O").is_open] == ["plain bearing", "rolling bearing"]
+    assert [told.partition(":")[0] for told in solution.safety("O").is_open] == [
+        "plain bearing",
+        "rolling bearing",
+    ]
     with pytest.raises(DeclarationError, match="want reaction:O too"):
         evaluate(scene, wanted=["effort"]).safety("O")
 
@@ -116,8 +141,14 @@ def test_what_is_open_is_told():
 @pytest.mark.parametrize(
     ("part", "told"),
     [
-        (lambda: bearings.Pin(-0.01, 0.02, 0.01, STEEL), "joint 'O': pin: diameter must be positive, got -0.01"),
-        (lambda: bearings.Pin(0.01, 0.02, 0.01, beams.Material("wood", 500.0)), "material 'wood' has no yield_strength"),
+        (
+            lambda: bearings.Pin(-0.01, 0.02, 0.01, STEEL),
+            "joint 'O': pin: diameter must be positive, got -0.01",
+        ),
+        (
+            lambda: bearings.Pin(0.01, 0.02, 0.01, beams.Material("wood", 500.0)),
+            "material 'wood' has no yield_strength",
+        ),
         (lambda: bearings.Plain(0.01, 0.02, speed=0.0), "speed must be positive, got 0"),
         (lambda: 3.0, "fit: parts: expected a Pin, a Plain or a Rolling, got 3"),
     ],
@@ -140,7 +171,9 @@ def test_a_slide_has_no_pin():
 
 
 def test_a_sweep_tells_no_pins():
-    with pytest.raises(DeclarationError, match="output 'safety:O': sweeps tell no pins and bearings"):
+    with pytest.raises(
+        DeclarationError, match="output 'safety:O': sweeps tell no pins and bearings"
+    ):
         sweep(rotor(bearings.Rolling(1e3, 1.0)), {"r": [0.05]}, wanted=["safety:O"])
 
 
@@ -158,6 +191,20 @@ def scene():
 def test_run_tells_what_governs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "case.py").write_text(CASE)
-    assert main(["run", "case.py", "--no-figures", "--no-certificate", "--backend", "vm", "--want", "safety"]) == 0
+    assert (
+        main(
+            [
+                "run",
+                "case.py",
+                "--no-figures",
+                "--no-certificate",
+                "--backend",
+                "vm",
+                "--want",
+                "safety",
+            ]
+        )
+        == 0
+    )
     assert "  O   " in (out := capsys.readouterr().out)
     assert "life of bearing governs" in out

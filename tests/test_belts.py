@@ -1,4 +1,6 @@
-"""Belts and chains: tensions and what pulleys bear against vectors of both strands, and what is refused."""
+"""Belts and chains: tensions and what pulleys bear against vectors of both strands, and what is
+refused.
+"""
 
 import math
 
@@ -17,7 +19,10 @@ def drive(radii=(0.05, 0.12), crossed=False, turn=0.4, **more):
     m = Mechanism("drive")
     m.set_gravity(0, 0)
     load, preload = m.parameter("load", 60.0, "N m"), m.parameter("preload", 400.0, "N")
-    first, second = (wheel(m, name, radius=r, mass=1.0) for name, r in zip(("first", "second"), radii, strict=True))
+    first, second = (
+        wheel(m, name, radius=r, mass=1.0)
+        for name, r in zip(("first", "second"), radii, strict=True)
+    )
     m.revolute("A", m.ground, first)
     m.revolute("B", m.ground.at(0.4 * math.cos(turn), 0.4 * math.sin(turn)), second)
     made = belt(m, "belt", first, second, radii=radii, preload=preload, crossed=crossed, **more)
@@ -26,7 +31,9 @@ def drive(radii=(0.05, 0.12), crossed=False, turn=0.4, **more):
 
 
 def strands(radii, crossed, turn=0.4):
-    """Both tangents of two circles: the way from the first to the second, and where they leave the second, from its centre."""
+    """Both tangents of two circles: the way from the first to the second, and where they leave the
+    second, from its centre.
+    """
     r1, r2 = radii
     e, other = np.exp(1j * turn), -r2 if crossed else r2
     for side in (1, -1):
@@ -38,9 +45,13 @@ def strands(radii, crossed, turn=0.4):
 
 @pytest.mark.parametrize("radii", [(0.05, 0.12), (0.12, 0.05), (0.08, 0.08)])
 @pytest.mark.parametrize("crossed", [False, True])
-@pytest.mark.parametrize("values", [{}, {"load": -60.0}, {"preload": 100.0}, {"preload": 0.0, "load": -20.0}])
+@pytest.mark.parametrize(
+    "values", [{}, {"load": -60.0}, {"preload": 100.0}, {"preload": 0.0, "load": -20.0}]
+)
 def test_pulleys_bear_both_strands(radii, crossed, values):
-    """T1 - T2 = T/r and T1 + T2 = 2 F_i (Shigley, chapter 17), each along its strand; where one would push, it is slack."""
+    """T1 - T2 = T/r and T1 + T2 = 2 F_i (Shigley, chapter 17), each along its strand; where one
+    would push, it is slack.
+    """
     m, made = drive(radii, crossed)
     solution = evaluate(Scene(m, {"A": polynomial(0.0)}, t=(0, 1, 2)), parameters=values)
     assert solution.certified
@@ -61,34 +72,49 @@ def test_pulleys_bear_both_strands(radii, crossed, values):
     assert abs(solution.effort("A")[0]) == pytest.approx(abs(told["load"] * ratio), rel=1e-12)
 
 
-@pytest.mark.parametrize(("radii", "crossed"), [((0.05, 0.12), False), ((0.12, 0.05), True), ((0.08, 0.08), False)])
+@pytest.mark.parametrize(
+    ("radii", "crossed"), [((0.05, 0.12), False), ((0.12, 0.05), True), ((0.08, 0.08), False)]
+)
 @pytest.mark.parametrize("load", [60.0, -60.0])
 @pytest.mark.parametrize("share", [0.95, 0.7, 1.0])
 def test_a_share_of_the_power_comes_out_whichever_pulley_drives(radii, crossed, load, share):
-    """And bodies are in balance: the bearings' forces and both torques, about the first centre, are nothing together."""
+    """And bodies are in balance: the bearings' forces and both torques, about the first centre, are
+    nothing together.
+    """
     m, _ = drive(radii, crossed, efficiency=share)
-    solution = evaluate(Scene(m, {"A": polynomial(0.1, 7.0)}, t=(0, 1, 3)), parameters={"load": load})
+    solution = evaluate(
+        Scene(m, {"A": polynomial(0.1, 7.0)}, t=(0, 1, 3)), parameters={"load": load}
+    )
     assert solution.certified
     given, gained = solution.effort("A")[0] * 7.0, -load * solution.motion("B").rate[0]
     assert (
-        (gained == pytest.approx(given * share, rel=1e-11)) if given > 0.0 else (given == pytest.approx(gained * share, rel=1e-11))
+        (gained == pytest.approx(given * share, rel=1e-11))
+        if given > 0.0
+        else (given == pytest.approx(gained * share, rel=1e-11))
     )
-    assert solution.output("belt_loss") == pytest.approx(np.full(3, given - gained), rel=1e-9, abs=1e-9)
+    assert solution.output("belt_loss") == pytest.approx(
+        np.full(3, given - gained), rel=1e-9, abs=1e-9
+    )
     first, second = solution.reaction("A"), solution.reaction("B")
     assert second.fx == pytest.approx(-first.fx, rel=1e-12)
     about = 0.4 * (math.cos(0.4) * second.fy[0] - math.sin(0.4) * second.fx[0])
     assert about + solution.effort("A")[0] + load == pytest.approx(0.0, abs=1e-10)
-    # The difference of the tensions is what would be without losses, and half of these on either wheel.
+    # The difference of the tensions is what would be without losses, and half of these on either
+    # wheel.
     lost = solution.output("belt_loss")[0] / (2 * 7.0 * radii[0])
     passed = solution.output("belt_tight")[0] - solution.output("belt_slack")[0]
-    assert passed == pytest.approx((abs(given) / (7.0 * radii[0])) - math.copysign(lost, given), rel=1e-11)
+    assert passed == pytest.approx(
+        (abs(given) / (7.0 * radii[0])) - math.copysign(lost, given), rel=1e-11
+    )
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1)])
 def test_in_space_a_pulley_may_count_its_angle_the_other_way(axis):
     m = SpatialMechanism("drive")
     m.set_gravity(0, 0, 0)
-    first, second = (wheel(m, name, radius=r, mass=1.0) for name, r in (("first", 0.05), ("second", 0.12)))
+    first, second = (
+        wheel(m, name, radius=r, mass=1.0) for name, r in (("first", 0.05), ("second", 0.12))
+    )
     m.revolute("A", m.ground, first, axis=(0, 0, 1), turned=[("y", "-90 deg")])
     m.revolute("B", m.ground.at(0.4, 0, 0), second, axis=axis, turned=[("y", "-90 deg")])
     belt(m, "belt", first, second, radii=(0.05, 0.12), preload=300.0, efficiency=0.9)
@@ -105,7 +131,13 @@ def test_over_a_cycle_the_drive_gives_what_a_chain_takes():
     scene = Scene(m, {"A": harmonic(0.0, 1.0, 1.0, 0.3)}, t=(0, 1, 721))
     solution = evaluate(scene, parameters={"load": 0.0, "preload": 0.0})
     assert solution.certified
-    work, lost = (values[:-1].mean() for values in (solution.effort("A") * solution.motion("A").rate, solution.output("belt_loss")))
+    work, lost = (
+        values[:-1].mean()
+        for values in (
+            solution.effort("A") * solution.motion("A").rate,
+            solution.output("belt_loss"),
+        )
+    )
     assert lost > 0.0
     assert work == pytest.approx(lost, rel=1e-10)
     still = evaluate(Scene(m, {"A": polynomial(0.2)}, t=(0, 1, 2)))
@@ -124,9 +156,14 @@ def test_bad_belts_are_refused_by_name():
         assert str(error.value) == f"belt 'belt': its centres are 0.4 m apart, and {told}"
     m, _ = drive()
     first, second = m.links["first"], m.links["second"]
-    with pytest.raises(DeclarationError, match="belt 'other': preload must not be negative, got -1 N"):
+    with pytest.raises(
+        DeclarationError, match="belt 'other': preload must not be negative, got -1 N"
+    ):
         belt(m, "other", first, second, radii=(0.05, 0.12), preload=-1.0)
-    for share, words in ((1.2, "efficiency must not be above 1, got 1.2"), (0.0, "efficiency must be above 0, got 0")):
+    for share, words in (
+        (1.2, "efficiency must not be above 1, got 1.2"),
+        (0.0, "efficiency must be above 0, got 0"),
+    ):
         with pytest.raises(DeclarationError, match=f"belt 'other': {words}"):
             belt(m, "other", first, second, radii=(0.05, 0.12), efficiency=share)
     with pytest.raises(DeclarationError, match="belt 'other': expected 2 radii"):

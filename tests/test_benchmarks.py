@@ -75,14 +75,20 @@ def test_a_method_whose_result_is_wrong_reports_no_time(monkeypatch):
 def test_a_peer_that_is_not_installed_is_said(monkeypatch):
     monkeypatch.setitem(METHODS, "numpy", Method("absent", "peers.absent"))
     found = rows("sections", ("numpy", "by hand"), t=9, xi=3)
-    assert found["numpy"]["why"] == "not installed (benchmarks.peers.absent): pip install '.[bench]'"
+    assert (
+        found["numpy"]["why"] == "not installed (benchmarks.peers.absent): pip install '.[bench]'"
+    )
     assert found["by hand"]["ns"] > 0
 
 
 def test_the_optimum_by_hand_is_ours(interpreted):
-    """Peaks held at instants and ratios are a little lower than those that are found between them."""
+    """Peaks held at instants and ratios are a little lower than those
+    that are found between them.
+    """
     t, bounds = np.linspace(0.0, 0.08, 161), {"l": (0.12, 0.8), "r": (0.07, 0.1)}
-    values, level = solved(SliderCrank(), t, np.linspace(0.38, 0.48, 11), 1.2, bounds, {"l": 0.3, "r": 0.08})
+    values, level = solved(
+        SliderCrank(), t, np.linspace(0.38, 0.48, 11), 1.2, bounds, {"l": 0.3, "r": 0.08}
+    )
     found = optimise(
         load_case("slider_crank").scene,
         minimise="peak:effort:O",

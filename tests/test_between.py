@@ -49,9 +49,15 @@ any_number = st.sampled_from([-np.inf, -1.0, 0.0, 0.5, 1.0, np.inf, np.nan]) | n
 @given(st.lists(st.sampled_from([-1.0, 0.0, 0.5, 1.0]) | numbers, max_size=6), *[any_number] * 4)
 def test_many_numbers_are_passed_and_touched_as_each_alone(at, a, b, low, high):
     passing = [(a > x) != (b > x) for x in at]
-    touched = [not gone and (low < x if a > x and b > x else high > x) for x, gone in zip(at, passing, strict=True)]
+    touched = [
+        not gone and (low < x if a > x and b > x else high > x)
+        for x, gone in zip(at, passing, strict=True)
+    ]
     ends = (np.array([end]) for end in (a, b, low, high))
-    assert [int(count[0]) for count in passed_or_touched(np.sort(at), *ends)] == [sum(passing), sum(touched)]
+    assert [int(count[0]) for count in passed_or_touched(np.sort(at), *ends)] == [
+        sum(passing),
+        sum(touched),
+    ]
 
 
 def told(row, watch, step=0.1):

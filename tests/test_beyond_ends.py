@@ -1,4 +1,6 @@
-"""Stations beyond a link's ends are refused, with the lines that make a link of what reaches there: these lines are right."""
+"""Stations beyond a link's ends are refused, with the lines that make a link of what reaches there:
+these lines are right.
+"""
 
 import re
 
@@ -16,7 +18,9 @@ LENGTH, MASS, WEIGHT, G = 0.1, 0.6, 4.0, 9.81
 
 
 def crank(station, place=None):
-    """A crank with a counterweight at a station [m] that may lie beyond its ends; or where ``place(m)`` says."""
+    """A crank with a counterweight at a station [m] that may lie beyond its ends; or where
+    ``place(m)`` says.
+    """
     m = Mechanism("balanced")
     arm, weight = m.link("arm", length=LENGTH, mass=MASS), m.point_mass("weight", WEIGHT)
     m.revolute("O", m.ground, arm)
@@ -27,10 +31,13 @@ def crank(station, place=None):
 def told(station):
     """The place that the lines of the refusal make."""
     with pytest.raises(
-        ParameterError, match=rf"joint 'bolt': station {station} m is outside link 'arm', 0 to 0\.1 m; what lies"
+        ParameterError,
+        match=rf"joint 'bolt': station {station} m is outside link 'arm', 0 to 0\.1 m; what lies",
     ) as error:
         crank(station)
-    lines = re.search(r"of its own: (tail = .*); and tail\.tip in place of the station", str(error.value))[1]
+    lines = re.search(
+        r"of its own: (tail = .*); and tail\.tip in place of the station", str(error.value)
+    )[1]
 
     def place(m):
         names = {"m": m}
@@ -42,14 +49,21 @@ def told(station):
 
 @pytest.mark.parametrize("station", [-0.05, -0.3, 0.13])
 def test_the_lines_make_what_was_meant(station):
-    """The drive's torque against J alpha + g (sum of m x) cos(angle), for a rod about its end and a point mass."""
+    """The drive's torque against J alpha + g (sum of m x) cos(angle), for a rod about its end and a
+    point mass.
+    """
     scene = crank(None, told(station))
     solution = evaluate(scene)
     assert solution.certified
     angle, alpha = solution.motion("O").value, 10.0
-    inertia, moment = MASS * LENGTH**2 / 3 + WEIGHT * station**2, MASS * LENGTH / 2 + WEIGHT * station
+    inertia, moment = (
+        MASS * LENGTH**2 / 3 + WEIGHT * station**2,
+        MASS * LENGTH / 2 + WEIGHT * station,
+    )
     torque = inertia * alpha + G * moment * np.cos(angle)
-    np.testing.assert_allclose(solution.effort("O"), torque, rtol=0, atol=1e-13 * np.abs(torque).max())
+    np.testing.assert_allclose(
+        solution.effort("O"), torque, rtol=0, atol=1e-13 * np.abs(torque).max()
+    )
     assert_balanced(scene, t=0.4)
     tail = solution.section("arm_tail")
     arm = station - max(0.0, min(station, LENGTH))

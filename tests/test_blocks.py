@@ -58,7 +58,9 @@ def slides(ways, drives):
     chain = [m.ground, *bodies]
     for i, way in enumerate(ways[:-1]):
         m.prismatic(f"S{i}", chain[i], chain[i + 1], axis=(math.cos(way), math.sin(way)))
-    m.prismatic("last", m.ground.at(0.1, 0.05), bodies[-1], axis=(math.cos(ways[-1]), math.sin(ways[-1])))
+    m.prismatic(
+        "last", m.ground.at(0.1, 0.05), bodies[-1], axis=(math.cos(ways[-1]), math.sin(ways[-1]))
+    )
     return Scene(m, {drive: polynomial(0.1, 0.2) for drive in drives}, t=(0, 1, 5))
 
 
@@ -73,7 +75,10 @@ def slides(ways, drives):
 )
 def test_the_freedom_of_slides_is_counted_by_rank(ways, drives, freedom):
     """Their directions are held once too often: what is counted by joints is one too few."""
-    with pytest.raises(MobilityError, match=rf"has {freedom} degree\(s\) of freedom \(by the rank .* and {len(drives)} drive"):
+    with pytest.raises(
+        MobilityError,
+        match=rf"has {freedom} degree\(s\) of freedom \(by the rank .* and {len(drives)} drive",
+    ):
         evaluate(slides(ways, drives))
 
 

@@ -23,7 +23,9 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 HUGE = "99999999999999999999999"
 COUNT = r"t: COUNT must be a whole number from 1 to 2\^63 - 1, got "
-STEPS = r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
+STEPS = (
+    r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
+)
 THREADS = "is not in the range 1<=x<=1024"
 GRID = ["--grid", "l=0.2:0.3:3"]
 FREE = r"GB, and this machine has \S+ GB free"
@@ -31,20 +33,44 @@ FREE = r"GB, and this machine has \S+ GB free"
 REFUSED = {
     "newton": (["run", CASE, "--newton", "1000000000"], 2, STEPS + "1000000000"),
     "newton-huge": (["run", CASE, "--newton", HUGE], 2, STEPS + HUGE),
-    "newton-exported": (["export", CASE, "--out", "x", "--newton", "1000000000"], 2, STEPS + "1000000000"),
+    "newton-exported": (
+        ["export", CASE, "--out", "x", "--newton", "1000000000"],
+        2,
+        STEPS + "1000000000",
+    ),
     "newton-swept": (["sweep", CASE, *GRID, "--newton", "1001"], 2, STEPS + "1001"),
-    "t": (["run", CASE, "--t", "0:0.08:100000000000"], 1, f"no room for the outputs over time: .* {FREE}"),
+    "t": (
+        ["run", CASE, "--t", "0:0.08:100000000000"],
+        1,
+        f"no room for the outputs over time: .* {FREE}",
+    ),
     "t-huge": (["run", CASE, "--t", f"0:0.08:{HUGE}"], 2, COUNT + HUGE),
-    "t-swept": (["sweep", CASE, *GRID, "--t", "0:0.08:100000000000"], 1, f"no room for the points from 0 to 0.08: .* {FREE}"),
+    "t-swept": (
+        ["sweep", CASE, *GRID, "--t", "0:0.08:100000000000"],
+        1,
+        f"no room for the points from 0 to 0.08: .* {FREE}",
+    ),
     "t-swept-huge": (
         ["sweep", CASE, *GRID, "--t", f"0:0.08:{HUGE}"],
         2,
         COUNT,
     ),
     "t-traded": (["trade", CASE, "--t", "0:0.08:100000000000"], 1, f"no room for .* {FREE}"),
-    "xi": (["run", CASE, "--xi", "0:1:100000000000", "--t", "0:0.08:9"], 1, f"no room for the points from 0 to 1: .* {FREE}"),
-    "xi-swept": (["sweep", CASE, *GRID, "--xi", "0:1:100000000000"], 1, f"no room for the points from 0 to 1: .* {FREE}"),
-    "table": (["run", CASE, "--table", "1000000000"], 2, "table: expected a whole number of nodes from 8 to 16384"),
+    "xi": (
+        ["run", CASE, "--xi", "0:1:100000000000", "--t", "0:0.08:9"],
+        1,
+        f"no room for the points from 0 to 1: .* {FREE}",
+    ),
+    "xi-swept": (
+        ["sweep", CASE, *GRID, "--xi", "0:1:100000000000"],
+        1,
+        f"no room for the points from 0 to 1: .* {FREE}",
+    ),
+    "table": (
+        ["run", CASE, "--table", "1000000000"],
+        2,
+        "table: expected a whole number of nodes from 8 to 16384",
+    ),
     "table-exported": (
         ["export", CASE, "--out", "x", "--table", HUGE],
         2,
@@ -57,7 +83,11 @@ REFUSED = {
         2,
         "2 000 000 000 designs, more than 10\\^9; if that is meant, say --yes",
     ),
-    "grid-huge": (["sweep", CASE, "--yes", "--grid", f"l=0.2:0.3:{HUGE}"], 2, "99 999 .* designs, and a sweep at most 10\\^12"),
+    "grid-huge": (
+        ["sweep", CASE, "--yes", "--grid", f"l=0.2:0.3:{HUGE}"],
+        2,
+        "99 999 .* designs, and a sweep at most 10\\^12",
+    ),
     "grid-product": (
         ["sweep", CASE, "--yes", "--grid", "l=0.2:0.3:10000000", "--grid", "r=0.05:0.1:10000000"],
         2,
@@ -95,12 +125,18 @@ def test_a_number_that_cannot_be_meant_is_one_line(here, limited, capfd, argumen
 def test_python_refuses_them_too(keywords):
     with pytest.raises(DeclarationError, match="expected a "):
         evaluate(slider_crank(), **keywords)
-    with pytest.raises(DeclarationError, match="workers: expected a whole number from 1 to 1024, got 1025"):
+    with pytest.raises(
+        DeclarationError, match="workers: expected a whole number from 1 to 1024, got 1025"
+    ):
         sweep(slider_crank(), {"l": (0.2, 0.3, 3)}, workers=1025)
 
 
 @pytest.mark.parametrize(
-    "command", [["table", "x.h5", "--rows", HUGE], ["best", "x.h5", "--minimise", "peak:effort:O", "--count", HUGE]]
+    "command",
+    [
+        ["table", "x.h5", "--rows", HUGE],
+        ["best", "x.h5", "--minimise", "peak:effort:O", "--count", HUGE],
+    ],
 )
 def test_more_rows_than_there_are_are_all(here, capsys, command):
     sweep(slider_crank(), {"l": (0.2, 0.3, 25)}, t=(0, 0.08, 5), wanted=["effort"], out="x.h5")
@@ -111,14 +147,18 @@ def test_more_rows_than_there_are_are_all(here, capsys, command):
 def test_points_are_refused_before_they_are_made(monkeypatch):
     monkeypatch.setattr(room, "memory", lambda: 2e7)
     assert points((0.0, 1.0, 100)).size == 100
-    with pytest.raises(SizeError, match=r"no room for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB"):
+    with pytest.raises(
+        SizeError, match=r"no room for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB"
+    ):
         points((0.0, 1.0, 10**6))
 
 
 def test_what_takes_long_is_said_before_it_starts(monkeypatch):
     module = importlib.import_module("lagrange_casadi.studies.solving")
     monkeypatch.setattr(module, "_LONG", 1e-9)
-    with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
+    with pytest.warns(
+        UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"
+    ):
         evaluate(iterated(), t=(0, 1, 1001), newton=5)
     monkeypatch.setattr(module, "_LONG", 60.0)
     evaluate(iterated(), t=(0, 1, 1001), newton=5)
@@ -130,7 +170,10 @@ def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):
     for name in ("_LONG", "_LARGE"):
         with monkeypatch.context() as patch:
             patch.setattr(plan, name, 0)
-            with pytest.warns(UserWarning, match=r"^30 designs take about \S+ s of a core and a file of up to \S+ GB$"):
+            with pytest.warns(
+                UserWarning,
+                match=r"^30 designs take about \S+ s of a core and a file of up to \S+ GB$",
+            ):
                 sweep(slider_crank(), {"l": (0.2, 0.3, 30)}, **asked)
 
 

@@ -1,4 +1,6 @@
-"""Columns against closed forms, a beam-column worked out by its differential equation, and the joints of small mechanisms."""
+"""Columns against closed forms, a beam-column worked out by its differential equation, and the
+joints of small mechanisms.
+"""
 
 import math
 
@@ -34,7 +36,10 @@ def test_eulers_curve_and_johnsons_parabola_touch_at_half_the_strength():
     border = math.sqrt(2 * math.pi**2 * E / SY)
     assert critical_stress(border, E, SY) == pytest.approx(SY / 2)
     step = 1e-6 * border
-    slopes = [(critical_stress(border + s * step, E, SY) - critical_stress(border, E, SY)) / (s * step) for s in (1, -1)]
+    slopes = [
+        (critical_stress(border + s * step, E, SY) - critical_stress(border, E, SY)) / (s * step)
+        for s in (1, -1)
+    ]
     assert slopes[0] == pytest.approx(slopes[1], rel=1e-5)
     assert critical_stress(0.0, E, SY) == SY
     assert critical_stress(3 * border, E, SY) == pytest.approx(SY / 18)
@@ -51,7 +56,9 @@ def test_a_slender_rod_bears_eulers_load():
     assert found.effective == (1.0, 0.5)
     assert found.critical[0] == pytest.approx(math.pi**2 * E * (0.02 * 0.008**3 / 12) / 0.4**2)
     assert found.slenderness[0] == pytest.approx(0.4 / (0.008 / math.sqrt(12)))
-    assert found.critical[1] == pytest.approx(0.008 * 0.02 * float(critical_stress(0.2 / (0.02 / math.sqrt(12)), E, SY)))
+    assert found.critical[1] == pytest.approx(
+        0.008 * 0.02 * float(critical_stress(0.2 / (0.02 / math.sqrt(12)), E, SY))
+    )
 
 
 def test_of_what_leans_the_weakest_axis_counts():
@@ -59,8 +66,12 @@ def test_of_what_leans_the_weakest_axis_counts():
     corners = np.array([(0.015, 0.003), (-0.015, 0.003), (-0.015, -0.003), (0.015, -0.003)])
     c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
     turned = corners @ np.array([[c, s], [-s, c]])
-    _, member = rod_of(beams.polygon([tuple(map(float, corner)) for corner in turned]), columns=(1.0, 1.0))
-    assert column(member, (1.0, 1.0)).euler[0] == pytest.approx(math.pi**2 * E * (0.03 * 0.006**3 / 12) / 0.16)
+    _, member = rod_of(
+        beams.polygon([tuple(map(float, corner)) for corner in turned]), columns=(1.0, 1.0)
+    )
+    assert column(member, (1.0, 1.0)).euler[0] == pytest.approx(
+        math.pi**2 * E * (0.03 * 0.006**3 / 12) / 0.16
+    )
 
 
 def test_of_a_taper_the_thinnest_counts():
@@ -82,20 +93,31 @@ def test_the_factor_is_the_root_of_the_interaction(compression, moment):
 
 
 def test_without_compression_nothing_buckles():
-    assert load_factor(np.array([-5.0, 0.0]), (np.ones(2), np.ones(2)), EVEN).tolist() == [math.inf, math.inf]
+    assert load_factor(np.array([-5.0, 0.0]), (np.ones(2), np.ones(2)), EVEN).tolist() == [
+        math.inf,
+        math.inf,
+    ]
 
 
 def test_bending_about_both_axes_is_worse():
-    both, one = (load_factor(np.array([1e4]), (np.array([300.0]), np.array([my])), EVEN)[0] for my in (300.0, 0.0))
+    both, one = (
+        load_factor(np.array([1e4]), (np.array([300.0]), np.array([my])), EVEN)[0]
+        for my in (300.0, 0.0)
+    )
     assert both < one
     assert 1e4 * both / 1e5 + 2 * 300 * both / 1e3 / (1 - both * 1e4 / 2e5) == pytest.approx(1.0)
 
 
 def test_a_beam_column_by_its_differential_equation():
-    """E I v'' + N v = -M, pinned, even moment: the outermost fibre yields at M sec(pi/2 sqrt(N/N_e)); the interaction with Euler's
-    load and the yield load in its place is on the safe side of that, by little."""
+    """E I v'' + N v = -M, pinned, even moment: the outermost fibre yields at M sec(pi/2
+    sqrt(N/N_e)); the interaction with Euler's load and the yield load in its place is on the safe
+    side of that, by little."""
     area, second, height, length = 4e-4, 2e-8, 0.02, 0.5
-    euler, yields, bends = math.pi**2 * E * second / length**2, area * SY, SY * second / (height / 2)
+    euler, yields, bends = (
+        math.pi**2 * E * second / length**2,
+        area * SY,
+        SY * second / (height / 2),
+    )
     of = Column((1.0, 1.0), (0.0, 0.0), (euler, euler), (yields, yields), (bends, bends))
     n, m = 2e4, 40.0
     found = load_factor(np.array([n]), (np.array([m]), np.zeros(1)), of)[0]
@@ -103,7 +125,11 @@ def test_a_beam_column_by_its_differential_equation():
     for _ in range(80):
         middle = (low + high) / 2
         secant = 1 / math.cos(math.pi / 2 * math.sqrt(middle * n / euler))
-        low, high = (middle, high) if middle * n / yields + middle * m * secant / bends <= 1.0 else (low, middle)
+        low, high = (
+            (middle, high)
+            if middle * n / yields + middle * m * secant / bends <= 1.0
+            else (low, middle)
+        )
     assert low == pytest.approx(found, rel=0.06)
     assert found >= low * 0.99
 
@@ -149,7 +175,13 @@ def to_a_piston(m, arm):
 
 @pytest.mark.parametrize(
     ("build", "lengths"),
-    [(driven, (2.0, 0.5)), (free, (2.0, 2.0)), (clamped, (1.0, 0.5)), (to_a_piston, (2.0, 0.5)), (elbow, (2.0, 0.5))],
+    [
+        (driven, (2.0, 0.5)),
+        (free, (2.0, 2.0)),
+        (clamped, (1.0, 0.5)),
+        (to_a_piston, (2.0, 0.5)),
+        (elbow, (2.0, 0.5)),
+    ],
 )
 def test_joints_tell_how_ends_are_held(build, lengths):
     assert effective_lengths(described(build), "arm") == lengths
@@ -168,13 +200,25 @@ def test_in_space_ends_are_joined_or_free():
 def test_what_buckling_needs():
     plain = beams.Material("plain", 7850.0, yield_strength=1e8)
     m = Mechanism("m")
-    m.revolute("O", m.ground, m.link("arm", length=0.4, beam=beams.Beam(beams.round_bar(0.02), plain)))
-    solution = evaluate(Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["section"]), certificate=False)
-    with pytest.raises(DeclarationError, match="material 'plain' has no elasticity, which buckling needs"):
+    m.revolute(
+        "O", m.ground, m.link("arm", length=0.4, beam=beams.Beam(beams.round_bar(0.02), plain))
+    )
+    solution = evaluate(
+        Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["section"]), certificate=False
+    )
+    with pytest.raises(
+        DeclarationError, match="material 'plain' has no elasticity, which buckling needs"
+    ):
         solution.safety("arm")
-    with pytest.raises(DeclarationError, match="material 'plain' has no elasticity, which output 'safety:arm' needs"):
+    with pytest.raises(
+        DeclarationError,
+        match="material 'plain' has no elasticity, which output 'safety:arm' needs",
+    ):
         evaluate(Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11)), wanted=["safety:arm"])
-    with pytest.raises(DeclarationError, match="material 'plain' has no ultimate and no endurance, which output 'life:arm' needs"):
+    with pytest.raises(
+        DeclarationError,
+        match="material 'plain' has no ultimate and no endurance, which output 'life:arm' needs",
+    ):
         Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["life:arm"])
 
 

@@ -52,7 +52,11 @@ def test_reading_is_using(fresh_cache, monkeypatch):
     assert cache.read(f"{NAMES[0]}.graph") == "y" * 1000
     monkeypatch.setenv(cache.VARIABLE, "2.5k")
     cache.write(f"{NAMES[3]}.graph", "y" * 100)
-    assert left(fresh_cache) == [NAMES[0], NAMES[3]] or left(fresh_cache) == [NAMES[0], NAMES[2], NAMES[3]]
+    assert left(fresh_cache) == [NAMES[0], NAMES[3]] or left(fresh_cache) == [
+        NAMES[0],
+        NAMES[2],
+        NAMES[3],
+    ]
     assert cache.read(f"{NAMES[1]}.graph") is None
 
 
@@ -71,7 +75,15 @@ def test_nothing_is_kept_where_nothing_may_be(fresh_cache, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("text", "size"), [("", cache.LIMIT), ("12", 12), ("1.5k", 1500), ("200M", 200_000_000), ("2 GB", 2 * 10**9), ("1T", 10**12)]
+    ("text", "size"),
+    [
+        ("", cache.LIMIT),
+        ("12", 12),
+        ("1.5k", 1500),
+        ("200M", 200_000_000),
+        ("2 GB", 2 * 10**9),
+        ("1T", 10**12),
+    ],
 )
 def test_the_limit_is_read_as_people_write_it(monkeypatch, text, size):
     monkeypatch.setenv(cache.VARIABLE, text)
@@ -81,7 +93,10 @@ def test_the_limit_is_read_as_people_write_it(monkeypatch, text, size):
 @pytest.mark.parametrize("text", ["much", "-1", "1_0", "1e400", "5 apples", "nan", "..", "200m"])
 def test_a_limit_that_is_none_is_refused(monkeypatch, text):
     monkeypatch.setenv(cache.VARIABLE, text)
-    with pytest.raises(DeclarationError, match=r"\$LAGRANGE_CASADI_CACHE_SIZE = .*: expected bytes, as in 200000000, 200M or 2G"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"\$LAGRANGE_CASADI_CACHE_SIZE = .*: expected bytes, as in 200000000, 200M or 2G",
+    ):
         cache.limit()
 
 
@@ -96,9 +111,10 @@ def test_what_is_not_ours_stays(fresh_cache, monkeypatch, capsys):
 
 def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     assert main(["cache"]) == 0
-    assert capsys.readouterr().out == (
-        f"{fresh_cache}: 0 graphs, 0 libraries, 0 MB in 0 files\n"
-        "limit: 500 MB, of which what was used longest ago goes first; $LAGRANGE_CASADI_CACHE_SIZE sets another\n"
+    assert (
+        capsys.readouterr().out
+        == f"{fresh_cache}: 0 graphs, 0 libraries, 0 MB in 0 files\nlimit: 500 MB, of which what"
+        " was used longest ago goes first; $LAGRANGE_CASADI_CACHE_SIZE sets another\n"
     )
     assert not fresh_cache.exists()
     put(fresh_cache, NAMES[0], 300_000, 5)
@@ -106,10 +122,14 @@ def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
     cache.write(f"{NAMES[2]}-iterated.graph", "y" * 34_000)
     monkeypatch.setenv(cache.VARIABLE, "3M")
     assert main(["cache"]) == 0
-    assert capsys.readouterr().out.startswith(f"{fresh_cache}: 1 graph, 2 libraries, 1.23 MB in 7 files\nlimit: 3 MB, ")
+    assert capsys.readouterr().out.startswith(
+        f"{fresh_cache}: 1 graph, 2 libraries, 1.23 MB in 7 files\nlimit: 3 MB, "
+    )
     monkeypatch.setenv(cache.VARIABLE, "x")
     assert main(["cache"]) == 2
-    assert capsys.readouterr().err.startswith("error: $LAGRANGE_CASADI_CACHE_SIZE = 'x': expected bytes")
+    assert capsys.readouterr().err.startswith(
+        "error: $LAGRANGE_CASADI_CACHE_SIZE = 'x': expected bytes"
+    )
 
 
 def test_folders_of_who_was_killed_go_in_time(fresh_cache):
@@ -157,8 +177,13 @@ def test_processes_share_a_cache_that_holds_too_little(tmp_path):
     """Each removes what another one is about to load."""
     command = [sys.executable, "-W", "error", "-c", PROGRAM.format(tests=os.path.dirname(__file__))]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), cache.VARIABLE: "60k"}
-    started = [subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(3)]
-    assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [("", 0)] * 3
+    started = [
+        subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
+        for _ in range(3)
+    ]
+    assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [
+        ("", 0)
+    ] * 3
 
 
 def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeypatch):
@@ -167,7 +192,9 @@ def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeyp
 
     with monkeypatch.context() as patch:
         patch.setattr(cache.tempfile, "TemporaryFile", refused)
-        with pytest.warns(UserWarning, match=r"cannot use the cache folder .* now: Too many open files"):
+        with pytest.warns(
+            UserWarning, match=r"cannot use the cache folder .* now: Too many open files"
+        ):
             assert cache.folder() is None
     assert cache.folder() == fresh_cache
 
@@ -201,13 +228,18 @@ def foreign(request, fresh_cache, monkeypatch):
     cache._usable.cache_clear()
 
 
-WAYS = [(place, how) for place in ("folder", "parent") for how in (0o777, 0o775, 0o757, "owner")] + [("folder", 0o1777)]
+WAYS = [
+    (place, how) for place in ("folder", "parent") for how in (0o777, 0o775, 0o757, "owner")
+] + [("folder", 0o1777)]
 
 
 @pytest.mark.parametrize("foreign", WAYS, indirect=True)
 def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys):
     why = rf"{foreign} belongs to another user|others may write into {foreign}"
-    with pytest.warns(UserWarning, match=rf"^the cache folder {fresh_cache} is not used, for ({why}); a temporary one is$"):
+    with pytest.warns(
+        UserWarning,
+        match=rf"^the cache folder {fresh_cache} is not used, for ({why}); a temporary one is$",
+    ):
         own = cache.folder()
     assert own != fresh_cache
     assert own.stat().st_mode & 0o777 == 0o700
@@ -219,7 +251,9 @@ def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys
     assert capsys.readouterr().err.startswith(f"note: {fresh_cache} is not used, for ")
 
 
-@pytest.mark.parametrize("foreign", [("parent", 0o1777), ("parent", 0o755), ("folder", 0o700)], indirect=True)
+@pytest.mark.parametrize(
+    "foreign", [("parent", 0o1777), ("parent", 0o755), ("folder", 0o700)], indirect=True
+)
 def test_a_folder_like_tmp_may_lead_there(fresh_cache, foreign):
     assert cache.folder() == fresh_cache
     assert cache.read(f"{NAMES[0]}.graph") == "planted"
@@ -242,10 +276,20 @@ def test_a_library_that_others_may_write_is_built_again(fresh_cache, backend):
     for library in libraries:
         library.chmod(0o666)
     backends._library.cache_clear()
-    with pytest.warns(UserWarning, match=r"the cached library .*\.so is not trusted \(others may write into .*\.so\) and is built"):
+    with pytest.warns(
+        UserWarning,
+        match=(
+            r"the cached library .*\.so is not trusted \(others may write into .*\.so\) and is"
+            r" built"
+        ),
+    ):
         evaluate(sweeps.scene(), backend=backend, flags="-O0")
     assert libraries
-    assert not any(library.stat().st_mode & 0o22 for library in libraries if library.name in os.listdir(fresh_cache))
+    assert not any(
+        library.stat().st_mode & 0o22
+        for library in libraries
+        if library.name in os.listdir(fresh_cache)
+    )
 
 
 def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monkeypatch):
@@ -258,7 +302,10 @@ def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monk
             with cache.working_folder() as work:
                 assert work.parent == shared
             continue
-        why = rf"in the temporary folder {shared}, for others may write into .*; set \$TMPDIR to a folder of your own$"
+        why = (
+            rf"in the temporary folder {shared}, for others may write into .*; set \$TMPDIR to a"
+            r" folder of your own$"
+        )
         with pytest.raises(PathError, match=why), cache.working_folder():
             pass
 

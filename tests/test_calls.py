@@ -1,4 +1,6 @@
-"""What crosses from Python to C: structs that lie alike on both sides, whose members are set by name."""
+"""What crosses from Python to C: structs that lie alike on both sides, whose members are set by
+name.
+"""
 
 import ctypes
 import subprocess
@@ -19,7 +21,9 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.designs.engine import DesignEngine
 
 CALLS = (INSTANTS, CURVES, SEARCH, DESIGNS, GRID, LARGEST, INTERPOLATE)
-UNEVEN = Call("uneven", {"a": "int", "b": "const real*", "c": "int", "d": "int", "e": "long long", "f": "int"})
+UNEVEN = Call(
+    "uneven", {"a": "int", "b": "const real*", "c": "int", "d": "int", "e": "long long", "f": "int"}
+)
 
 
 @pytest.mark.parametrize("language", ["c", "c++"])
@@ -38,8 +42,13 @@ def test_structs_lie_alike_in_c_and_python(language, real, tmp_path):
     source = tmp_path / ("layout.c" if language == "c" else "layout.cpp")
     printed = "".join(f'  printf("%lu\\n", (unsigned long) ({line}));\n' for line in lines)
     of_search = interface("double" if real == "double" else "single")
-    types = of_search + "".join(call.text(real) for call in (*CALLS, UNEVEN) if call not in (CURVES, SEARCH))
-    source.write_text(f"#include <stddef.h>\n#include <stdio.h>\n{types}int main(void) {{\n{printed}  return 0;\n}}\n")
+    types = of_search + "".join(
+        call.text(real) for call in (*CALLS, UNEVEN) if call not in (CURVES, SEARCH)
+    )
+    source.write_text(
+        f"#include <stddef.h>\n#include <stdio.h>\n{types}int main(void) {{\n{printed}  return"
+        " 0;\n}\n"
+    )
     subprocess.run([*compiler.command, source, "-o", tmp_path / "layout"], check=True)
     told = subprocess.run([tmp_path / "layout"], capture_output=True, text=True, check=True).stdout
     assert [int(line) for line in told.split()] == wanted
@@ -70,10 +79,26 @@ def test_the_order_of_results_does_not_matter(backend):
     p = np.array([list(slider_crank().mechanism.values().values())])
     expected = engine.evaluate(p)
     q, e = len(engine.quantities), len(engine.efforts)
-    names = {"history": None, "rms": np.full((1, e), np.nan), "xi": np.full((1, q), np.nan), "value": np.full((1, q), np.nan)}
-    names |= {"mean": np.full((1, e), np.nan), "status": np.full(1, -1, np.int8), "peak_t": np.full((1, q), np.nan)}
+    names = {
+        "history": None,
+        "rms": np.full((1, e), np.nan),
+        "xi": np.full((1, q), np.nan),
+        "value": np.full((1, q), np.nan),
+    }
+    names |= {
+        "mean": np.full((1, e), np.nan),
+        "status": np.full(1, -1, np.int8),
+        "peak_t": np.full((1, q), np.nan),
+    }
     engine.library.evaluate(engine.t[None], np.zeros((1, 0), bool), p, names)
-    for name, own in (("status", "status"), ("value", "value"), ("peak_t", "t"), ("xi", "xi"), ("mean", "mean"), ("rms", "rms")):
+    for name, own in (
+        ("status", "status"),
+        ("value", "value"),
+        ("peak_t", "t"),
+        ("xi", "xi"),
+        ("mean", "mean"),
+        ("rms", "rms"),
+    ):
         assert names[name].tobytes() == getattr(expected, own).tobytes()
     found = {name: array for name, array in names.items() if name != "history"}
     with pytest.raises(TypeError, match="without history"):

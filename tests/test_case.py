@@ -27,7 +27,13 @@ def test_a_folder_or_a_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("given", "name"), [("press_1.2", "press_1.2"), ("press_1.3/case.py", "press_1.3"), ("rod.v2.py", "rod.v2"), (".", "here.too")]
+    ("given", "name"),
+    [
+        ("press_1.2", "press_1.2"),
+        ("press_1.3/case.py", "press_1.3"),
+        ("rod.v2.py", "rod.v2"),
+        (".", "here.too"),
+    ],
 )
 def test_a_name_keeps_what_looks_like_an_ending(tmp_path, monkeypatch, given, name):
     here = tmp_path / "here.too"
@@ -49,24 +55,46 @@ STRANGE = ("casadi.SX.sym('x')", "1j", "b'1'", "len", "numpy.ones(2)", "{(1, 2):
 
 
 def test_the_paper_says_what_it_wants_drawn(slider_crank):
-    assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
+    assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [
+        f"fig{n:02}" for n in range(6, 15)
+    ]
 
 
 @pytest.mark.parametrize(
     ("text", "error", "says"),
     [
-        ("x = 1\n\ny = 1 / 0\n", CaseError, r"case .*broken\.py, line 3: ZeroDivisionError: division by zero"),
+        (
+            "x = 1\n\ny = 1 / 0\n",
+            CaseError,
+            r"case .*broken\.py, line 3: ZeroDivisionError: division by zero",
+        ),
         ("def scene(:\n", CaseError, r"line 1: SyntaxError"),
         ("import nonsense_that_is_not_there\n", CaseError, "ModuleNotFoundError"),
         ("x = 1\n", CaseError, r"has no function scene\(\)"),
         ("scene = 3\n", CaseError, r"has no function scene\(\)"),
-        ("def scene():\n    return 3\n", CaseError, r"scene\(\) returned int, expected a lagrange_casadi\.Scene"),
-        ("def scene():\n    raise ValueError('two\\nlines')\n", CaseError, r"line 2: ValueError: two lines$"),
+        (
+            "def scene():\n    return 3\n",
+            CaseError,
+            r"scene\(\) returned int, expected a lagrange_casadi\.Scene",
+        ),
+        (
+            "def scene():\n    raise ValueError('two\\nlines')\n",
+            CaseError,
+            r"line 2: ValueError: two lines$",
+        ),
         *(
-            (GOOD + DRAWN.format(value), DeclarationError, "TimePlot 'f': factor: expected a finite number, got ")
+            (
+                GOOD + DRAWN.format(value),
+                DeclarationError,
+                "TimePlot 'f': factor: expected a finite number, got ",
+            )
             for value in STRANGE
         ),
-        (GOOD.replace("length=1", "length='x'"), DeclarationError, "link 'a': length: expected a finite number"),
+        (
+            GOOD.replace("length=1", "length='x'"),
+            DeclarationError,
+            "link 'a': length: expected a finite number",
+        ),
     ],
 )
 def test_broken_cases_are_one_line(tmp_path, text, error, says):

@@ -1,4 +1,6 @@
-"""Cases are modules: dataclasses, helpers beside the file, other processes; and one case does not see another's helpers."""
+"""Cases are modules: dataclasses, helpers beside the file, other processes; and one case does not
+see another's helpers.
+"""
 
 import copy
 import pickle
@@ -18,7 +20,9 @@ def arm(length):
     m.revolute("J", m.ground, m.link("a", length=length, mass=1))
     return Scene(m, {"J": motion.polynomial(0, 1)})
 """
-HEAD = "from __future__ import annotations\n\nfrom lagrange_casadi import Mechanism, Scene, motion\n"
+HEAD = (
+    "from __future__ import annotations\n\nfrom lagrange_casadi import Mechanism, Scene, motion\n"
+)
 
 
 def write(path, *texts):
@@ -54,12 +58,15 @@ def test_dataclasses_with_postponed_annotations(tmp_path):
 
 
 def test_a_case_has_helpers_beside_it(tmp_path):
-    """Found while it is loaded, and while its functions are called; packages too; and the path is as it was."""
+    """Found while it is loaded, and while its functions are called; packages too; and the path is
+    as it was.
+    """
     write(
         tmp_path / "case.py",
         HEAD,
         ARM,
-        "import sizes\ndef scene():\n    import more.here\n    return arm(sizes.LENGTH * more.here.TWICE)\n",
+        "import sizes\ndef scene():\n    import more.here\n    return arm(sizes.LENGTH *"
+        " more.here.TWICE)\n",
     )
     write(tmp_path / "sizes.py", "LENGTH = 0.25\n")
     write(tmp_path / "more" / "__init__.py", "")
@@ -76,7 +83,8 @@ def test_each_case_has_its_own_helpers(tmp_path):
             tmp_path / str(k) / "case.py",
             HEAD,
             ARM,
-            "import sizes\ndef scene():\n    import late\n    return arm(sizes.LENGTH * late.FACTOR)\n",
+            "import sizes\ndef scene():\n    import late\n    return arm(sizes.LENGTH *"
+            " late.FACTOR)\n",
         )
         write(tmp_path / str(k) / "sizes.py", f"LENGTH = {k + 1}.0\n")
         write(tmp_path / str(k) / "late.py", "FACTOR = 2.0\n")
@@ -91,7 +99,12 @@ def test_each_case_has_its_own_helpers(tmp_path):
 
 def test_a_case_may_load_another_one(tmp_path):
     """Each goes on with its own helpers."""
-    inner = write(tmp_path / "inner" / "case.py", HEAD, ARM, "import sizes\ndef scene():\n    return arm(sizes.LENGTH)\n")
+    inner = write(
+        tmp_path / "inner" / "case.py",
+        HEAD,
+        ARM,
+        "import sizes\ndef scene():\n    return arm(sizes.LENGTH)\n",
+    )
     write(tmp_path / "inner" / "sizes.py", "LENGTH = 2.0\n")
     outer = f"""
     import sizes
@@ -109,7 +122,12 @@ def test_a_case_may_load_another_one(tmp_path):
 
 
 def test_a_helper_does_not_hide_what_is_there_already(tmp_path):
-    write(tmp_path / "case.py", HEAD, ARM, "import json\nassert json.dumps\ndef scene():\n    return arm(1.0)\n")
+    write(
+        tmp_path / "case.py",
+        HEAD,
+        ARM,
+        "import json\nassert json.dumps\ndef scene():\n    return arm(1.0)\n",
+    )
     write(tmp_path / "json.py", "raise RuntimeError\n")
     assert length_of(load_case(tmp_path)) == 1.0
     import json
@@ -137,25 +155,53 @@ def scene():
 @pytest.mark.long
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize(
-    "command", [["-m", "lagrange_casadi"], ["-c", "import sys; from lagrange_casadi.cli import main; sys.exit(main())"]]
+    "command",
+    [
+        ["-m", "lagrange_casadi"],
+        ["-c", "import sys; from lagrange_casadi.cli import main; sys.exit(main())"],
+    ],
 )
 def test_a_case_may_have_processes_work_for_it(here, tmp_path_factory, method, command):
     folder = tmp_path_factory.mktemp("pooled")
     write(folder / "case.py", HEAD, ARM, POOLED.format(method=method))
     write(folder / "sizes.py", "TWO = [1.0, 2.0]\n")
-    asked = [sys.executable, *command, "run", str(folder), "--no-figures", "--t", "0:1:5", "--out", "x.h5"]
+    asked = [
+        sys.executable,
+        *command,
+        "run",
+        str(folder),
+        "--no-figures",
+        "--t",
+        "0:1:5",
+        "--out",
+        "x.h5",
+    ]
     done = subprocess.run(asked, capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert "wrote x.h5" in done.stdout
 
 
 def test_what_a_case_defines_can_be_sent_to_another_process(tmp_path):
-    path = write(tmp_path / "press.py", HEAD, ARM, "class Size:\n    length = 0.5\ndef scene():\n    return arm(Size.length)\n")
+    path = write(
+        tmp_path / "press.py",
+        HEAD,
+        ARM,
+        "class Size:\n    length = 0.5\ndef scene():\n    return arm(Size.length)\n",
+    )
     load_case(path)
-    (module,) = (module for name, module in sys.modules.items() if name == case_modules._FILE + bytes(path).hex())
+    (module,) = (
+        module
+        for name, module in sys.modules.items()
+        if name == case_modules._FILE + bytes(path).hex()
+    )
     sent = pickle.dumps((module.Size, module.scene))
-    program = f"import pickle; size, scene = pickle.loads({sent!r}); print(size.length, scene().mechanism.name)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    program = (
+        f"import pickle; size, scene = pickle.loads({sent!r}); print(size.length,"
+        " scene().mechanism.name)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     assert done.stdout == "0.5 arm\n"
 
 
@@ -179,13 +225,20 @@ def test_a_case_with_any_name(tmp_path):
         tmp_path / "a ü.b c" / "1 ü.x.py",
         HEAD,
         ARM,
-        "import dataclasses\n@dataclasses.dataclass\nclass A:\n    x: int = 1\ndef scene():\n    return arm(1.0)\n",
+        "import dataclasses\n@dataclasses.dataclass\nclass A:\n    x: int = 1\ndef scene():\n   "
+        " return arm(1.0)\n",
     )
     assert length_of(load_case(path)) == 1.0
 
 
 @pytest.mark.parametrize(
-    "raised", ["BaseException('gone')", "GeneratorExit('gone')", "SystemExit('gone')", "type('Odd', (BaseException,), {})('gone')"]
+    "raised",
+    [
+        "BaseException('gone')",
+        "GeneratorExit('gone')",
+        "SystemExit('gone')",
+        "type('Odd', (BaseException,), {})('gone')",
+    ],
 )
 @pytest.mark.parametrize("where", ["", "def scene():\n    "])
 def test_whatever_a_case_raises_is_one_line(tmp_path, raised, where):
@@ -204,14 +257,21 @@ def test_a_case_that_is_sent_is_loaded_anew(tmp_path):
     case = load_case(path)
     sent = pickle.dumps(case)
     program = f"import pickle; print(pickle.loads({sent!r}).scene.mechanism.links['a'].length)"
-    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "0.75\n"
+    assert (
+        subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, check=True
+        ).stdout
+        == "0.75\n"
+    )
     again = pickle.loads(sent)
     assert again is not case
     assert again.path == case.path
 
 
 def test_a_scene_says_why_it_is_not_sent(slider_crank):
-    with pytest.raises(PickleError, match=r"^a Scene cannot be pickled: .* send a Case from load_case") as raised:
+    with pytest.raises(
+        PickleError, match=r"^a Scene cannot be pickled: .* send a Case from load_case"
+    ) as raised:
         pickle.dumps([slider_crank.scene])
     assert isinstance(raised.value, pickle.PicklingError)
     assert copy.copy(slider_crank.scene) is slider_crank.scene

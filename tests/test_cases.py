@@ -1,4 +1,6 @@
-"""Every case: its certificate, its page; planar ones: against vector Newton-Euler at several instants, their figures."""
+"""Every case: its certificate, its page; planar ones: against vector Newton-Euler at several
+instants, their figures.
+"""
 
 import math
 
@@ -48,7 +50,11 @@ def test_certificate_is_at_rounding_level(name):
 @pytest.mark.parametrize("name", PLANAR)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)
-    drawn = list(figures.draw(evaluate(case.scene, t=(*case.scene.t[:2], 41), xi=(0, 1, 21)), case.figures, tmp_path))
+    drawn = list(
+        figures.draw(
+            evaluate(case.scene, t=(*case.scene.t[:2], 41), xi=(0, 1, 21)), case.figures, tmp_path
+        )
+    )
     assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
     assert "mechanism" in {spec.name for spec, _ in drawn}
 
@@ -63,24 +69,32 @@ def test_a_page_says_what_it_is(name):
 
 # The IVP test set's reference solution at t = 0.03 s (PSIDE, tolerance 1e-14).
 SET = {
-    "q": (15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948, 0.5244099658805304, 0.5347301163226948,
+    "q": (15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
+        0.5244099658805304, 0.5347301163226948,
           1.048080741042263),
-    "rate": (1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385, 0.5735699284790808, -19.29337464421385,
+    "rate": (1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385,
+        0.5735699284790808, -19.29337464421385,
              0.3231791658026955),
-    "acceleration": (-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213, 16743.62929479361,
+    "acceleration": (-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213,
+        16743.62929479361,
                      -566749.3645176222, 9826.520791458422),
-    "multipliers": (199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927, 22.64249232082739,
+    "multipliers": (199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927,
+        22.64249232082739,
                     11.61740700019673),
 }  # fmt: skip
 
-# The set's equations at its beta, beta' and beta'' alone, everything else from the loops, in 60-digit arithmetic.
-EXACT = {"P3": (199.17534806422029369, -29.755310058961486767), "P4": (23.066543603840927337, 31.452725249522902698),
+# The set's equations at its beta, beta' and beta'' alone, everything else from the loops, in
+# 60-digit arithmetic.
+EXACT = {"P3": (199.17534806422029369, -29.755310058961486767), "P4": (23.066543603840927337,
+    31.452725249522902698),
          "P6": (22.642494779373571809, 11.617392381073002921)}  # fmt: skip
 EXACT_TORQUE = 0.033000002514822625774
 
 
 def test_squeezer_against_the_sets_equations_in_60_digits():
-    """The reactions of the pins that close the loops are the set's multipliers, in its order and with its signs."""
+    """The reactions of the pins that close the loops are the set's multipliers, in its order and
+    with its signs.
+    """
     solution = evaluate(load_case(CASES / "andrews_squeezer").scene, t=(0, 0, 1))
     for pin, expected in EXACT.items():
         found = (solution.reaction(pin).fx[0], solution.reaction(pin).fy[0])
@@ -89,18 +103,33 @@ def test_squeezer_against_the_sets_equations_in_60_digits():
 
 
 def test_squeezer_against_the_printed_reference():
-    """The printed rates miss the loops' equations by 1e-9, which magnifies to 1e-7 of the largest multiplier."""
+    """The printed rates miss the loops' equations by 1e-9, which magnifies to 1e-7 of the largest
+    multiplier.
+    """
     solution = evaluate(load_case(CASES / "andrews_squeezer").scene, t=(0, 0, 1))
     assert solution.effort("O")[0] == pytest.approx(0.033, abs=1e-8)
-    found = [getattr(solution.reaction(pin), axis)[0] for pin in ("P3", "P4", "P6") for axis in ("fx", "fy")]
-    np.testing.assert_allclose(found, SET["multipliers"], atol=1.1e-7 * max(map(abs, SET["multipliers"])))
+    found = [
+        getattr(solution.reaction(pin), axis)[0]
+        for pin in ("P3", "P4", "P6")
+        for axis in ("fx", "fy")
+    ]
+    np.testing.assert_allclose(
+        found, SET["multipliers"], atol=1.1e-7 * max(map(abs, SET["multipliers"]))
+    )
     for body, turn, i in (("k3", math.pi / 2, 2), ("k5", 0.0, 4), ("k7", math.pi / 2, 6)):
         assert solution.pose(body).angle[0] + turn == pytest.approx(SET["q"][i], abs=1e-14)
 
 
 def test_squeezer_at_the_printed_rates():
-    """At the set's own q, q' and q'', all seven, the Lagrange terms give its torque and multipliers to its own accuracy."""
-    q, qd, qdd, lam = ca.SX.sym("q", 7), ca.SX.sym("qd", 7), ca.SX.sym("qdd", 7), ca.SX.sym("lam", 6)
+    """At the set's own q, q' and q'', all seven, the Lagrange terms give its torque and multipliers
+    to its own accuracy.
+    """
+    q, qd, qdd, lam = (
+        ca.SX.sym("q", 7),
+        ca.SX.sym("qd", 7),
+        ca.SX.sym("qdd", 7),
+        ca.SX.sym("lam", 6),
+    )
     module = load_module("andrews_squeezer")
     beta, theta, gamma, phi, delta, omega, epsilon = ca.vertsplit(q)
     g = vars(module)
@@ -110,7 +139,9 @@ def test_squeezer_at_the_printed_rates():
     k3 = _u(gamma - turned)
     h, corner = a + g["ZT"] * _u(delta), a + g["U"] * _u(epsilon - turned)
     gaps = ca.vertcat(
-        pin - b - g["SS"] * k3, pin - h - g["E"] * _u(phi + delta - turned), pin - corner - g["ZF"] * _u(omega + epsilon)
+        pin - b - g["SS"] * k3,
+        pin - h - g["E"] * _u(phi + delta - turned),
+        pin - corner - g["ZF"] * _u(omega + epsilon),
     )
     bodies = [
         (1, g["RA"] * _u(beta), beta),
@@ -122,14 +153,19 @@ def test_squeezer_at_the_printed_rates():
         (7, g["UB"] * _u(epsilon - turned) + g["UA"] * _u(epsilon), epsilon),
     ]
     kinetic = sum(
-        g[f"M{i}"] * ca.sumsqr(ca.jtimes(place, q, qd)) / 2 + g[f"I{i}"] * ca.jtimes(angle, q, qd) ** 2 / 2
+        g[f"M{i}"] * ca.sumsqr(ca.jtimes(place, q, qd)) / 2
+        + g[f"I{i}"] * ca.jtimes(angle, q, qd) ** 2 / 2
         for i, place, angle in bodies
     )
     attached = b + g["SC"] * k3 + g["SD"] * _u(gamma)
     stretch = ca.norm_2(attached - ca.DM([g["XC"], g["YC"]])) - 0.07785
-    system = LagrangeSystem(kinetic, -4530.0 * stretch**2 / 2, q, qd, qdd, constraints=-gaps, multipliers=lam)
+    system = LagrangeSystem(
+        kinetic, -4530.0 * stretch**2 / 2, q, qd, qdd, constraints=-gaps, multipliers=lam
+    )
     along, _ = system.terms()
-    f = ca.Function("f", [q, qd, qdd], [ca.substitute(along, lam, ca.DM.zeros(6)), ca.jacobian(along, lam)])
+    f = ca.Function(
+        "f", [q, qd, qdd], [ca.substitute(along, lam, ca.DM.zeros(6)), ca.jacobian(along, lam)]
+    )
     rest, slope = (x.full() for x in f(SET["q"], SET["rate"], SET["acceleration"]))
     found = np.linalg.lstsq(np.hstack([slope, -np.eye(7, 1)]), -rest, rcond=None)[0].ravel()
     np.testing.assert_allclose(found[:6], SET["multipliers"], rtol=1e-8)
@@ -150,7 +186,9 @@ def load_module(name):
 
 
 def test_quick_return_is_quicker_back():
-    """The rocker's two strokes take the crank 180 deg less and more twice the angle whose sine is r over the distance."""
+    """The rocker's two strokes take the crank 180 deg less and more twice the angle whose sine is r
+    over the distance.
+    """
     solution = evaluate(load_case(CASES / "quick_return").scene, t=(0, 0.5, 20001))
     rate = solution.motion("way").rate
     slow = np.count_nonzero(rate > 0) / rate.size
@@ -159,7 +197,9 @@ def test_quick_return_is_quicker_back():
 
 
 def test_a_leg_takes_no_work_over_a_turn():
-    """Weights, inertia at a constant speed, and a constant push give back what they took; and the foot goes its known way."""
+    """Weights, inertia at a constant speed, and a constant push give back what they took; and the
+    foot goes its known way.
+    """
     found = evaluate(load_case(CASES / "jansen_leg").scene, t=(0, 1.5, 7201))
     effort, angle = found.effort("O"), found.motion("O").value
     assert angle[-1] - angle[0] == pytest.approx(-2 * math.pi)
@@ -170,7 +210,9 @@ def test_a_leg_takes_no_work_over_a_turn():
 
 def test_engine_turns_twice_and_gives_work():
     solution = evaluate(load_case(CASES / "engine").scene)
-    assert solution.motion("main").value[-1] - solution.motion("main").value[0] == pytest.approx(4 * math.pi)
+    assert solution.motion("main").value[-1] - solution.motion("main").value[0] == pytest.approx(
+        4 * math.pi
+    )
     torque = _trapezoid(solution.effort("main"), solution.motion("main").value) / (4 * math.pi)
     assert -40.0 < torque < -5.0
 

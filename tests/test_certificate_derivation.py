@@ -1,4 +1,6 @@
-"""A derivation that is wrong throughout, so that all of its results agree with each other, fails the certificate all the same."""
+"""A derivation that is wrong throughout, so that all of its results agree with each other, fails
+the certificate all the same.
+"""
 
 from dataclasses import replace
 
@@ -23,7 +25,9 @@ def arm_in_space():
     m.revolute("O", m.ground, arm, axis=(0.0, 0.6, 0.8))
     m.force("follow", arm.tip, x=3.0, y=20.0, z=5.0, turning=True)
     m.torque("twist", arm, x=4.0, y=-7.0, z=2.0, turning=True)
-    m.line_load("wind", arm, x=2.0, y=(3.0, -9.0), z=lambda x: 1.0 + 30.0 * x**2, between=(0.1, 0.4))
+    m.line_load(
+        "wind", arm, x=2.0, y=(3.0, -9.0), z=lambda x: 1.0 + 30.0 * x**2, between=(0.1, 0.4)
+    )
     return Scene(m, {"O": motion.polynomial(0.3, 7.0, 2.0)}, t=(0.0, 0.9, 7))
 
 
@@ -35,7 +39,9 @@ def tool_on_a_path():
     m.revolute("B", near.tip, far)
     m.path("tool", far.tip)
     law = motion.harmonic(0.7, 0.1, 2.0), motion.harmonic(0.2, 0.1, 2.0, 0.5)
-    return Scene(m, {"tool": law}, drives=["A", "B"], t=(0.0, 0.5, 7), posture={"near": 1.2, "far": -0.9})
+    return Scene(
+        m, {"tool": law}, drives=["A", "B"], t=(0.0, 0.5, 7), posture={"near": 1.2, "far": -0.9}
+    )
 
 
 def loads(kind, change):
@@ -61,7 +67,13 @@ def law(change):
         def wrong(given, parameters):
             function = right(given, parameters)
             t, p = function.sx_in()
-            return ca.Function("motion", [t, p], change(*function(t, p)), ["t", "p"], ["d", "d_rate", "d_acceleration"])
+            return ca.Function(
+                "motion",
+                [t, p],
+                change(*function(t, p)),
+                ["t", "p"],
+                ["d", "d_rate", "d_acceleration"],
+            )
 
         monkeypatch.setattr(laws, "motion_function", wrong)
 
@@ -80,22 +92,78 @@ def lost(monkeypatch):
 
 
 WRONG = {
-    "spring, its sign": (every_joint_and_load, loads(Spring, lambda one: replace(one, stiffness=-one.stiffness)), "balance"),
-    "spring, its free length": (every_joint_and_load, loads(Spring, lambda one: replace(one, length=0.0)), "balance"),
-    "damper, a factor": (every_joint_and_load, loads(Spring, lambda one: replace(one, damping=one.damping * 1.001)), "balance"),
-    "force, its sign": (every_joint_and_load, loads(Force, lambda one: replace(one, y=-one.y)), "balance"),
-    "force, its axes": (every_joint_and_load, loads(Force, lambda one: replace(one, turning=not one.turning)), "balance"),
-    "torque, a factor": (every_joint_and_load, loads(Torque, lambda one: replace(one, value=one.value / 2)), "balance"),
-    "line load, its ends": (every_joint_and_load, loads(LineLoad, lambda one: replace(one, y=one.y[::-1])), "balance"),
-    "friction, a factor": (every_joint_and_load, loads(Friction, lambda one: replace(one, symbol=one.symbol / 2)), "balance"),
+    "spring, its sign": (
+        every_joint_and_load,
+        loads(Spring, lambda one: replace(one, stiffness=-one.stiffness)),
+        "balance",
+    ),
+    "spring, its free length": (
+        every_joint_and_load,
+        loads(Spring, lambda one: replace(one, length=0.0)),
+        "balance",
+    ),
+    "damper, a factor": (
+        every_joint_and_load,
+        loads(Spring, lambda one: replace(one, damping=one.damping * 1.001)),
+        "balance",
+    ),
+    "force, its sign": (
+        every_joint_and_load,
+        loads(Force, lambda one: replace(one, y=-one.y)),
+        "balance",
+    ),
+    "force, its axes": (
+        every_joint_and_load,
+        loads(Force, lambda one: replace(one, turning=not one.turning)),
+        "balance",
+    ),
+    "torque, a factor": (
+        every_joint_and_load,
+        loads(Torque, lambda one: replace(one, value=one.value / 2)),
+        "balance",
+    ),
+    "line load, its ends": (
+        every_joint_and_load,
+        loads(LineLoad, lambda one: replace(one, y=one.y[::-1])),
+        "balance",
+    ),
+    "friction, a factor": (
+        every_joint_and_load,
+        loads(Friction, lambda one: replace(one, symbol=one.symbol / 2)),
+        "balance",
+    ),
     "friction, its loss": (every_joint_and_load, lost, "friction"),
     "force in space": (arm_in_space, loads(Force, lambda one: replace(one, z=-one.z)), "balance"),
-    "torque in space": (arm_in_space, loads(Torque, lambda one: replace(one, turning=False)), "balance"),
-    "line load in space": (arm_in_space, loads(LineLoad, lambda one: replace(one, z=(*one.z[:2], 2 * one.z[2]))), "balance"),
-    "motion": (every_joint_and_load, law(lambda d, rate, change: [d * 1.001, rate * 1.001, change * 1.001]), "closure"),
-    "motion, its rate": (arm_in_space, law(lambda d, rate, change: [d, rate / 2, change]), "closure"),
-    "motion, its acceleration": (arm_in_space, law(lambda d, rate, change: [d, rate, change / 2]), "closure"),
-    "motion of a point": (tool_on_a_path, law(lambda d, rate, change: [d, rate * 1.001, change]), "closure"),
+    "torque in space": (
+        arm_in_space,
+        loads(Torque, lambda one: replace(one, turning=False)),
+        "balance",
+    ),
+    "line load in space": (
+        arm_in_space,
+        loads(LineLoad, lambda one: replace(one, z=(*one.z[:2], 2 * one.z[2]))),
+        "balance",
+    ),
+    "motion": (
+        every_joint_and_load,
+        law(lambda d, rate, change: [d * 1.001, rate * 1.001, change * 1.001]),
+        "closure",
+    ),
+    "motion, its rate": (
+        arm_in_space,
+        law(lambda d, rate, change: [d, rate / 2, change]),
+        "closure",
+    ),
+    "motion, its acceleration": (
+        arm_in_space,
+        law(lambda d, rate, change: [d, rate, change / 2]),
+        "closure",
+    ),
+    "motion of a point": (
+        tool_on_a_path,
+        law(lambda d, rate, change: [d, rate * 1.001, change]),
+        "closure",
+    ),
 }
 
 
@@ -112,7 +180,9 @@ def test_a_wrong_derivation_is_noticed(name, monkeypatch):
 @pytest.mark.parametrize("made", [arm_in_space, tool_on_a_path])
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_right_one_is_certified(made, precision):
-    assert evaluate(made(), precision=precision, backend="c" if precision == "single" else "vm").certified
+    assert evaluate(
+        made(), precision=precision, backend="c" if precision == "single" else "vm"
+    ).certified
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
@@ -126,19 +196,28 @@ def test_a_law_that_jumps_may_be_on_either_side(precision):
     m.torque("brake", arm, -5.0 * ca.sign(m.rate(joint)))
     m.torque("late", arm, ca.if_else(m.time > 0.3, 4.0, 0.0))
     scene = Scene(m, {"O": motion.harmonic(0.0, 0.3, 2.5)}, t=(0.0, 0.4, 17))
-    assert evaluate(scene, precision=precision, backend="c" if precision == "single" else "vm").certified
+    assert evaluate(
+        scene, precision=precision, backend="c" if precision == "single" else "vm"
+    ).certified
 
 
 def test_turns_that_few_instants_do_not_tell_are_no_gap():
-    """What a load has seen with its turns is reported without those between instants that are far apart."""
+    """What a load has seen with its turns is reported without those between instants that are far
+    apart.
+    """
     m = Mechanism("drag_link")
-    a, b, c = (m.link(name, length=length, mass=0.4) for name, length in zip("abc", (0.3, 0.35, 0.32), strict=True))
+    a, b, c = (
+        m.link(name, length=length, mass=0.4)
+        for name, length in zip("abc", (0.3, 0.35, 0.32), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
     joint = m.revolute("C", m.ground.at(0.1, 0.0), c)
     angle = m.coordinate(joint)
     m.torque("stiffer", c, -0.3 * angle - 0.01 * angle**3)
-    scene = Scene(m, {"O": motion.polynomial(0.2, 6.3)}, posture={"b": 0.9, "c": 1.5}, t=(0.0, 3.0, 101))
+    scene = Scene(
+        m, {"O": motion.polynomial(0.2, 6.3)}, posture={"b": 0.9, "c": 1.5}, t=(0.0, 3.0, 101)
+    )
     for grid in ((0.0, 2.0, 3), (2.7, 2.7, 1)):
         assert evaluate(scene, t=grid).certified

@@ -1,4 +1,6 @@
-"""A result of the plane with a wrong sign, or a wrong size, fails its certificate: whatever holds, loads, couples or rubs."""
+"""A result of the plane with a wrong sign, or a wrong size, fails its certificate: whatever holds,
+loads, couples or rubs.
+"""
 
 import math
 import pickle
@@ -21,9 +23,14 @@ FACTORS = (-1.0, 1.0 + 1e-4)
 
 
 def coupled():
-    """Wheels whose teeth rub, a constraint on a place, a direction and a coordinate, and a row in place of an effort."""
+    """Wheels whose teeth rub, a constraint on a place, a direction and a coordinate, and a row in
+    place of an effort.
+    """
     m = Mechanism("coupled")
-    first, second = (m.link(name, length=0.1, mass=1.0, centre=(0.01, 0.0), inertia=0.02) for name in ("first", "second"))
+    first, second = (
+        m.link(name, length=0.1, mass=1.0, centre=(0.01, 0.0), inertia=0.02)
+        for name in ("first", "second")
+    )
     m.revolute("A", m.ground, first)
     m.revolute("B", m.ground.at(0.3, 0.0), second)
     gears(m, "teeth", first, second, teeth=(20, 40), module=0.01, efficiency=0.97)
@@ -36,14 +43,19 @@ def coupled():
     m.constraint("tied", m.direction(pole) - 1.2 - 0.3 * x)
     m.force("wind", pole.at(0.3), x=11.0, y=3.0)
     return Scene(
-        m, {"A": motion.polynomial(0.2, 6.0), "P": motion.harmonic(0.1, 0.2, 3.0)}, t=(0.0, 1.0, 13), posture={"pole": 1.2}
+        m,
+        {"A": motion.polynomial(0.2, 6.0), "P": motion.harmonic(0.1, 0.2, 3.0)},
+        t=(0.0, 1.0, 13),
+        posture={"pole": 1.2},
     )
 
 
 def missed(scene, groups=GROUPS, **keywords):
     """The names of outputs that may be wrong by a factor, and the certificate does not notice."""
     solution = evaluate(scene, **keywords)
-    declared = declaration(scene, {name: one["value"] for name, one in solution.description["parameters"].items()})
+    declared = declaration(
+        scene, {name: one["value"] for name, one in solution.description["parameters"].items()}
+    )
     assert max(gaps.max() for gaps in certify(solution, declared).values()) < 1e-9
     largest = {}
     for output, values in solution.outputs.items():
@@ -56,7 +68,9 @@ def missed(scene, groups=GROUPS, **keywords):
         if not np.nanmax(np.abs(values)) > 0.05 * largest[output.group, solution.unit(output)]:
             continue
         # A motion run backwards needs the same forces, where none depends on rates.
-        for factor in FACTORS[1:] if output.group == "motion" and output.member == "rate" else FACTORS:
+        for factor in (
+            FACTORS[1:] if output.group == "motion" and output.member == "rate" else FACTORS
+        ):
             tried += 1
             residuals = certify(solution, declared, {output: factor * values})
             if not max(gaps.max() for gaps in residuals.values()) > 1e-9:
@@ -73,7 +87,9 @@ def test_every_kind_is_noticed(made):
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", [0, 3, 4, 5, 6, 7, 8])
 def test_whatever_can_be_declared_is_noticed(seed):
-    """Of random mechanisms what is not there whatever moves: motions of what has no mass need no force."""
+    """Of random mechanisms what is not there whatever moves: motions of what has no mass need no
+    force.
+    """
     drawn = draw(seed)
     keywords = {"t": (*drawn.grid[:2], 5), "parameters": drawn.keywords.get("parameters")}
     assert missed(drawn.scene(), FORCES, **keywords) == []

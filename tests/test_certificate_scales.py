@@ -1,4 +1,6 @@
-"""What a residual is large beside: right results pass, however light, small, far or loaded; a wrong number fails all the same."""
+"""What a residual is large beside: right results pass, however light, small, far or loaded; a wrong
+number fails all the same.
+"""
 
 import math
 
@@ -37,7 +39,13 @@ def sprung(stiffness=1e10, gap=1e-7):
     m = Mechanism("sprung")
     link = m.link("link", length=1.0, mass=1.0)
     m.revolute("O", m.ground, link)
-    m.spring("spring", m.ground.at(math.cos(0.3) - gap, math.sin(0.3) + gap), link.tip, stiffness=stiffness, length=0.0)
+    m.spring(
+        "spring",
+        m.ground.at(math.cos(0.3) - gap, math.sin(0.3) + gap),
+        link.tip,
+        stiffness=stiffness,
+        length=0.0,
+    )
     return Scene(m, {"O": harmonic(0.3, 1e-6, 1.0, 0.1)}, t=(0.0, 1.0, 61))
 
 
@@ -46,7 +54,11 @@ def falling():
     m = Mechanism("falling")
     m.prismatic("way", m.ground, m.point_mass("stone", 1.0), axis=(0.6, 0.8))
     m.prismatic("down", m.ground.at(1, 0), m.point_mass("other", 3.0), axis=(0.0, 1.0))
-    return Scene(m, {"way": polynomial(0.1, 0.3, 0.1), "down": polynomial(0.1, 0.3, -9.81 / 2)}, t=(0.0, 1.0, 61))
+    return Scene(
+        m,
+        {"way": polynomial(0.1, 0.3, 0.1), "down": polynomial(0.1, 0.3, -9.81 / 2)},
+        t=(0.0, 1.0, 61),
+    )
 
 
 def flywheel(gravity):
@@ -82,9 +94,18 @@ def test_what_is_right_passes(name, precision):
     if precision == "single" and "200 kg" in name:
         pytest.skip("singles end at 1e38")
     scene = made()
-    solution = evaluate(scene, parameters=parameters, precision=precision, backend="c" if precision == "single" else "vm")
+    solution = evaluate(
+        scene,
+        parameters=parameters,
+        precision=precision,
+        backend="c" if precision == "single" else "vm",
+    )
     assert solution.certified
-    found = {name: float(values.max()) for name, values in solution.certificate.items() if name != "condition"}
+    found = {
+        name: float(values.max())
+        for name, values in solution.certificate.items()
+        if name != "condition"
+    }
     assert max(found.values()) < solution.tolerance / 10, found
 
 
@@ -96,7 +117,9 @@ def test_far_from_the_origin_right_results_pass():
 def wrong(scene, solution, name):
     """The largest residuals of a solution with one output that is off by a millionth."""
     values = solution.series[name] * MILLIONTH
-    residuals = certify(solution, declaration(scene, scene.mechanism.values(None)), {Output.of(name): values})
+    residuals = certify(
+        solution, declaration(scene, scene.mechanism.values(None)), {Output.of(name): values}
+    )
     return {residual: float(gaps.max()) for residual, gaps in residuals.items()}
 
 
@@ -135,7 +158,11 @@ def test_a_millionth_of_any_large_force_fails(kind):
     solution = evaluate(scene, backend="vm")
     peaks = {name: np.max(np.abs(values)) for name, values in solution.series.items()}
     largest = max(peak for name, peak in peaks.items() if name.startswith("reaction:"))
-    forces = [name for name in peaks if name.startswith(("effort:", "reaction:", "load:")) and peaks[name] > largest / 100]
+    forces = [
+        name
+        for name in peaks
+        if name.startswith(("effort:", "reaction:", "load:")) and peaks[name] > largest / 100
+    ]
     assert len(forces) > 4
     for name in forces:
         assert max(wrong(scene, solution, name).values()) > 1e-9, name

@@ -1,4 +1,6 @@
-"""Python's own choices between symbols, wherever a user's function is called: the error says what makes them instead."""
+"""Python's own choices between symbols, wherever a user's function is called: the error says what
+makes them instead.
+"""
 
 import pytest
 
@@ -33,18 +35,25 @@ def loaded(choice):
 def lifted(choice):
     m = Mechanism("m")
     disc, stem = m.link("disc", length=0.1, mass=1.0), m.link("stem", length=0.1, mass=1.0)
-    main, guide = m.revolute("main", m.ground, disc), m.prismatic("guide", m.ground, stem, axis=(0, 1), angle="90 deg")
+    main, guide = (
+        m.revolute("main", m.ground, disc),
+        m.prismatic("guide", m.ground, stem, axis=(0, 1), angle="90 deg"),
+    )
     elements.disc_cam(m, "cam", main, guide, choice, base_radius=0.03)
 
 
 @pytest.mark.parametrize("called", [moved, loaded, lifted], ids=lambda called: called.__name__)
 @pytest.mark.parametrize("choice", CHOICES)
 def test_a_function_that_chooses_is_told_what_does(called, choice):
-    with pytest.raises(LagrangeCasadiError, match=r"casadi\.if_else.* casadi\.fmin and fmax for 'min' and 'max'"):
+    with pytest.raises(
+        LagrangeCasadiError, match=r"casadi\.if_else.* casadi\.fmin and fmax for 'min' and 'max'"
+    ):
         called(CHOICES[choice])
 
 
-@pytest.mark.parametrize("words", ["max(0, m.rate(pin))", "m.rate(pin) if m.rate(pin) > 0 else 0", "m.time > 1 and 2"])
+@pytest.mark.parametrize(
+    "words", ["max(0, m.rate(pin))", "m.rate(pin) if m.rate(pin) > 0 else 0", "m.time > 1 and 2"]
+)
 def test_a_case_that_chooses_is_told_what_does(words, tmp_path):
     (tmp_path / "case.py").write_text(
         "from lagrange_casadi import Mechanism\n"
@@ -53,5 +62,7 @@ def test_a_case_that_chooses_is_told_what_does(words, tmp_path):
         "    pin = m.revolute('O', m.ground, m.link('a', length=0.1, mass=1.0))\n"
         f"    m.torque('brake', m.links['a'], {words})\n"
     )
-    with pytest.raises(LagrangeCasadiError, match=r"line 5.*casadi\.fmin and fmax for 'min' and 'max'"):
+    with pytest.raises(
+        LagrangeCasadiError, match=r"line 5.*casadi\.fmin and fmax for 'min' and 'max'"
+    ):
         load_case(tmp_path)

@@ -1,4 +1,6 @@
-"""Bounds of what a function gives hold for all that is put into it; what they say is off every kink has none."""
+"""Bounds of what a function gives hold for all that is put into it; what they say is off every kink
+has none.
+"""
 
 import casadi as ca
 import numpy as np
@@ -27,7 +29,9 @@ def held(seeds):
                 continue
             told += 1
             values = function(ca.DM([low, high, *r.uniform(low, high, 60)]).T, k).full()
-            assert ((least <= values) & (values <= most)).all(), f"seed {seed}: from {low} to {high} with k = {k}"
+            assert ((least <= values) & (values <= most)).all(), (
+                f"seed {seed}: from {low} to {high} with k = {k}"
+            )
     return told / (4 * len(seeds))
 
 
@@ -54,7 +58,9 @@ def clear_is_smooth(seeds):
             np.linspace(start, start + 10 ** r.uniform(-2, 0), 1001)[None, None],
             np.array([[float(r.choice([0.0, 0.3, 1.0]))]]),
         )
-        if not smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, lambda _, paths=paths: paths)[0]:
+        if not smooth.clearance.near(
+            paths.min(axis=2), paths.max(axis=2), p, lambda _, paths=paths: paths
+        )[0]:
             many += 1
             assert not smooth.broken(paths, p)[0], f"seed {seed}"
     return many / len(seeds)

@@ -25,7 +25,10 @@ CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 
 def test_run_writes_the_file_and_the_figures(here, capsys):
     assert main(["run", str(CASE)]) == 0
-    assert sorted(path.name for path in here.iterdir()) == ["slider_crank.h5", "slider_crank_figures"]
+    assert sorted(path.name for path in here.iterdir()) == [
+        "slider_crank.h5",
+        "slider_crank_figures",
+    ]
     figures = sorted(path.stem for path in (here / "slider_crank_figures").glob("*.png"))
     assert [name[:5] for name in figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
     assert figures[9:] == ["mechanism", "rod_maps"]
@@ -33,12 +36,26 @@ def test_run_writes_the_file_and_the_figures(here, capsys):
     assert sorted(re.findall(r'<img src="(\w+)\.png"', index)) == figures
     out = capsys.readouterr().out
     assert "wrote slider_crank.h5 and the figures in slider_crank_figures/" in out
-    assert re.search(r"section:rod:bending              0\.941724 \+- \de-1[56] N m  at t = 0\.0692 s, xi/l = 0\.4527", out)
+    assert re.search(
+        r"section:rod:bending              0\.941724 \+- \de-1[56] N m  at t = 0\.0692 s, xi/l ="
+        r" 0\.4527",
+        out,
+    )
 
 
 def test_run_refines_peaks(here, capsys):
     """The report changes, the file does not."""
-    arguments = ["run", str(CASE), "--t", "0:0.08:41", "--no-figures", "--want", "effort", "--want", "section:rod"]
+    arguments = [
+        "run",
+        str(CASE),
+        "--t",
+        "0:0.08:41",
+        "--no-figures",
+        "--want",
+        "effort",
+        "--want",
+        "section:rod",
+    ]
     assert main([*arguments, "--out", "one.h5"]) == 0
     assert "ratios xi/l, backend" in (plain := capsys.readouterr().out)
     assert main([*arguments, "--out", "two.h5", "--refine-peaks"]) == 0
@@ -62,8 +79,22 @@ def test_a_peak_that_is_not_told_is_no_number(slider_crank):
 
 @pytest.mark.quick
 def test_run_takes_options(here):
-    arguments = ["--set", "l=0.25", "--set", "m3=0.2", "--t", "0:0.04:5", "--xi", "0:1:3", "--want", "section:rod"]
-    assert main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"]) == 0
+    arguments = [
+        "--set",
+        "l=0.25",
+        "--set",
+        "m3=0.2",
+        "--t",
+        "0:0.04:5",
+        "--xi",
+        "0:1:3",
+        "--want",
+        "section:rod",
+    ]
+    assert (
+        main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"])
+        == 0
+    )
     assert [path.name for path in here.iterdir()] == ["x.h5"]
     with h5py.File("x.h5") as h:
         assert set(h) == {"t", "xi", "section", "certificate"}
@@ -75,7 +106,22 @@ def test_run_takes_options(here):
 @pytest.mark.quick
 def test_run_goes_over_a_drive(here, capsys):
     """Angles in degrees where they are typed and where they are shown."""
-    assert main(["run", str(CASE), "--over", "O = 0:360deg:37", "--want", "effort", "--out", "x.h5", "--no-figures"]) == 0
+    assert (
+        main(
+            [
+                "run",
+                str(CASE),
+                "--over",
+                "O = 0:360deg:37",
+                "--want",
+                "effort",
+                "--out",
+                "x.h5",
+                "--no-figures",
+            ]
+        )
+        == 0
+    )
     assert re.search(r"effort:O .* N m  at O = 30 deg, t = 0\.00666", capsys.readouterr().out)
     with h5py.File("x.h5") as h:
         np.testing.assert_allclose(h["over"], math.tau * np.arange(37) / 36, rtol=1e-15)
@@ -86,7 +132,9 @@ def test_run_goes_over_a_drive(here, capsys):
 def test_run_replaces_an_older_file(here):
     Path("x.h5").touch()
     for count in (5, 9):
-        assert main(["run", str(CASE), "--t", f"0:0.04:{count}", "--out", "x.h5", "--no-figures"]) == 0
+        assert (
+            main(["run", str(CASE), "--t", f"0:0.04:{count}", "--out", "x.h5", "--no-figures"]) == 0
+        )
         assert load("x.h5").t.size == count
     assert main(["check", "x.h5"]) == 0
 
@@ -103,8 +151,27 @@ def test_cases_of_two_versions_write_files_of_their_own(here):
         folder.mkdir(parents=True)
         (folder / "case.py").write_text(PLAIN)
         assert main(["run", str(folder), "--t", "0:0.04:5", "--want", "effort"]) == 0
-        assert main(["sweep", str(folder), "--grid", "l=0.2,0.3", "--want", "effort", "--t", "0:0.04:5", "--quiet"]) == 0
-    own = [f"press_{version}{end}" for version in ("1.2", "1.3") for end in (".h5", "_figures", "_sweep.h5")]
+        assert (
+            main(
+                [
+                    "sweep",
+                    str(folder),
+                    "--grid",
+                    "l=0.2,0.3",
+                    "--want",
+                    "effort",
+                    "--t",
+                    "0:0.04:5",
+                    "--quiet",
+                ]
+            )
+            == 0
+        )
+    own = [
+        f"press_{version}{end}"
+        for version in ("1.2", "1.3")
+        for end in (".h5", "_figures", "_sweep.h5")
+    ]
     assert sorted(os.listdir(here)) == ["cases", *own]
 
 
@@ -112,16 +179,40 @@ def test_cases_of_two_versions_write_files_of_their_own(here):
 def test_figures_have_a_place_of_their_own(here, capfd, figures):
     (here / "y").mkdir()
     assert main(["run", str(CASE), "--t", "0:0.04:5", "--out", "x.h5", "--figures", figures]) == 2
-    assert capfd.readouterr() == ("", f"error: --figures {Path(figures)}: expected another place than the file's\n")
+    assert capfd.readouterr() == (
+        "",
+        f"error: --figures {Path(figures)}: expected another place than the file's\n",
+    )
     assert os.listdir(here) == ["y"]
 
 
 def test_what_is_in_the_way_of_a_figure_is_told_before_the_file_is_there(here, capfd):
     (here / "figures" / "effort_O.png").mkdir(parents=True)
     (here / "case.py").write_text(PLAIN)
-    assert main(["run", "case.py", "--t", "0:0.04:5", "--want", "effort", "--out", "x.h5", "--figures", "figures"]) == 2
-    assert capfd.readouterr().err.startswith("error: cannot draw into figures: it holds other files, 'effort_O.png' among")
-    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == ["case.py", "figures"]
+    assert (
+        main(
+            [
+                "run",
+                "case.py",
+                "--t",
+                "0:0.04:5",
+                "--want",
+                "effort",
+                "--out",
+                "x.h5",
+                "--figures",
+                "figures",
+            ]
+        )
+        == 2
+    )
+    assert capfd.readouterr().err.startswith(
+        "error: cannot draw into figures: it holds other files, 'effort_O.png' among"
+    )
+    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == [
+        "case.py",
+        "figures",
+    ]
     assert os.listdir(here / "figures") == ["effort_O.png"]
 
 
@@ -137,7 +228,10 @@ def figures(): return list({{type(spec): spec for spec in CASE.figures}}.values(
 def test_plot_draws_what_run_drew(here):
     """Of the case's own figures some: one of each kind."""
     (here / "case.py").write_text(FEW_FIGURES.format(case=str(CASE)))
-    assert main(["run", "case.py", "--t", "0:0.08:41", "--out", "slider_crank.h5", "--figures", "one"]) == 0
+    assert (
+        main(["run", "case.py", "--t", "0:0.08:41", "--out", "slider_crank.h5", "--figures", "one"])
+        == 0
+    )
     assert len(list(Path("one").glob("*.png"))) == 4
     assert main(["plot", "slider_crank.h5", "--out", "two"]) == 0
     for path in Path("one").iterdir():
@@ -149,7 +243,9 @@ def test_info_of_a_case_counts_instructions(capsys):
     everything = capsys.readouterr().out
     assert main(["info", str(CASE), "--want", "effort"]) == 0
     effort = capsys.readouterr().out
-    counts = [int(text.split("instructions an instant: ")[1].split()[0]) for text in (effort, everything)]
+    counts = [
+        int(text.split("instructions an instant: ")[1].split()[0]) for text in (effort, everything)
+    ]
     assert counts[0] < counts[1]
     assert "outputs: all, effort, motion, reaction:O" in everything
     assert "loops closed by: guide (closed form)" in everything
@@ -178,18 +274,22 @@ BROKEN = {
     "raises.py": "1 / 0\n",
     "empty.py": "x = 1\n",
     "leaves.py": "raise SystemExit(3)\n",
-    "draws.py": f"""
+    "draws.py": (
+        f"""
 from lagrange_casadi import load_case
 def scene(): return load_case({str(CASE)!r}).scene
 def figures(): return 3
-""",
-    "heavy.py": """
+"""
+    ),
+    "heavy.py": (
+        """
 from lagrange_casadi import Mechanism, Scene, motion
 def scene():
     m = Mechanism("heavy")
     m.revolute("J", m.ground, m.link("a", length=1, mass=m.parameter("m", 1.0, "kg", low=-10)))
     return Scene(m, {"J": motion.polynomial(0, 1)})
-""",
+"""
+    ),
 }
 
 
@@ -198,27 +298,66 @@ def scene():
     ("arguments", "status", "says"),
     [
         (["run", "CASE", "--set", "R=1"], 2, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
-        (["run", "CASE", "--set", "r=big"], 2, "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'"),
+        (
+            ["run", "CASE", "--set", "r=big"],
+            2,
+            "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'",
+        ),
         (["run", "CASE", "--set", "r"], 2, "expected NAME=VALUE"),
         (["run", "CASE", "--set", "r=nan"], 2, "parameter 'r' must be a finite number, got nan"),
         (["run", "CASE", "--set", "r=0.1", "--set", "r=0.2"], 2, "parameter 'r' is set twice"),
-        (["run", "CASE", "--set", "m2=-1"], 2, "parameter 'm2' = -1 kg is out of its range [0, inf]"),
+        (
+            ["run", "CASE", "--set", "m2=-1"],
+            2,
+            "parameter 'm2' = -1 kg is out of its range [0, inf]",
+        ),
         (
             ["run", "CASE", "--set", "l=-1", "--set", "r=-2"],
             2,
-            "'l' = -1 m is out of its range [0, inf]; parameter 'r' = -2 m is out of its range [0, inf]",
+            (
+                "'l' = -1 m is out of its range [0, inf]; parameter 'r' = -2 m is out of its range"
+                " [0, inf]"
+            ),
         ),
         (["run", "CASE", "--set", "l=0"], 2, "link 'rod': length must be positive, got 0 m"),
-        (["run", "CASE", "--set", "r=0.3"], 1, "closed by joint 'guide' cannot be closed at t = 0.0093 s, where O = 0.73"),
-        (["run", "CASE", "--set", "m1=0", "--set", "m2=0", "--set", "m3=0"], 2, "'slider_crank' is massless"),
+        (
+            ["run", "CASE", "--set", "r=0.3"],
+            1,
+            "closed by joint 'guide' cannot be closed at t = 0.0093 s, where O = 0.73",
+        ),
+        (
+            ["run", "CASE", "--set", "m1=0", "--set", "m2=0", "--set", "m3=0"],
+            2,
+            "'slider_crank' is massless",
+        ),
         (["run", "heavy.py", "--set", "m=-1"], 2, "link 'a': mass must not be negative, got -1 kg"),
-        (["run", "CASE", "--want", "torque"], 2, "unknown output 'torque'; valid: all, effort, motion, reaction:O"),
+        (
+            ["run", "CASE", "--want", "torque"],
+            2,
+            "unknown output 'torque'; valid: all, effort, motion, reaction:O",
+        ),
         (["run", "CASE", "--want", "reaction:X"], 2, "unknown output 'reaction:X'"),
-        (["run", "CASE", "--want", "section:slider"], 2, "'slider' is not a link and has no sections"),
-        (["run", "CASE", "--t", "0:1:0"], 2, "t: COUNT must be a whole number from 1 to 2^63 - 1, got 0"),
-        (["run", "CASE", "--t", "0:1"], 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'"),
+        (
+            ["run", "CASE", "--want", "section:slider"],
+            2,
+            "'slider' is not a link and has no sections",
+        ),
+        (
+            ["run", "CASE", "--t", "0:1:0"],
+            2,
+            "t: COUNT must be a whole number from 1 to 2^63 - 1, got 0",
+        ),
+        (
+            ["run", "CASE", "--t", "0:1"],
+            2,
+            "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'",
+        ),
         (["run", "CASE", "--t", "1:0:5"], 2, "t: STOP must be after START"),
-        (["run", "CASE", "--over", "O=0:1"], 2, "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1'"),
+        (
+            ["run", "CASE", "--over", "O=0:1"],
+            2,
+            "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1'",
+        ),
         (["run", "CASE", "--over", "A=0:1:5"], 2, "unknown driven joint in over 'A'; valid: O"),
         (
             ["run", "CASE", "--over", "O=0:1lap:5"],
@@ -226,17 +365,32 @@ def scene():
             "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1lap:5'",
         ),
         (["run", "CASE", "--over", "O=0:1:5", "--t", "0:1:5"], 2, "t and over exclude each other"),
-        (["run", "CASE", "--over", "O=1:0:5"], 2, "the motion of joint 'O' goes the other way than from 1 rad"),
+        (
+            ["run", "CASE", "--over", "O=1:0:5"],
+            2,
+            "the motion of joint 'O' goes the other way than from 1 rad",
+        ),
         (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
         (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),
-        (["run", "CASE", "--out", "nowhere/x.h5"], 2, "cannot write nowhere/x.h5: folder nowhere does not exist"),
+        (
+            ["run", "CASE", "--out", "nowhere/x.h5"],
+            2,
+            "cannot write nowhere/x.h5: folder nowhere does not exist",
+        ),
         (["run", "CASE", "--out", "."], 2, "expected a name that ends in .h5"),
         (["run", "CASE", "--figures", "raises.py"], 2, "it is a file, not a folder"),
         (["run", "nothing"], 2, "case nothing: no such file"),
         (["run", "raises.py"], 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
         (["run", "empty.py"], 2, "case empty.py: has no function scene()"),
         (["run"], 2, "Missing argument 'CASE'"),
-        (["walk"], 2, "unknown command 'walk'; valid: run, sweep, best, table, trade, export, plot, report, animate, info, check"),
+        (
+            ["walk"],
+            2,
+            (
+                "unknown command 'walk'; valid: run, sweep, best, table, trade, export, plot,"
+                " report, animate, info, check"
+            ),
+        ),
         (["run", "CASE", "--fast"], 2, "No such option"),
         (["run", "CASE", "--figures", "a", "--no-figures"], 2, "exclude each other"),
         (["run", "CASE", "--out", "m.txt"], 2, "expected a name that ends in .h5"),
@@ -250,12 +404,32 @@ def scene():
         (["info", "x.h5", "--want", "effort"], 2, "--want goes with a case"),
         (["export", "CASE"], 2, "Missing option '--out'"),
         (["export", "CASE", "--out", "raises.py"], 2, "it is a file, not a folder"),
-        (["export", "CASE", "--out", "."], 2, "cannot export into .: it holds other files, 'draws.py' among them"),
-        (["export", "CASE", "--out", "c", "--precision", "half"], 2, "'half' is not one of 'double', 'single'"),
+        (
+            ["export", "CASE", "--out", "."],
+            2,
+            "cannot export into .: it holds other files, 'draws.py' among them",
+        ),
+        (
+            ["export", "CASE", "--out", "c", "--precision", "half"],
+            2,
+            "'half' is not one of 'double', 'single'",
+        ),
         (["export", "CASE", "--out", "c", "--want", "torque"], 2, "unknown output 'torque'"),
-        (["export", "CASE", "--out", "c", "--set", "r=0.3"], 1, "closed by joint 'guide' cannot be closed"),
-        (["export", "CASE", "--out", "c", "--table", "64", "--newton", "2"], 2, "newton and table exclude each other"),
-        (["export", "CASE", "--out", "c", "--table", "4096", "--precision", "single"], 1, "and the limit is 64000"),
+        (
+            ["export", "CASE", "--out", "c", "--set", "r=0.3"],
+            1,
+            "closed by joint 'guide' cannot be closed",
+        ),
+        (
+            ["export", "CASE", "--out", "c", "--table", "64", "--newton", "2"],
+            2,
+            "newton and table exclude each other",
+        ),
+        (
+            ["export", "CASE", "--out", "c", "--table", "4096", "--precision", "single"],
+            1,
+            "and the limit is 64000",
+        ),
         (["export", "CASE", "--out", "nowhere/c"], 2, "folder nowhere does not exist"),
         (["export", "CASE", "--out", "raises.py/c"], 2, "folder raises.py is a file"),
         (["export", "CASE", "--out", "a" * 300], 2, "File name too long"),
@@ -285,7 +459,10 @@ def test_export_says_what_it_wrote_and_how_to_try_it(here, capfd):
     assert out.splitlines() == [
         "name float is called float_mechanism in C",
         "parameter int is called int_ in C",
-        "wrote c: float_mechanism.h, float_mechanism.c and what goes with them; 4 inputs, 1 outputs",
+        (
+            "wrote c: float_mechanism.h, float_mechanism.c and what goes with them; 4 inputs, 1"
+            " outputs"
+        ),
         "try it: cd c && cmake -B build && cmake --build build && ctest --test-dir build",
     ]
 
@@ -303,7 +480,9 @@ def test_export_to_a_full_disk_is_one_line(here, capfd, monkeypatch):
 def test_a_failing_compiler_is_one_line(here, capfd, monkeypatch, tmp_path_factory):
     folder = tmp_path_factory.mktemp("cc")
     program = folder / "cc"
-    program.write_text('#!/bin/sh\ntest "$1" = --version && exit 0\necho "x.c:1: error: no" >&2\nexit 1\n')
+    program.write_text(
+        '#!/bin/sh\ntest "$1" = --version && exit 0\necho "x.c:1: error: no" >&2\nexit 1\n'
+    )
     program.chmod(0o755)
     monkeypatch.setenv("CC", str(program))
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
@@ -339,7 +518,17 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     """A real interrupt of a real process, which would compute for a long while."""
     case = tmp_path_factory.mktemp("slow") / "slow.py"
     case.write_text(SLOW.format(case=str(CASE)))
-    command = [sys.executable, "-m", "lagrange_casadi", "run", str(case), "--t", "0:0.08:10000000", "--backend", "vm"]
+    command = [
+        sys.executable,
+        "-m",
+        "lagrange_casadi",
+        "run",
+        str(case),
+        "--t",
+        "0:0.08:10000000",
+        "--backend",
+        "vm",
+    ]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"
     time.sleep(delay)
@@ -349,7 +538,11 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     finally:
         process.kill()
     assert process.returncode == 130
-    assert re.fullmatch(r"(note: 10 000 000 instants take about .*\n)?error: interrupted; nothing was left half-written\n", err)
+    assert re.fullmatch(
+        r"(note: 10 000 000 instants take about .*\n)?error: interrupted; nothing was left"
+        r" half-written\n",
+        err,
+    )
     assert out == ""
     assert os.listdir(here) == []
 
@@ -357,7 +550,9 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("size", [20_000, 400_000, 2_000_000])
 def test_a_file_that_cannot_grow_is_one_line(released, here, size):
-    """A real write that fails, at several places of the file; the system's limit stands for a full disk."""
+    """A real write that fails, at several places of the file; the system's limit stands for a full
+    disk.
+    """
 
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

@@ -1,4 +1,6 @@
-"""The commands ``cases`` and ``new``: what comes with the package can be found by name, copied, and begun with."""
+"""The commands ``cases`` and ``new``: what comes with the package can be found by name, copied, and
+begun with.
+"""
 
 import errno
 import filecmp
@@ -30,11 +32,13 @@ def test_the_cases_are_listed_with_what_they_say_of_themselves(capfd):
 def test_copies_are_whole_and_run(here, capfd):
     assert main(["cases", "--copy", "mine"]) == 0
     assert (
-        capfd.readouterr().out
-        == f"copied {len(NAMES)} cases: begin with lagrange-casadi run {os.path.join('mine', 'andrews_squeezer')}\n"
+        capfd.readouterr().out == f"copied {len(NAMES)} cases: begin with lagrange-casadi run"
+        f" {os.path.join('mine', 'andrews_squeezer')}\n"
     )
     for name in NAMES:
-        assert not filecmp.cmpfiles(CASES / name, here / "mine" / name, ["case.py", "README.md"], shallow=False)[1:][0]
+        assert not filecmp.cmpfiles(
+            CASES / name, here / "mine" / name, ["case.py", "README.md"], shallow=False
+        )[1:][0]
     assert evaluate(load_case(here / "mine" / "arm").scene, t=(0, 0.1, 3)).certified
 
 
@@ -67,10 +71,18 @@ def test_what_begins_a_case_can_be_pasted(here, capfd):
 
 def test_without_them_it_says_so(monkeypatch, tmp_path, capfd):
     monkeypatch.setattr("importlib.metadata.files", lambda name: None)
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", tmp_path)
+    monkeypatch.setattr(
+        importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", tmp_path
+    )
     assert main(["cases"]) == 2
-    assert capfd.readouterr().err == "error: the cases were not installed with the package: they are in its repository\n"
-    with pytest.raises(LagrangeCasadiError, match=r"no such file; expected a folder with a case\.py, or a Python file$"):
+    assert (
+        capfd.readouterr().err
+        == "error: the cases were not installed with the package: they are in its repository\n"
+    )
+    with pytest.raises(
+        LagrangeCasadiError,
+        match=r"no such file; expected a folder with a case\.py, or a Python file$",
+    ):
         load_case("four_bar")
 
 
@@ -79,7 +91,9 @@ def test_a_clone_has_its_own_cases_not_those_of_its_installation(monkeypatch, tm
     clone = tmp_path / "clone"
     (clone / "cases" / "four_bar").mkdir(parents=True)
     (clone / "cases" / "four_bar" / "case.py").write_text("")
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", clone / "cases")
+    monkeypatch.setattr(
+        importlib.import_module("lagrange_casadi.shipped_cases"), "_IN_A_CLONE", clone / "cases"
+    )
     installed = tmp_path / "share" / "cases" / "arm" / "case.py"
     installed.parent.mkdir(parents=True)
     installed.write_text("")
@@ -92,14 +106,20 @@ def test_a_clone_has_its_own_cases_not_those_of_its_installation(monkeypatch, tm
 
 @pytest.mark.parametrize(
     "arguments",
-    [["run", "NAME", "--no-figures", "--want", "effort"], ["info", "NAME"], ["export", "NAME", "--out", "c", "--want", "effort"]],
+    [
+        ["run", "NAME", "--no-figures", "--want", "effort"],
+        ["info", "NAME"],
+        ["export", "NAME", "--out", "c", "--want", "effort"],
+    ],
 )
 def test_commands_find_a_case_by_its_name(here, capfd, arguments):
     assert main([word.replace("NAME", "four_bar") for word in arguments]) == 0
     by_name, wrote = capfd.readouterr(), sorted(os.listdir())
     assert main([word.replace("NAME", str(CASES / "four_bar")) for word in arguments]) == 0
     told = capfd.readouterr()
-    assert [line for line in told.out.splitlines() if not line.startswith("replaced")] == by_name.out.splitlines()
+    assert [
+        line for line in told.out.splitlines() if not line.startswith("replaced")
+    ] == by_name.out.splitlines()
     assert told.err == by_name.err
     assert sorted(os.listdir()) == wrote
 
@@ -116,7 +136,10 @@ def test_what_is_here_comes_before_what_comes_with_the_package(here):
 
 
 def test_a_name_that_none_bears_is_told_those_there_are():
-    with pytest.raises(LagrangeCasadiError, match=f"case five_bar: no such file; .* the package: {', '.join(NAMES)}$"):
+    with pytest.raises(
+        LagrangeCasadiError,
+        match=f"case five_bar: no such file; .* the package: {', '.join(NAMES)}$",
+    ):
         load_case("five_bar")
 
 
@@ -125,11 +148,17 @@ def test_a_case_of_ones_own_begins_as_one_that_runs(here, capfd, name):
     assert main(["new", "own/../my-own", "--like", name]) == 2  # for there is no folder own
     capfd.readouterr()
     assert main(["new", "my-own", "--like", name]) == 0
-    assert capfd.readouterr().out == f"wrote {os.path.join('my-own', 'case.py')}: change it, then lagrange-casadi run my-own\n"
+    assert (
+        capfd.readouterr().out
+        == f"wrote {os.path.join('my-own', 'case.py')}: change it, then lagrange-casadi run"
+        " my-own\n"
+    )
     own, like = load_case("my-own"), load_case(name)
     assert own.scene.mechanism.name == "my_own"
     assert own.name == "my-own"
-    assert (here / "my-own" / "case.py").read_text().replace("my_own", name) == (like.path).read_text()
+    assert (here / "my-own" / "case.py").read_text().replace("my_own", name) == (
+        like.path
+    ).read_text()
     beside = {file.name for file in like.path.parent.iterdir() if file.is_file()} - {"README.md"}
     assert set(os.listdir("my-own")) - {"__pycache__"} == beside >= {"case.py"}
 

@@ -35,7 +35,7 @@ def scene():
     motions = {"O": motion.harmonic(0.5, 0.25, 2.0), "way": motion.samples([0, 0.2, 0.4, 0.7, 1], [0, 0.1, 0.2, 0.35, 0.5])}
     motions["turn"] = motion.samples([0, 0.2, 0.4, 0.7, 1], [0, -1, -2, -3.5, -5])
     return Scene(m, motions, wanted=["effort", "section"], t=(0, 1, 11), posture={"rod": -0.0}, assembly={"k": 20})
-"""
+"""  # noqa: E501
 
 
 def test_info_shows_the_whole_scene(here, capsys):
@@ -44,16 +44,25 @@ def test_info_shows_the_whole_scene(here, capsys):
     lines = capsys.readouterr().out.splitlines()
     for line in (
         "  prismatic joint guide: ground (0, 0) - block (0, 0), along (1, 0) of ground",
-        "  prismatic joint way: ground (0, 0.2) - hub (0, 0), along (0, 1) of ground, at 1.5708 rad (90 deg), driven",
+        (
+            "  prismatic joint way: ground (0, 0.2) - hub (0, 0), along (0, 1) of ground, at 1.5708"
+            " rad (90 deg), driven"
+        ),
         "  gravity: (0, -9.81) m/s^2",
         "freedoms: 3, driven at O, way, turn",
         "  drive way: a spline through 5 samples from 0 to 1 s; from 0 m to 0.5 m",
         "load push: force on block, x = (-(k*O)) N, y = 2.5 N, in ground axes",
         "load wind: force on rod, x = 1 N, y = 0 N, in the axes of rod",
         "load brake: torque on pendulum against crank, (-0.1*P_rate) N m",
-        "load mount: spring between ground and rod, stiffness k N/m, free length 0.25 m, damping 3 N s/m",
+        (
+            "load mount: spring between ground and rod, stiffness k N/m, free length 0.25 m,"
+            " damping 3 N s/m"
+        ),
         "constraint mesh: 0 = (P-(-0.5*O))",
-        "non-holonomic constraint rolling: 0 = (hub_y_rate+(0.1*turn_rate)); it moves joint turn, without an effort",
+        (
+            "non-holonomic constraint rolling: 0 = (hub_y_rate+(0.1*turn_rate)); it moves joint"
+            " turn, without an effort"
+        ),
         "posture: rod = 0 rad (0 deg)",
         "assembled first with: k = 20",
         "wanted: effort, section",
@@ -66,7 +75,9 @@ def test_info_shows_the_whole_scene(here, capsys):
 
 def test_long_expressions_are_cut(capsys):
     assert main(["info", "engine"]) == 0
-    gas = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("load gas:"))
+    gas = next(
+        line for line in capsys.readouterr().out.splitlines() if line.startswith("load gas:")
+    )
     assert "... N, in ground axes" in gas
     assert len(gas) < 300
 
@@ -101,7 +112,7 @@ def scene():
     m.output("power", m.results.effort(swing) * m.rate(swing), unit="W")
     line = {"hook": (motion.polynomial(0.8), motion.harmonic(0.1, 0.2, speed))}
     return Scene(m, line, t=(0, 1 / speed, 11), posture={"arm": 0.0, "reach": 0.9}, drives=["swing", "reach"])
-"""
+"""  # noqa: E501
 
 
 def test_motions_of_points_drives_elsewhere_and_own_outputs(tmp_path, capsys):
@@ -132,15 +143,24 @@ def scene():
     m.screw("N", m.ground.at(0.4, 0.1, 0), ram, axis=(0.6, 0, 0.8), lead=0.3)
     m.torque("brake", ram, x=1.0, z=-2.0, turning=True)
     return Scene(m, {"O": motion.polynomial(0, 1)}, t=(0, 0.1, 3), posture={"N": 0.2})
-"""
+"""  # noqa: E501
 
 
 def test_info_says_how_joints_in_space_move(tmp_path, capsys):
     (tmp_path / "case.py").write_text(IN_SPACE)
     assert main(["info", str(tmp_path / "case.py")]) == 0
     told = capsys.readouterr().out
-    assert "  revolute joint O: ground (0, 0, 0.2) - crank (0, 0, 0), about (0, 0, 1) of ground, driven\n" in told
+    assert (
+        "  revolute joint O: ground (0, 0, 0.2) - crank (0, 0, 0), about (0, 0, 1) of ground,"
+        " driven\n" in told
+    )
     assert "  spherical joint A: crank (0.1, 0, 0) - rod (0, 0, 0)\n" in told
-    assert "  screw joint N: ground (0.4, 0.1, 0) - ram (0, 0, 0), about (0.6, 0, 0.8) of ground (0.3 m a turn)\n" in told
+    assert (
+        "  screw joint N: ground (0.4, 0.1, 0) - ram (0, 0, 0), about (0.6, 0, 0.8) of ground (0.3"
+        " m a turn)\n" in told
+    )
     assert "  bars, whose spin about their own axis is idle: rod\n" in told
-    assert "load brake: torque on ram against ground, x = 1 N m, y = 0 N m, z = -2 N m, in the axes of ram\n" in told
+    assert (
+        "load brake: torque on ram against ground, x = 1 N m, y = 0 N m, z = -2 N m, in the axes of"
+        " ram\n" in told
+    )

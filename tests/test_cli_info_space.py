@@ -1,4 +1,6 @@
-"""The command ``info`` of cases in space: joints with their axes, drives elsewhere, loops, bars and the posture of reference."""
+"""The command ``info`` of cases in space: joints with their axes, drives elsewhere, loops, bars and
+the posture of reference.
+"""
 
 import pytest
 
@@ -7,7 +9,8 @@ from lagrange_casadi.cli import main
 pytestmark = pytest.mark.quick
 
 TOLD = {
-    "rssr": """
+    "rssr": (
+        """
   revolute joint Q: ground (0.3, -0.1, 0.2) - rocker (0, 0, 0)
     , about (0.48, 0.8, 0.36) of ground
   spherical joint B: coupler (0.4, 0, 0) - rocker (0.25, 0, 0)
@@ -15,40 +18,51 @@ TOLD = {
   bars, whose spin about their own axis is idle: coupler
 load brake: torque on rocker against ground
     , x = (-(0.48*brake)) N m, y = (-(0.8*brake)) N m, z = (-(0.36*brake)) N m, in ground axes
-""",
-    "stewart_gough": """
+"""
+    ),
+    "stewart_gough": (
+        """
   universal joint U1: ground (-0.1545, 0.4755, 0) - cylinder1 (0, 0, 0)
     , turn_1 about (1, 0, 0) of ground, turn_2 about (0, 1, 0)
   prismatic joint P0: cylinder0 (0, 0, 0) - piston0 (0, 0, 0), along (1, 0, 0) of cylinder0, driven
   spherical joint S5: piston5 (0.45, 0, 0) - platform (0.2007, -0.2229, 0)
     , closes a loop: its angles are not measured
 freedoms: 6, driven at P0, P1, P2, P3, P4, P5
-""",
-    "delta": """
+"""
+    ),
+    "delta": (
+        """
   free joint tool: ground (0, 0, 0) - platform (0, 0, 0)
     , slide_1 along (1, 0, 0) of ground, its motion is given
     , slide_2 along (0, 1, 0), its motion is given
     , slide_3 along (0, 0, 1), its motion is given
     , turn_1 about (1, 0, 0), turn_2 about (0, 1, 0), turn_3 about (0, 0, 1)
   bars, whose spin about their own axis is idle: left0, right0, left1, right1, left2, right2
-""",
-    "five_link_suspension": """
+"""
+    ),
+    "five_link_suspension": (
+        """
   free joint wheel: ground (0, 0.7, 0.3) - hub (0.1, 0, 0)
     , slide_1 along (1, 0, 0) of ground, slide_2 along (0, 1, 0), slide_3 along (0, 0, 1), driven
     , turn_1 about (1, 0, 0), turn_2 about (0, 1, 0), turn_3 about (0, 0, 1)
   bars, whose spin about their own axis is idle: upper_front, upper_rear, lower_front, lower_rear, toe
 posture: that of reference, in which the parts are declared
-""",
-    "cardan_shaft": """
+"""  # noqa: E501
+    ),
+    "cardan_shaft": (
+        """
   cylindrical joint far: ground (0.6, 0.15, 0) - output (0, 0, 0)
     , slide along (1, 0, 0) of ground, turn about (1, 0, 0)
 posture: first:turn_1 = 0.3 rad (17.1887 deg), first:turn_2 = 0 rad (0 deg)
     , far:turn = 0 rad (0 deg), far:slide = 0 m
-""",
-    "arm6": """
+"""
+    ),
+    "arm6": (
+        """
   weld joint grip: link6 (0.08, 0, 0) - tool (0, 0, 0)
 posture: none
-""",
+"""
+    ),
 }
 """Lines of what is told of cases; one that goes on is indented and begins with a comma."""
 
@@ -83,13 +97,16 @@ def scene():
     m.cylindrical("slip", lever.tip, rest, axis=(0, 0, 1))
     laws = {"hinge": motion.polynomial(0.1, 1.0), "slip:slide": motion.polynomial(0.2), "slip:turn": motion.polynomial(0.0, 2.0)}
     return Scene(m, laws, t=(0, 0.1, 3), posture=POSTURE, drives=["hinge", "slip:slide", "slip:turn"])
-"""
+"""  # noqa: E501
 
 
 @pytest.mark.parametrize(
     ("posture", "line"),
     [
-        ({"slip:slide": 0.25}, "posture: slip:slide = 0.25 m, else that of reference, in which the parts are declared"),
+        (
+            {"slip:slide": 0.25},
+            "posture: slip:slide = 0.25 m, else that of reference, in which the parts are declared",
+        ),
         ({"hinge": 0.1}, "posture: hinge = 0.1 rad (5.72958 deg)"),
     ],
 )

@@ -1,4 +1,6 @@
-"""What runs on a worker of a cluster: it is sent all that it needs, and refuses what would come to other numbers."""
+"""What runs on a worker of a cluster: it is sent all that it needs, and refuses what would come to
+other numbers.
+"""
 
 import pickle
 import shutil
@@ -26,27 +28,35 @@ sys.stdout.buffer.write(pickle.dumps(sweeps._evaluate(sent, task, told, p, 3)))
 
 
 def test_a_worker_needs_no_file_of_the_case(tmp_path):
-    """What a worker is sent is whole: here another process, elsewhere, after the case and the module beside it are gone."""
+    """What a worker is sent is whole: here another process, elsewhere, after the case and the
+    module beside it are gone.
+    """
     (tmp_path / "here").mkdir()
     (tmp_path / "here" / "beside_it.py").write_text("LENGTH = 0.5\n")
     (tmp_path / "here" / "case.py").write_text(
-        "import casadi\n"
-        "from beside_it import LENGTH\n"
-        "from lagrange_casadi import Mechanism, Scene, beams, motion\n"
-        "def scene():\n"
-        "    m = Mechanism('arm')\n"
-        "    beam = beams.Beam(beams.rectangle(0.02, 0.01), beams.material('C45+QT').but(endurance=2e8))\n"
-        "    arm = m.link('arm', length=m.parameter('l', LENGTH, 'm'), beam=beam)\n"
-        "    m.revolute('O', m.ground, arm)\n"
-        "    m.line_load('wind', arm, y=-500.0, between=(0.1, 0.35))\n"
-        "    law = motion.expression(lambda t: casadi.fabs(t + 1.0) + 0.2 * casadi.sin(9.0 * t))\n"
-        "    return Scene(m, {'O': law}, t=(0, 0.5, 17), wanted=['effort', 'safety:arm'])\n"
+        "import casadi\nfrom beside_it import LENGTH\nfrom lagrange_casadi import Mechanism, Scene,"
+        " beams, motion\ndef scene():\n    m = Mechanism('arm')\n    beam ="
+        " beams.Beam(beams.rectangle(0.02, 0.01), beams.material('C45+QT').but(endurance=2e8))\n   "
+        " arm = m.link('arm', length=m.parameter('l', LENGTH, 'm'), beam=beam)\n    m.revolute('O',"
+        " m.ground, arm)\n    m.line_load('wind', arm, y=-500.0, between=(0.1, 0.35))\n    law ="
+        " motion.expression(lambda t: casadi.fabs(t + 1.0) + 0.2 * casadi.sin(9.0 * t))\n    return"
+        " Scene(m, {'O': law}, t=(0, 0.5, 17), wanted=['effort', 'safety:arm'])\n"
     )
-    plan = Plan.of(load_case(tmp_path / "here").scene, designs_of({"l": [0.4, 0.5]}), xi=(0.0, 1.0, 3), keep="histories")
+    plan = Plan.of(
+        load_case(tmp_path / "here").scene,
+        designs_of({"l": [0.4, 0.5]}),
+        xi=(0.0, 1.0, 3),
+        keep="histories",
+    )
     shutil.rmtree(tmp_path / "here")
     told, p = signature(plan.graph, plan.task, plan.harvest.engine.provenance), plan.block(0, 2)
     sent = pickle.dumps((plan.graph, plan.harvest.whole))
-    away = {"cwd": tmp_path, "input": pickle.dumps((sent, plan.task, told, p)), "capture_output": True, "timeout": 60}
+    away = {
+        "cwd": tmp_path,
+        "input": pickle.dumps((sent, plan.task, told, p)),
+        "capture_output": True,
+        "timeout": 60,
+    }
     done = subprocess.run([sys.executable, "-c", ELSEWHERE], check=False, **away)
     assert done.returncode == 0, done.stderr.decode()
     assert pickle.loads(done.stdout) == plan.harvest.chunks(p, 3)
@@ -65,11 +75,17 @@ def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
     p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
     assert cluster._evaluate(sent, plan.task, told, p, 3) == plan.harvest.chunks(p, 3)
     other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
-    with pytest.raises(ClusterError, match=r"not give the same numbers: versions casadi was 3\.7\.0 and is .* there"):
+    with pytest.raises(
+        ClusterError,
+        match=r"not give the same numbers: versions casadi was 3\.7\.0 and is .* there",
+    ):
         cluster._evaluate(sent, plan.task, other, p, 3)
 
 
 def test_what_fails_on_a_worker_is_one_line(slider_crank):
     plan, sent, told = asked(slider_crank.scene)
-    with pytest.raises(ClusterError, match=r"a worker failed: designs: expected an array of shape \(n, 5\), got \(1, 4\)"):
+    with pytest.raises(
+        ClusterError,
+        match=r"a worker failed: designs: expected an array of shape \(n, 5\), got \(1, 4\)",
+    ):
         cluster._evaluate(sent, plan.task, told, np.zeros((1, 4)), 1)

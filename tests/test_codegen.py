@@ -24,7 +24,9 @@ pytestmark = pytest.mark.usefixtures("released")
 
 
 def without_ends():
-    """The paper's mechanism with every pin a hair's breadth, exactly zero, off the links' ends: no link has a section law."""
+    """The paper's mechanism with every pin a hair's breadth, exactly zero, off the links' ends: no
+    link has a section law.
+    """
     m = Mechanism("slider_crank")
     r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
     crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
@@ -44,7 +46,10 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     source.write_text(codegen.emit(derive(SCENES[name]())))
     found = codegen.find_compiler()
     result = subprocess.run(
-        [*found.command, *PEDANTIC, "-c", source, "-o", tmp_path / "scene.o"], capture_output=True, text=True, check=False
+        [*found.command, *PEDANTIC, "-c", source, "-o", tmp_path / "scene.o"],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert result.returncode == 0, result.stderr
 
@@ -59,7 +64,9 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     out = columns(graph, t, "c")
     machine, _ = run(graph, t, p, Rung("vm"))
     scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300
-    assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
+    assert np.max(np.abs(out - machine.out) / scale) <= (
+        0.0 if name in ("slider_crank", "four_bar") else 1e-13
+    )
 
 
 @pytest.mark.sampled(21)
@@ -69,7 +76,10 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
 def test_the_level_of_optimization_changes_no_bit(name, language, precision):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
-    found = {columns(graph, t, language, extra=extra, precision=precision).tobytes() for extra in ((), ("-O1",), ("-O0",))}
+    found = {
+        columns(graph, t, language, extra=extra, precision=precision).tobytes()
+        for extra in ((), ("-O1",), ("-O0",))
+    }
     assert len(found) == 1
 
 
@@ -90,17 +100,31 @@ def test_a_load_may_call_a_function_that_is_not_inlined(backend):
     m.torque("t", arm, called(m.coordinate(joint)) * called(k))
     solution = evaluate(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), backend=backend)
     angle = solution.motion("J").value
-    np.testing.assert_allclose(solution.series["load:t:mz"], np.sin(angle) * angle * np.sin(2.0) * 2.0, rtol=1e-14)
+    np.testing.assert_allclose(
+        solution.series["load:t:mz"], np.sin(angle) * angle * np.sin(2.0) * 2.0, rtol=1e-14
+    )
 
 
 def test_emission_is_the_same_in_every_process(tmp_path):
     """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
-    program = "import sys; sys.path[:0] = {!r}; from mechanisms import slider_crank; from lagrange_casadi import codegen, derive; "
-    program = program.format([str(tmp_path), os.path.dirname(__file__)]) + "print(codegen.emit(derive(slider_crank())))"
+    program = (
+        "import sys; sys.path[:0] = {!r}; from mechanisms import slider_crank; from lagrange_casadi"
+        " import codegen, derive; "
+    )
+    program = (
+        program.format([str(tmp_path), os.path.dirname(__file__)])
+        + "print(codegen.emit(derive(slider_crank())))"
+    )
     texts = []
     for seed in ("1", "2"):
         environment = os.environ | {"PYTHONHASHSEED": seed}
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=environment)
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=environment,
+        )
         texts.append(done.stdout)
     assert texts[0] == texts[1]
     assert str(tmp_path) not in texts[0]
@@ -108,9 +132,13 @@ def test_emission_is_the_same_in_every_process(tmp_path):
 
 
 def test_wanting_the_effort_alone_emits_no_section_term():
-    """One value an instant beside the loop's closure and its gap, and the same C as a mechanism that has no section to give."""
+    """One value an instant beside the loop's closure and its gap, and the same C as a mechanism
+    that has no section to give.
+    """
     scene = slider_crank(wanted=["effort"])
-    alone, both = (codegen.emit(derive(scene, wanted)) for wanted in (["effort"], ["effort", "section:rod"]))
+    alone, both = (
+        codegen.emit(derive(scene, wanted)) for wanted in (["effort"], ["effort", "section:rod"])
+    )
     statements = [len(re.findall(r"\ba\d+ = ", text)) for text in (alone, both)]
     assert statements[0] + 10 < statements[1]
     assert derive(scene).instant.size1_out(0) == 3
@@ -131,7 +159,12 @@ def test_several_builds_at_once(fresh_cache):
     with ThreadPoolExecutor(8) as pool:
         libraries = list(pool.map(lambda _: codegen.load(source, found), range(8)))
     assert len(libraries) == 8
-    assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".graph", ".sha256", ".so"]
+    assert sorted(path.suffix for path in fresh_cache.iterdir()) == [
+        ".c",
+        ".graph",
+        ".sha256",
+        ".so",
+    ]
 
 
 @pytest.mark.sampled(2)
@@ -152,14 +185,23 @@ def test_a_damaged_library_is_built_again_and_said(fresh_cache):
     whole = path.read_bytes()
     path.unlink()  # it is mapped into this process
     path.write_bytes(whole[: len(whole) // 2])
-    with pytest.warns(UserWarning, match=r"the cached library .*\.so was damaged and is built again"):
+    with pytest.warns(
+        UserWarning, match=r"the cached library .*\.so was damaged and is built again"
+    ):
         evaluate(slider_crank(), backend="c")
     assert path.read_bytes() == whole
 
 
 def test_a_failing_compiler_is_quoted_and_its_message_kept(tmp_path, fresh_cache, monkeypatch):
-    fake_compiler(tmp_path, monkeypatch, 'test "$1" = --version && echo fake 1.0 && exit 0; echo "x.c:1: error: no" >&2; exit 3')
-    with pytest.raises(CompilerError, match=r"fake-cc failed with status 3: x\.c:1: error: no \(whole message in .*\.log\)"):
+    fake_compiler(
+        tmp_path,
+        monkeypatch,
+        'test "$1" = --version && echo fake 1.0 && exit 0; echo "x.c:1: error: no" >&2; exit 3',
+    )
+    with pytest.raises(
+        CompilerError,
+        match=r"fake-cc failed with status 3: x\.c:1: error: no \(whole message in .*\.log\)",
+    ):
         evaluate(slider_crank(), backend="c")
     assert [path.read_text() for path in fresh_cache.glob("*.log")] == ["x.c:1: error: no\n"]
     assert not list(fresh_cache.glob("*.so"))
@@ -193,13 +235,23 @@ def test_without_a_compiler_the_virtual_machine_serves_and_says_so():
     for backend, needs in (("c", "C"), ("lanes", r"C\+\+")):
         with pytest.raises(CompilerError, match=f"backend '{backend}' needs a {needs} compiler"):
             evaluate(slider_crank(), backend=backend)
-    with pytest.raises(CompilerError, match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang is there"):
+    with pytest.raises(
+        CompilerError,
+        match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang is there",
+    ):
         evaluate(slider_crank(), precision="single")
 
 
 def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monkeypatch):
-    fake_compiler(tmp_path, monkeypatch, 'test "$1" = --version && exit 0; echo "x.cpp:1: error: no" >&2; exit 3', "CXX")
-    with pytest.warns(UserWarning, match=r"fake-cc failed with status 3: x\.cpp:1: error: no .*; scalar C serves"):
+    fake_compiler(
+        tmp_path,
+        monkeypatch,
+        'test "$1" = --version && exit 0; echo "x.cpp:1: error: no" >&2; exit 3',
+        "CXX",
+    )
+    with pytest.warns(
+        UserWarning, match=r"fake-cc failed with status 3: x\.cpp:1: error: no .*; scalar C serves"
+    ):
         assert evaluate(slider_crank()).provenance.backend == "c"
     with pytest.raises(CompilerError, match="fake-cc failed with status 3"):
         evaluate(slider_crank(), backend="lanes")

@@ -28,17 +28,29 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 @pytest.fixture(scope="module")
 def moving():
     m = four_bar()
-    return m, evaluate(Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True))
+    return m, evaluate(
+        Scene(
+            m,
+            {"O": polynomial(0.2, 30.0, 40.0)},
+            posture={"A": 0.5, "C": 1.5},
+            t=(0, 8e-3, 9),
+            elastic=True,
+        )
+    )
 
 
 def test_what_equilibrium_determines_is_what_it_was(moving):
     m, solution = moving
-    plain = evaluate(Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9)))
+    plain = evaluate(
+        Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9))
+    )
     for output, values in plain.outputs.items():
         if output not in plain.left_open:
             np.testing.assert_array_equal(values, solution.outputs[output])
     assert plain.left_open == solution.elasticity.told
-    assert all(name in solution.errors for name in plain.undetermined if name.startswith("reaction"))
+    assert all(
+        name in solution.errors for name in plain.undetermined if name.startswith("reaction")
+    )
 
 
 def test_only_what_is_wanted_is_told():
@@ -60,10 +72,18 @@ def test_a_file_keeps_what_elasticity_told(tmp_path):
 
 
 def test_what_knows_equilibrium_alone_leaves_it_open(moving, tmp_path):
-    """Peaks of what is told are those of the instants, and it has no derivatives of peaks: neither takes the one for the other."""
+    """Peaks of what is told are those of the instants, and it has no derivatives of peaks: neither
+    takes the one for the other.
+    """
     _, solution = moving
     m = four_bar()
-    scene = Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True)
+    scene = Scene(
+        m,
+        {"O": polynomial(0.2, 30.0, 40.0)},
+        posture={"A": 0.5, "C": 1.5},
+        t=(0, 8e-3, 9),
+        elastic=True,
+    )
     told, known = "reaction:C:mx", "effort:O"
     assert told in map(str, solution.elasticity.told)
     peaks = {peak.name: peak for peak in refine(scene, solution, [told, known])}
@@ -77,10 +97,16 @@ def test_what_knows_equilibrium_alone_leaves_it_open(moving, tmp_path):
 
 
 def test_exports_leave_open_what_goes_through_a_link_without_a_beam(tmp_path):
-    plain, elastic = three_cranks(made(beams.round_bar(0.01)), elastic=False), three_cranks(made(beams.round_bar(0.01)))
+    plain, elastic = (
+        three_cranks(made(beams.round_bar(0.01)), elastic=False),
+        three_cranks(made(beams.round_bar(0.01))),
+    )
     for name, scene in (("plain", plain), ("elastic", elastic)):
         export(scene, tmp_path / name, wanted=["effort", "reaction"])
-    outputs = [json.loads((tmp_path / name / "export.json").read_text())["outputs"] for name in ("plain", "elastic")]
+    outputs = [
+        json.loads((tmp_path / name / "export.json").read_text())["outputs"]
+        for name in ("plain", "elastic")
+    ]
     assert outputs[0] == outputs[1]
     assert not any(output["name"].startswith("reaction_B1") for output in outputs[0])
 
@@ -88,13 +114,11 @@ def test_exports_leave_open_what_goes_through_a_link_without_a_beam(tmp_path):
 def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "case.py").write_text(
-        "from lagrange_casadi import Mechanism, Scene, beams\n"
-        "def scene():\n"
-        "    m = Mechanism('held')\n"
-        "    bar = m.link('bar', length=2.0, beam=beams.Beam(beams.rectangle(0.05, 0.02), beams.material('S235')))\n"
-        "    m.weld('A', m.ground, bar)\n"
-        "    m.weld('B', m.ground.at(2.0, 0), bar.tip)\n"
-        "    return Scene(m, {}, t=(0, 0, 1), elastic=['bar'])\n"
+        "from lagrange_casadi import Mechanism, Scene, beams\ndef scene():\n    m ="
+        " Mechanism('held')\n    bar = m.link('bar', length=2.0,"
+        " beam=beams.Beam(beams.rectangle(0.05, 0.02), beams.material('S235')))\n    m.weld('A',"
+        " m.ground, bar)\n    m.weld('B', m.ground.at(2.0, 0), bar.tip)\n    return Scene(m, {},"
+        " t=(0, 0, 1), elastic=['bar'])\n"
     )
     assert main(["info", "case.py"]) == 0
     assert "elastic: bar" in capsys.readouterr().out
@@ -109,8 +133,19 @@ def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):
     [
         ("bar", DeclarationError, "expected True, or a list of the links that give way, got 'bar'"),
         (["rod"], UnknownNameError, "unknown link in elastic 'rod'"),
-        (["bare"], DeclarationError, "elastic: link 'bare' has no beam, which says what it is made of; links with one: bar, odd"),
-        (["odd"], DeclarationError, "material 'odd' has no elasticity, which elastic link 'odd' needs"),
+        (
+            ["bare"],
+            DeclarationError,
+            (
+                "elastic: link 'bare' has no beam, which says what it is made of; links with one:"
+                " bar, odd"
+            ),
+        ),
+        (
+            ["odd"],
+            DeclarationError,
+            "material 'odd' has no elasticity, which elastic link 'odd' needs",
+        ),
     ],
 )
 def test_what_has_no_meaning_is_one_line(elastic, error, message):
@@ -125,12 +160,16 @@ def test_what_has_no_meaning_is_one_line(elastic, error, message):
 
 
 def test_a_table_and_friction_are_refused():
-    with pytest.raises(DeclarationError, match="a table has no place for what equilibrium leaves open"):
+    with pytest.raises(
+        DeclarationError, match="a table has no place for what equilibrium leaves open"
+    ):
         evaluate(held(y=-1.0), table=1e-6)
     m = Mechanism("guides")
     bar = m.link("bar", length=1.0, beam=made(beams.round_bar(0.02)))
     joint = m.prismatic("G1", m.ground, bar, axis=(1, 0))
     m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
     m.friction("rub", joint, mu=0.1, length=0.1)
-    with pytest.raises(DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"):
+    with pytest.raises(
+        DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"
+    ):
         evaluate(Scene(m, {"G1": polynomial(0.0, 1.0, 0.5)}, t=(0, 1, 3), elastic=True))

@@ -1,6 +1,7 @@
 """The case of a connecting rod, number by number against its textbook.
 
-R. S. Khurmi and J. K. Gupta, A Textbook of Machine Design, chapter 32, sections 32.14 and 32.15 and example 32.3.
+R. S. Khurmi and J. K. Gupta, A Textbook of Machine Design, chapter 32, sections 32.14 and 32.15 and
+example 32.3.
 """
 
 import math
@@ -45,14 +46,18 @@ def test_the_cross_section_of_11_t_t(even):
 
 
 def test_the_gas_force(even):
-    """pi/4 100^2 3.15 = 24 740 N on the piston, 15 degrees behind the dead centre; the rod leans a little."""
+    """pi/4 100^2 3.15 = 24 740 N on the piston, 15 degrees behind the dead centre; the rod leans a
+    little.
+    """
     lean = math.asin(RADIUS * math.sin(math.radians(15)) / LENGTH)
     least = even.section("rod").law.reached("axial")[1][0].min()
     assert -least == pytest.approx(24_740 / math.cos(lean), rel=5e-3)
 
 
 def test_buckling_in_the_plane_and_out_of_it(even):
-    """Pinned in the plane, held out of it; Rankine's formula with a = 1/7500 gives the book 153 kN, which is near Johnson's."""
+    """Pinned in the plane, held out of it; Rankine's formula with a = 1/7500 gives the book 153 kN,
+    which is near Johnson's.
+    """
     of = as_column(even.description, Member.of(even, "rod"))
     assert of.effective == (1.0, 0.5)
     assert of.slenderness[0] == pytest.approx(380 / (1.78 * 7), rel=2e-3)
@@ -63,21 +68,29 @@ def test_buckling_in_the_plane_and_out_of_it(even):
 
 
 def test_bending_by_its_own_inertia(scene):
-    """m r w^2 l^2 / (9 sqrt 3) supposes a rod at right angles to the crank, and that its motion is a pure turning there."""
+    """m r w^2 l^2 / (9 sqrt 3) supposes a rod at right angles to the crank, and that its motion is
+    a pure turning there.
+    """
     whipped = evaluate(scene, parameters={**EVEN, "pressure": 0.0}, certificate=False)
-    formula = 11 * T**2 * 8000 * RADIUS * (1800 * 2 * math.pi / 60) ** 2 * LENGTH**2 / (9 * math.sqrt(3))
+    formula = (
+        11 * T**2 * 8000 * RADIUS * (1800 * 2 * math.pi / 60) ** 2 * LENGTH**2 / (9 * math.sqrt(3))
+    )
     peak = whipped.peak("section:rod:bending")
     assert abs(peak.value) == pytest.approx(formula, rel=0.04)
     # From the piston's pin it is 1/sqrt 3 of the length away.
     assert 1 - peak.xi == pytest.approx(1 / math.sqrt(3), abs=0.02)
     stress = whipped.stress("rod")
-    upper, lower = (stress.at(peak.xi)[0, stress.fibres(peak.xi).index(f"corner {side}y +z")] for side in "+-")
+    upper, lower = (
+        stress.at(peak.xi)[0, stress.fibres(peak.xi).index(f"corner {side}y +z")] for side in "+-"
+    )
     bending = (upper - lower)[int(np.argmin(abs(whipped.t - peak.t)))] / 2
     assert abs(bending) == pytest.approx(abs(peak.value) / (419 / 30 * T**3), rel=1e-9)
 
 
 def test_the_bearings_bear_the_gas_force(scene):
-    """24 740 N over 1.3 d^2 and 2 d^2 at 10 and 15 N/mm^2: 43.6 and 28.7 mm, rounded upward to 44 and 29 mm, 58 mm wide."""
+    """24 740 N over 1.3 d^2 and 2 d^2 at 10 and 15 N/mm^2: 43.6 and 28.7 mm, rounded upward to 44
+    and 29 mm, 58 mm wide.
+    """
     for joint, ratio, pressure in (("crankpin", 1.3, 10.0), ("piston_pin", 2.0, 15.0)):
         bearing = scene.mechanism.fitted[joint]["plain"]
         assert bearing.pressure == pressure * 1e6
@@ -88,7 +101,9 @@ def test_the_bearings_bear_the_gas_force(scene):
 def test_pressure_in_the_bearings(running):
     for joint, bore, pressure in (("crankpin", 44, 10.0), ("piston_pin", 29, 15.0)):
         force = np.hypot(running.reaction(joint).fx, running.reaction(joint).fy).max()
-        assert running.safety(joint).against("pressure") == pytest.approx(pressure * bore * 58 / force, rel=1e-12)
+        assert running.safety(joint).against("pressure") == pytest.approx(
+            pressure * bore * 58 / force, rel=1e-12
+        )
         # Inertia takes from the gas force when it is largest.
         assert running.safety(joint).factor > 1.0
 
@@ -99,7 +114,9 @@ def test_bars_are_of_every_part(running):
     (axes,) = spec.draw(running).axes
     words = [label.get_text() for label in axes.get_yticklabels()]
     assert words[-2:] == ["crankpin, pressure", "piston_pin, pressure"]
-    assert [bar.get_width() for bar in axes.patches][-1] == 1.0 / running.safety("piston_pin").factor
+    assert [bar.get_width() for bar in axes.patches][-1] == 1.0 / running.safety(
+        "piston_pin"
+    ).factor
 
 
 def test_what_governs(running, capsys):
@@ -113,14 +130,19 @@ def test_what_governs(running, capsys):
 
 
 def test_fatigue_by_hand(running):
-    """At the outermost fibres s = N/A -+ M/W, over ratios of a grid; in the flanges beside the web shear adds a little."""
+    """At the outermost fibres s = N/A -+ M/W, over ratios of a grid; in the flanges beside the web
+    shear adds a little.
+    """
     solution = running
     u = np.linspace(0.0, 1.0, 2001)
     heights = 0.035 * np.interp(u, [0, 0.5, 1], [1.2, 1.0, 0.9])
     area = 2 * 4 * T * T + (heights - 2 * T) * T
     second = (4 * T * heights**3 - 3 * T * (heights - 2 * T) ** 3) / 12
     law = solution.section("rod").law
-    n, m = (law.at(force, np.broadcast_to(u, (solution.t.size, u.size))) for force in ("axial", "bending"))
+    n, m = (
+        law.at(force, np.broadcast_to(u, (solution.t.size, u.size)))
+        for force in ("axial", "bending")
+    )
     worst = min(_goodman(n / area + e * m * heights / 2 / second) for e in (1, -1))
     assert solution.safety("rod").against("fatigue") == pytest.approx(worst, rel=1e-3)
 
@@ -132,7 +154,10 @@ def _goodman(stress):
 
 def test_run_prints_every_part(here, capsys):
     few = ["--over", "main=90deg:810deg:121"]
-    assert main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm", *few]) == 0
+    assert (
+        main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm", *few])
+        == 0
+    )
     out = capsys.readouterr().out
     for part in ("rod", "crank", "crankpin", "piston_pin"):
         assert f"\n  {part:<20} " in out

@@ -1,4 +1,6 @@
-"""Three programs that use an exported folder alone, in C99, C++17 and Python, against the API over a cycle."""
+"""Three programs that use an exported folder alone, in C99, C++17 and Python, against the API over
+a cycle.
+"""
 
 import shutil
 import subprocess
@@ -6,8 +8,28 @@ import sys
 
 import pytest
 from conftest import CASES, PLANAR, SPATIAL
-from exported import CONSUMERS, FEW, RATIOS, by_c99, compare, expected, exported, instants, run, solve, values
-from mechanisms import DRAG_LINK, bracket, sampled_cam, slider_crank, spline_arm, sprung, truss_platform
+from exported import (
+    CONSUMERS,
+    FEW,
+    RATIOS,
+    by_c99,
+    compare,
+    expected,
+    exported,
+    instants,
+    run,
+    solve,
+    values,
+)
+from mechanisms import (
+    DRAG_LINK,
+    bracket,
+    sampled_cam,
+    slider_crank,
+    spline_arm,
+    sprung,
+    truss_platform,
+)
 from stepped import iterated
 
 from lagrange_casadi import export, load_case
@@ -36,7 +58,8 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
     made, told = exported(scene, tmp_path, precision=precision)
     solution = solve(scene, precision)
     found = by_c99(tmp_path, told, instants(solution.t, precision))
-    # Samples are read by cubics here, by recursion there: that moves an angle by two units, and forces by what follows.
+    # Samples are read by cubics here, by recursion there: that moves an angle by two units, and
+    # forces by what follows.
     apart = {"exact": False, "few": 4 * FEW} if name == "spline_arm" else {}
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
@@ -45,14 +68,22 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("name", "rung"),
-    [("iterated", {"newton": 2}), ("rrr3", {"newton": 3}), ("slider_crank", {"table": 64}), ("beam_pump", {"newton": 2})],
+    [
+        ("iterated", {"newton": 2}),
+        ("rrr3", {"newton": 3}),
+        ("slider_crank", {"table": 64}),
+        ("beam_pump", {"newton": 2}),
+    ],
 )
 def test_on_other_rungs_too(name, rung, precision, tmp_path):
     scene = SCENES[name]()
-    made, told = exported(scene, tmp_path, precision=precision, parameters=values(scene, precision), **rung)
+    made, told = exported(
+        scene, tmp_path, precision=precision, parameters=values(scene, precision), **rung
+    )
     solution = solve(scene, precision, **rung)
     found = by_c99(tmp_path, told, instants(solution.t, precision))
-    # Before counted steps the API closes the loops in doubles, the program in its own precision: other roundings from there on.
+    # Before counted steps the API closes the loops in doubles, the program in its own precision:
+    # other roundings from there on.
     apart = {"exact": False, "few": 4 * FEW} if "newton" in rung else {}
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
@@ -72,7 +103,12 @@ needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="needs cm
 def test_the_folder_tests_itself(tmp_path):
     export(slider_crank(), tmp_path)
     build = built(tmp_path)
-    result = subprocess.run(["ctest", "--test-dir", build, "--output-on-failure"], capture_output=True, text=True, check=False)
+    result = subprocess.run(
+        ["ctest", "--test-dir", build, "--output-on-failure"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert result.returncode == 0, result.stdout
     assert result.stdout.count("Passed") == 2
 
@@ -84,22 +120,31 @@ def test_a_cpp17_program_finds_the_package(name, tmp_path):
     scene = SCENES[name]()
     made, told = exported(scene, tmp_path / "exported")
     build, prefix = built(tmp_path / "exported", "-DBUILD_TESTING=OFF"), tmp_path / "installed"
-    subprocess.run(["cmake", "--install", build, "--prefix", prefix], check=True, capture_output=True)
+    subprocess.run(
+        ["cmake", "--install", build, "--prefix", prefix], check=True, capture_output=True
+    )
     shutil.move(tmp_path / "exported" / "names.h", tmp_path)
     shutil.rmtree(tmp_path / "exported")
-    options = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DMECHANISM={told['prefix']}", f"-DNAMES={tmp_path}/names.h"]
+    options = [
+        f"-DCMAKE_PREFIX_PATH={prefix}",
+        f"-DMECHANISM={told['prefix']}",
+        f"-DNAMES={tmp_path}/names.h",
+    ]
     where = ["-S", CONSUMERS / "cpp17", "-B", tmp_path / "consumer"]
     subprocess.run(["cmake", *where, *options], check=True, capture_output=True)
     subprocess.run(["cmake", "--build", tmp_path / "consumer"], check=True, capture_output=True)
     solution = solve(scene, "double")
-    found = run([tmp_path / "consumer" / "consumer", *map(str, RATIOS)], instants(solution.t, "double"))
+    found = run(
+        [tmp_path / "consumer" / "consumer", *map(str, RATIOS)], instants(solution.t, "double")
+    )
     compare(found, expected(scene, told, solution), told, made, solution)
 
 
 @pytest.mark.sampled(7)
 @needs_cmake
 @pytest.mark.parametrize(
-    ("name", "precision"), [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")]
+    ("name", "precision"),
+    [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")],
 )
 def test_a_python_program_loads_the_shared_library(name, precision, tmp_path):
     scene = SCENES[name]()
@@ -107,6 +152,12 @@ def test_a_python_program_loads_the_shared_library(name, precision, tmp_path):
     build = built(tmp_path, "-DBUILD_SHARED_LIBS=ON", "-DBUILD_TESTING=OFF")
     (library,) = build.glob(f"lib{told['prefix']}.so")
     solution = solve(scene, precision)
-    command = [sys.executable, CONSUMERS / "python" / "main.py", tmp_path, library, *map(str, RATIOS)]
+    command = [
+        sys.executable,
+        CONSUMERS / "python" / "main.py",
+        tmp_path,
+        library,
+        *map(str, RATIOS),
+    ]
     found = run(command, instants(solution.t, precision))
     compare(found, expected(scene, told, solution), told, made, solution)

@@ -1,10 +1,21 @@
-"""Corners and jumps that appear for other parameters than the defaults: no effort is told for them, by whatever way."""
+"""Corners and jumps that appear for other parameters than the defaults: no effort is told for them,
+by whatever way.
+"""
 
 import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    evaluate,
+    export,
+    optimise,
+    prepare,
+    sweep,
+)
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
@@ -47,7 +58,11 @@ def cut(default=0.0):
 def constraint(default=0.0):
     """A slide whose place is a function of a crank's angle."""
     m = Mechanism("constraint")
-    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", default)
+    crank, body, k = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.point_mass("body", 2.0),
+        m.parameter("k", default),
+    )
     turn = m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - bend(m.coordinate(turn), k))
@@ -56,7 +71,11 @@ def constraint(default=0.0):
 
 def disc(default=0.0):
     m = Mechanism("disc")
-    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", default)
+    wheel, rod, k = (
+        m.link("wheel", length=0.1, mass=1.0),
+        m.link("rod", length=0.1, mass=1.0),
+        m.parameter("k", default),
+    )
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
     disc_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k), base_radius=0.1, roller=0.01)
@@ -65,7 +84,11 @@ def disc(default=0.0):
 
 def drum(default=0.0):
     m = SpatialMechanism("drum")
-    wheel, cart, k = m.link("wheel", length=0.1, mass=1.0), m.point_mass("cart", 1.0), m.parameter("k", default)
+    wheel, cart, k = (
+        m.link("wheel", length=0.1, mass=1.0),
+        m.point_mass("cart", 1.0),
+        m.parameter("k", default),
+    )
     main = m.revolute("turn", m.ground, wheel, axis=(1, 0, 0))
     lead = m.prismatic("lead", m.ground.at(0.0, 0.0, 0.05), cart, axis=(1, 0, 0))
     cylindrical_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k))
@@ -130,7 +153,9 @@ def test_an_export_refuses_a_corner_at_the_parameters_that_it_is_given(scene, tm
 
 
 def test_a_search_does_not_take_a_jump_for_the_best_design():
-    """Beyond k = 0.5 the law jumps; at k = 1 it is straight elsewhere, and its effort would be zero."""
+    """Beyond k = 0.5 the law jumps; at k = 1 it is straight elsewhere, and its effort would be
+    zero.
+    """
     found = optimise(cut(), minimise="peak:effort:way", over={"k": (0.2, 1.0)}, starts=3)
     assert abs(found.values["k"] - 0.2) < 1e-6
 
@@ -142,10 +167,15 @@ def test_a_scene_whose_defaults_have_a_corner_serves_for_values_that_have_none(s
         evaluate(made)
     assert evaluate(made, parameters={"k": 0.0}).certified
     f = prepare(made, wanted=["effort"])
-    np.testing.assert_array_equal(*(next(iter(one(k=0.0).values())) for one in (f, prepare(scene(), wanted=["effort"]))))
+    np.testing.assert_array_equal(
+        *(next(iter(one(k=0.0).values())) for one in (f, prepare(scene(), wanted=["effort"])))
+    )
     with pytest.raises(DeclarationError, match=PLACES[scene]):
         f()
-    assert sweep(made, {"k": [0.0, 1.0]}, wanted=["effort"])["status"].tolist() == [Status.OK, Status.CORNER]
+    assert sweep(made, {"k": [0.0, 1.0]}, wanted=["effort"])["status"].tolist() == [
+        Status.OK,
+        Status.CORNER,
+    ]
     export(made, tmp_path / "c", parameters={"k": 0.0}, wanted=["effort"])
 
 
@@ -172,7 +202,9 @@ def test_kinks_of_a_motion_are_looked_for_once_for_what_designs_share(monkeypatc
     m.prismatic("way", m.ground, body, axis=(1, 0))
     made = Scene(m, {"way": expression(lambda t: bend(t, k))}, t=(0.0, 1.0, 11))
     seen, look = [], Smooth.broken
-    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    monkeypatch.setattr(
+        Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p)
+    )
     f = prepare(made, wanted=["effort"])
     for mass in (1.0, 2.0, 3.0):
         f(mass=mass)
@@ -183,15 +215,21 @@ def test_kinks_of_a_motion_are_looked_for_once_for_what_designs_share(monkeypatc
 
 def away(x, k):
     """Roots, divisors and pieces that it does not come near to while k is small."""
-    return 0.02 * ca.sin(x) * ca.sqrt(2 + ca.sin(x) - k) / (1.5 - k + ca.cos(x)) + ca.if_else(x < 10 - 9.5 * k, 0, 0.01)
+    return 0.02 * ca.sin(x) * ca.sqrt(2 + ca.sin(x) - k) / (1.5 - k + ca.cos(x)) + ca.if_else(
+        x < 10 - 9.5 * k, 0, 0.01
+    )
 
 
 @pytest.mark.parametrize("scene", [motion, constraint, disc])
 def test_designs_off_every_kink_are_not_looked_at_instant_by_instant(scene, monkeypatch):
-    monkeypatch.setitem(globals(), "bend", away if scene is not disc else lambda x, k: 0.1 * away(ca.sin(x), k))
+    monkeypatch.setitem(
+        globals(), "bend", away if scene is not disc else lambda x, k: 0.1 * away(ca.sin(x), k)
+    )
     f = prepare(scene(), wanted=["effort"])
     seen, look = [], Smooth.broken
-    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    monkeypatch.setattr(
+        Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p)
+    )
     for k in (0.0, 0.1, 0.2):
         f(k=k)
         f.peaks(k=k)

@@ -1,4 +1,6 @@
-"""Exported C on a bare Cortex-M4F, which has no doubles: it computes what it computes elsewhere, and is small."""
+"""Exported C on a bare Cortex-M4F, which has no doubles: it computes what it computes elsewhere,
+and is small.
+"""
 
 import re
 from pathlib import Path
@@ -9,7 +11,11 @@ from cortex_m4f.target import RUNGS, exported, missing
 CASES = sorted(path.parent.name for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 TABLED = ("slider_crank", "four_bar", "six_bar", "andrews_squeezer")
 TABLE = "table 1e-6, effort"
-PAIRS = [(name, "single") for name in CASES] + [(name, TABLE) for name in TABLED] + [("slider_crank", "double")]
+PAIRS = (
+    [(name, "single") for name in CASES]
+    + [(name, TABLE) for name in TABLED]
+    + [("slider_crank", "double")]
+)
 
 pytestmark = pytest.mark.skipif(missing() != "", reason=missing())
 
@@ -17,7 +23,10 @@ pytestmark = pytest.mark.skipif(missing() != "", reason=missing())
 @pytest.mark.sampled(97)
 @pytest.mark.parametrize(("name", "rung"), PAIRS)
 def test_the_selftest_passes_on_the_machine(name, rung, tmp_path):
-    assert re.search(r": \d+ numbers at 9 instants, .*; 0 wrong$", exported(name, rung, tmp_path / name).selftest())
+    assert re.search(
+        r": \d+ numbers at 9 instants, .*; 0 wrong$",
+        exported(name, rung, tmp_path / name).selftest(),
+    )
 
 
 def test_what_fails_on_the_machine_fails_here(tmp_path):
@@ -27,7 +36,10 @@ def test_what_fails_on_the_machine_fails_here(tmp_path):
     text = path.read_text()
     assert text.count("SLIDER_CRANK_BAD_INPUT") == 1
     path.write_text(text.replace("SLIDER_CRANK_BAD_INPUT", "SLIDER_CRANK_BAD_TIME"))
-    with pytest.raises(RuntimeError, match=r'wrong: status "an input is not finite", where "the time[^"]*" was expected'):
+    with pytest.raises(
+        RuntimeError,
+        match=r'wrong: status "an input is not finite", where "the time[^"]*" was expected',
+    ):
         target.selftest()
 
 
@@ -37,7 +49,9 @@ def test_single_precision_asks_for_no_arithmetic_of_doubles(name, rung, tmp_path
     target = exported(name, rung, tmp_path / name)
     assert target.doubles(target.object) == set()
     assert target.doubles(target.whole) == set()
-    assert all(re.fullmatch(r"[a-z]+[0-9]?f|mem(set|cpy)", function) for function in target.needed), target.needed
+    assert all(
+        re.fullmatch(r"[a-z]+[0-9]?f|mem(set|cpy)", function) for function in target.needed
+    ), target.needed
     assert target.sections(target.object)["data"] == target.sections(target.object)["bss"] == 0
 
 
@@ -56,7 +70,9 @@ def test_a_table_needs_no_sine(name, tmp_path):
 @pytest.mark.parametrize("optimized", ["-O2", "-Os"])
 @pytest.mark.parametrize("rung", RUNGS)
 def test_the_marks_of_a_small_machine(rung, optimized, tmp_path):
-    """Code and constants, with those of the libraries, under 64 kB, and the stack under 16 kB: here far below."""
+    """Code and constants, with those of the libraries, under 64 kB, and the stack under 16 kB: here
+    far below.
+    """
     target = exported("slider_crank", rung, tmp_path / "slider_crank", optimized)
     used = max(value for key, value in target.measured.items() if key.startswith("stack"))
     assert 100 < used <= target.stated < 4_000
@@ -64,11 +80,17 @@ def test_the_marks_of_a_small_machine(rung, optimized, tmp_path):
 
 
 def test_the_machine_counts_instructions(tmp_path):
-    """A loop of 200000 is counted as that, to a tick of 40; an evaluation is dearer than a motion, and cheaper than in doubles."""
+    """A loop of 200000 is counted as that, to a tick of 40; an evaluation is dearer than a motion,
+    and cheaper than in doubles.
+    """
     single = exported("slider_crank", "single", tmp_path / "single").measured
     double = exported("slider_crank", "double", tmp_path / "double").measured
     for measured in (single, double):
         assert abs(measured["instructions known"] - 200_000) <= 80
-        assert measured["instructions motion"] < measured["instructions evaluate"] <= measured["instructions worst"]
+        assert (
+            measured["instructions motion"]
+            < measured["instructions evaluate"]
+            <= measured["instructions worst"]
+        )
     assert 500 < single["instructions evaluate"] < 1_500
     assert double["instructions evaluate"] > 8 * single["instructions evaluate"]

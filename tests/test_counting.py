@@ -1,4 +1,6 @@
-"""Damage counted step by step in C, in bounded memory, against rainflow counting of the whole history."""
+"""Damage counted step by step in C, in bounded memory, against rainflow counting of the whole
+history.
+"""
 
 import math
 import subprocess
@@ -11,7 +13,10 @@ from lagrange_casadi import codegen, export
 from lagrange_casadi.exports.fatigue import counter
 from lagrange_casadi.strength import cycles, rainflow, reversed_amplitude
 
-MATERIALS = {"lasting": STEEL.but(endurance=200e6), "worn": STEEL.but(endurance=150e6, endless=False)}
+MATERIALS = {
+    "lasting": STEEL.but(endurance=200e6),
+    "worn": STEEL.but(endurance=150e6, endless=False),
+}
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 PROGRAM = """
 #include "x_fatigue.h"
@@ -47,13 +52,18 @@ def count(tmp_path_factory):
         (folder / "x.c").write_text(PROGRAM)
         compiler = codegen.find_compiler("c")
         flags = [f"-DX_FATIGUE_DEPTH={depth}"] if depth else []
-        subprocess.run([*compiler.command, *STRICT, *flags, folder / "x.c", "-o", folder / "x", "-lm"], check=True)
+        subprocess.run(
+            [*compiler.command, *STRICT, *flags, folder / "x.c", "-o", folder / "x", "-lm"],
+            check=True,
+        )
         return folder / "x"
 
     def run(histories, depth=0):
         program = made.setdefault(depth, None) or built(depth)
         made[depth] = program
-        text = "\n".join(f"{len(one)} " + " ".join(float(x).hex() for x in one) for one in histories)
+        text = "\n".join(
+            f"{len(one)} " + " ".join(float(x).hex() for x in one) for one in histories
+        )
         done = subprocess.run([program], input=text, capture_output=True, text=True, check=True)
         return [list(map(float, line.split())) for line in done.stdout.splitlines()]
 
@@ -83,7 +93,9 @@ def histories(rng):
 def test_damage_is_that_of_the_whole_history(count):
     every = list(histories(np.random.default_rng(21)))
     for history, found in zip(every, count(every), strict=True):
-        told = [damage(history, material) if len(history) else 0.0 for material in MATERIALS.values()]
+        told = [
+            damage(history, material) if len(history) else 0.0 for material in MATERIALS.values()
+        ]
         assert found[:2] == pytest.approx(told, rel=1e-10)
         assert found[3] <= found[0] * (1.0 + 1e-12)
 
@@ -103,7 +115,10 @@ def test_a_residue_that_is_too_deep_gives_up_its_oldest_swings(count):
 
 def test_what_is_no_number_is_passed_over(count):
     history = [0.0, 5e8, -3e8, 4e8]
-    (clean,), (dirty,) = count([history]), count([[0.0, math.nan, 5e8, math.inf, -3e8, -math.inf, 4e8]])
+    (clean,), (dirty,) = (
+        count([history]),
+        count([[0.0, math.nan, 5e8, math.inf, -3e8, -math.inf, 4e8]]),
+    )
     assert clean == dirty
 
 

@@ -20,14 +20,26 @@ def rows(here, text, encoding="utf-8"):
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize(("delimiter", "comma"), [(",", False), (";", True), ("\t", True)])
 def test_lines_keep_their_numbers(here, end, delimiter, comma):
-    text = ["# said by hand", "", f"a{delimiter} b ", "  # left out", f'"x{delimiter}y"{delimiter}2', "   "]
+    text = [
+        "# said by hand",
+        "",
+        f"a{delimiter} b ",
+        "  # left out",
+        f'"x{delimiter}y"{delimiter}2',
+        "   ",
+    ]
     found = rows(here, end.join(text), "utf-8-sig")
-    assert found == [Row("table.csv, line 3", 3, ("a", "b")), Row("table.csv, line 5", 5, (f"x{delimiter}y", "2"))]
+    assert found == [
+        Row("table.csv, line 3", 3, ("a", "b")),
+        Row("table.csv, line 5", 5, (f"x{delimiter}y", "2")),
+    ]
     assert all((row.marks is not None) == comma for row in found)
 
 
 def test_characters_that_only_python_takes_for_ends_of_lines_are_none(here):
-    assert [row.where for row in rows(here, "a,b\nx\x0cy,\u2028\n1,2\n")] == [f"table.csv, line {n}" for n in (1, 2, 3)]
+    assert [row.where for row in rows(here, "a,b\nx\x0cy,\u2028\n1,2\n")] == [
+        f"table.csv, line {n}" for n in (1, 2, 3)
+    ]
 
 
 @pytest.mark.parametrize(
@@ -50,7 +62,9 @@ def test_characters_that_only_python_takes_for_ends_of_lines_are_none(here):
     ],
 )
 def test_numbers(cell, comma, per, number):
-    assert Row("here", 1, (cell,), {} if comma else None).number(cell, per) == pytest.approx(number, rel=0, abs=0, nan_ok=True)
+    assert Row("here", 1, (cell,), {} if comma else None).number(cell, per) == pytest.approx(
+        number, rel=0, abs=0, nan_ok=True
+    )
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -67,7 +81,10 @@ def test_a_file_without_rows_is_told(here, text):
 
 def test_a_quote_ends_on_its_line(here):
     with pytest.raises(
-        DeclarationError, match=r"^table\.csv, line 2: no cells with ',' between them: a quote is opened and never cl"
+        DeclarationError,
+        match=(
+            r"^table\.csv, line 2: no cells with ',' between them: a quote is opened and never cl"
+        ),
     ):
         rows(here, 'a,b\n"x,1\ny",2\n')
 

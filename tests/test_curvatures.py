@@ -1,4 +1,6 @@
-"""Second derivatives of peaks by parameters: beside closed forms, and beside differences of first ones."""
+"""Second derivatives of peaks by parameters: beside closed forms, and beside differences of first
+ones.
+"""
 
 import itertools
 import math
@@ -19,16 +21,25 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def test_a_smooth_peak_bends_as_its_closed_form():
-    """The effort of an oscillating arm at its exact peak, which moves with every parameter, in 30 digits."""
+    """The effort of an oscillating arm at its exact peak, which moves with every parameter, in 30
+    digits.
+    """
     m = Mechanism("arm")
-    l, swing, beat = m.parameter("l", 0.7, "m"), m.parameter("swing", 0.6, "rad"), m.parameter("beat", 1.3, "Hz")
+    l, swing, beat = (
+        m.parameter("l", 0.7, "m"),
+        m.parameter("swing", 0.6, "rad"),
+        m.parameter("beat", 1.3, "Hz"),
+    )
     m.revolute("O", m.ground, m.link("arm", length=l, mass=2.0))
     f = prepare(Scene(m, {"O": harmonic(0.2, swing, beat)}, t=(0, 0.7, 40)), wanted=["effort"])
     start = float(f.peaks().t[0])
 
     def effort(t, l, swing, beat):
         w = 2 * mpmath.mp.pi * beat
-        angle, acceleration = mpmath.mpf(0.2) + swing * mpmath.sin(w * t), -swing * w * w * mpmath.sin(w * t)
+        angle, acceleration = (
+            mpmath.mpf(0.2) + swing * mpmath.sin(w * t),
+            -swing * w * w * mpmath.sin(w * t),
+        )
         return 2 * l**2 / 3 * acceleration + mpmath.mpf(9.81) * l * mpmath.cos(angle)
 
     def peak(*p):
@@ -48,7 +59,10 @@ def test_a_smooth_peak_bends_as_its_closed_form():
 
 
 def rotor():
-    """A link that turns; no gravity. Its axial force at the base is its first moment times the square of the rate."""
+    """A link that turns; no gravity.
+
+    Its axial force at the base is its first moment times the square of the rate.
+    """
     m = Mechanism("rotor")
     m.set_gravity(0, 0)
     speed, l = m.parameter("speed", 20.0, "rad/s"), m.parameter("l", 0.4, "m")
@@ -63,7 +77,10 @@ def test_a_level_peak():
     m, speed = rotor()
     f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 11)), wanted=["section:arm"])
     bends = f.curvature(speed=30.0, l=0.5)["section:arm:axial"]
-    exact = {"speed": {"speed": 2 * 0.25, "l": 4 * 30 * 0.5}, "l": {"speed": 4 * 30 * 0.5, "l": 2 * 900.0}}
+    exact = {
+        "speed": {"speed": 2 * 0.25, "l": 4 * 30 * 0.5},
+        "l": {"speed": 4 * 30 * 0.5, "l": 2 * 900.0},
+    }
     for one, row in exact.items():
         for other, value in row.items():
             assert bends[one][other] == pytest.approx(MOMENT * value, rel=1e-13)
@@ -85,7 +102,11 @@ def test_a_peak_at_an_end_that_moves(asked):
     bends = found["section:arm:axial"]
     share = MOMENT * 0.4**2
     # m l^2 (speed)^2, and m l^2 400 (speed/20).
-    exact = {"speed": 2 * share, "l": 2 * share * 40 / 0.4} if asked == "times" else {"speed": 0.0, "l": 2 * share * 20 / 0.4}
+    exact = (
+        {"speed": 2 * share, "l": 2 * share * 40 / 0.4}
+        if asked == "times"
+        else {"speed": 0.0, "l": 2 * share * 20 / 0.4}
+    )
     assert bends["speed"]["speed"] == pytest.approx(exact["speed"], rel=1e-11, abs=1e-9)
     assert bends["speed"]["l"] == pytest.approx(exact["l"], rel=1e-11)
 
@@ -102,27 +123,47 @@ def test_a_jump_whose_time_moves():
     size = 5.0 * math.exp(-3.0 * at)
     assert bends["onset"]["onset"] == pytest.approx(9 * size / 400, rel=1e-8)
     assert bends["onset"]["speed"] == pytest.approx(size * (3 / 400 - 9 * at / 400), rel=1e-8)
-    assert bends["speed"]["speed"] == pytest.approx(size * (9 * at**2 / 400 - 6 * at / 400), rel=1e-8)
+    assert bends["speed"]["speed"] == pytest.approx(
+        size * (9 * at**2 / 400 - 6 * at / 400), rel=1e-8
+    )
 
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    "name", ["four_bar", "quick_return", "cardan_shaft", "connecting_rod", "servo_press", "roller_cam", "scara"]
+    "name",
+    [
+        "four_bar",
+        "quick_return",
+        "cardan_shaft",
+        "connecting_rod",
+        "servo_press",
+        "roller_cam",
+        "scara",
+    ],
 )
 def test_they_are_differences_of_first_ones(name):
-    """Of all kinds of peaks, also along links, of loops that are iterated, and of instants that move."""
+    """Of all kinds of peaks, also along links, of loops that are iterated, and of instants that
+    move.
+    """
     scene = load_case(CASES / name).scene
     f = prepare(scene, wanted=["effort", "reaction", "section"])
     found, gradient = f.curvature(), f.gradient()
     p = f._answers.p[0].copy()
-    sizes = np.abs(gradient.value) + np.nanmax(np.abs(found.bends) * np.abs(p[:, None] * p), axis=(1, 2)) + 1e-300
+    sizes = (
+        np.abs(gradient.value)
+        + np.nanmax(np.abs(found.bends) * np.abs(p[:, None] * p), axis=(1, 2))
+        + 1e-300
+    )
     whole = np.abs(gradient.value) > 1e-9 * np.abs(gradient.value).max()
     for j, parameter in enumerate(f.parameters):
         step = 1e-4 * (abs(p[j]) or 1.0)
         four = {k: f.gradient(**{parameter: float(p[j] + k * step)}).slopes for k in (-2, -1, 1, 2)}
         exact = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
         gaps = (np.abs(found.bends[:, :, j] - exact) * np.abs(p * p[j])).max(axis=1) / sizes
-        assert np.nanmax(gaps[whole]) <= 1e-6, (parameter, f.quantities[int(np.nanargmax(np.where(whole, gaps, 0.0)))])
+        assert np.nanmax(gaps[whole]) <= 1e-6, (
+            parameter,
+            f.quantities[int(np.nanargmax(np.where(whole, gaps, 0.0)))],
+        )
     assert np.isfinite(found.bends[whole]).all()
 
 

@@ -1,4 +1,6 @@
-"""Smooth curves: through their points, joined as they should be, and the same in every way of evaluating them."""
+"""Smooth curves: through their points, joined as they should be, and the same in every way of
+evaluating them.
+"""
 
 import math
 from fractions import Fraction
@@ -13,7 +15,18 @@ from hypothesis import strategies as st
 from mechanisms import cam, cam_lift, sampled_cam
 from splines import by_hand
 
-from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, export, motion, refine, table
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    curve,
+    density,
+    derive,
+    evaluate,
+    export,
+    motion,
+    refine,
+    table,
+)
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
 from lagrange_casadi.instants.rung import Rung
@@ -49,13 +62,21 @@ def test_pieces_pass_through_the_points_and_join(periodic, data):
     for k in range(len(cells) - 1):
         u = Fraction(ends[k + 1]) - Fraction(ends[k])
         c = [Fraction(number) for number in cells[k]]
-        here = (c[0] + u * (c[1] + u * (c[2] + u * c[3])), c[1] + u * (2 * c[2] + 3 * u * c[3]), 2 * c[2] + 6 * u * c[3])
+        here = (
+            c[0] + u * (c[1] + u * (c[2] + u * c[3])),
+            c[1] + u * (2 * c[2] + 3 * u * c[3]),
+            2 * c[2] + 6 * u * c[3],
+        )
         there = (cells[k + 1][0], cells[k + 1][1], 2 * cells[k + 1][2])
         for order, (a, b) in enumerate(zip(here, there, strict=True)):
-            largest = max(size / step**order, *(abs(cell[1]) * step ** (1 - order) for cell in found.cells))
+            largest = max(
+                size / step**order, *(abs(cell[1]) * step ** (1 - order) for cell in found.cells)
+            )
             assert abs(float(a - Fraction(b))) <= 1e-13 * largest * max(1.0, np.abs(x).max() / step)
     for place in np.linspace(x[0], x[-1], 17):
-        assert found(float(place)) == pytest.approx(expected(place)[0], rel=1e-8, abs=1e-8 * np.abs(found(x)).max() + 1e-300)
+        assert found(float(place)) == pytest.approx(
+            expected(place)[0], rel=1e-8, abs=1e-8 * np.abs(found(x)).max() + 1e-300
+        )
 
 
 def test_an_expression_has_the_values_and_exact_derivatives_of_its_pieces():
@@ -65,7 +86,13 @@ def test_an_expression_has_the_values_and_exact_derivatives_of_its_pieces():
         found, expected = curve(x, y, periodic=periodic), by_hand(x, y, periodic)
         s = ca.SX.sym("s")
         rate = ca.jacobian(found(s), s)
-        ways = [found(s), rate, ca.jacobian(rate, s), ca.gradient(found(s), s), ca.jtimes(found(s), s, 1)]
+        ways = [
+            found(s),
+            rate,
+            ca.jacobian(rate, s),
+            ca.gradient(found(s), s),
+            ca.jtimes(found(s), s, 1),
+        ]
         function = ca.Function("f", [s], ways)
         for place in np.linspace(-4.0, 7.0, 223) if periodic else np.linspace(0.0, 2.6, 53):
             value, slope, bend, back, forth = (float(number) for number in function(place))
@@ -76,7 +103,9 @@ def test_an_expression_has_the_values_and_exact_derivatives_of_its_pieces():
 
     def instructions(count):
         s = ca.SX.sym("s")
-        return ca.Function("f", [s], [curve(np.arange(count), np.sin(np.arange(count)))(s)]).n_instructions()
+        return ca.Function(
+            "f", [s], [curve(np.arange(count), np.sin(np.arange(count)))(s)]
+        ).n_instructions()
 
     assert instructions(6) == instructions(600)
 
@@ -89,20 +118,37 @@ def test_a_curve_of_numbers_is_numbers():
     assert repr(found) == "<Curve of 4 points, from 0 to 3>"
     with pytest.raises(DeclarationError, match=r"curve: 3\.5 is beyond its ends, 0 and 3"):
         found(3.5)
-    with pytest.raises(DeclarationError, match=r"expected a scalar casadi\.SX expression or finite numbers"):
+    with pytest.raises(
+        DeclarationError, match=r"expected a scalar casadi\.SX expression or finite numbers"
+    ):
         found(ca.SX.sym("v", 2))
 
 
 @pytest.mark.parametrize(
     ("x", "y", "options", "message"),
     [
-        ([0, 1, 2, 3], [0, 1, 2], {}, "curve: expected two rows of one length, at least 4, got 4 and 3"),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2],
+            {},
+            "curve: expected two rows of one length, at least 4, got 4 and 3",
+        ),
         ([0, 1, 2], [0, 1, 2], {}, "at least 4, got 3 and 3"),
         ([0, 1, 1, 3], [0, 1, 2, 3], {}, "places must increase, but entry 2 is at 1 after 1"),
         ([0, 1, 2, math.nan], [0, 1, 2, 3], {}, "all numbers must be finite"),
         ([0, 1, 2, 3], [0, 1, math.inf, 3], {}, "all numbers must be finite"),
-        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"periodic": True}, "ends as it begins, but its values are 0 at 0 and 0.1 at 3"),
-        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": -1.0}, "smoothing must be a finite number that is not negative, got -1.0"),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2, 0.1],
+            {"periodic": True},
+            "ends as it begins, but its values are 0 at 0 and 0.1 at 3",
+        ),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2, 0.1],
+            {"smoothing": -1.0},
+            "smoothing must be a finite number that is not negative, got -1.0",
+        ),
         ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves but a straight line"),
         ([0, 1, 2, 3], [0, 1, 2, 0], {"smoothing": 5.0, "periodic": True}, "leaves but a constant"),
         ("abcd", [0, 1, 2, 3], {}, "curve: x: expected a row of numbers, got 'abcd'"),
@@ -121,7 +167,11 @@ def test_ends_that_rounding_parts_are_one():
 def test_smoothing_leaves_as_much_as_it_is_told(periodic):
     x = np.linspace(0.0, 2 * math.pi, 181)
     noise = np.random.default_rng(1).normal(size=x.size) * 1e-3
-    y = np.sin(x) + noise - (noise[-1] * (x == x[-1]) - noise[0] * (x == x[-1]) if periodic else 0.0)
+    y = (
+        np.sin(x)
+        + noise
+        - (noise[-1] * (x == x[-1]) - noise[0] * (x == x[-1]) if periodic else 0.0)
+    )
     y[-1] = y[0] if periodic else y[-1]
     found = curve(x, y, periodic=periodic, smoothing=1e-3)
     kept = slice(None, -1) if periodic else slice(None)
@@ -134,7 +184,9 @@ def test_smoothing_leaves_as_much_as_it_is_told(periodic):
 
 
 def test_a_sampled_cam_goes_to_its_closed_form():
-    """The second derivative of a cubic spline is right to the square of its step, and so are forces."""
+    """The second derivative of a cubic spline is right to the square of its step, and so are
+    forces.
+    """
     exact = evaluate(cam(lambda angle: 0.004 * (1 - ca.cos(angle)) + 0.0007 * ca.sin(3 * angle)))
     gaps = []
     for count in (73, 145, 289):
@@ -143,9 +195,14 @@ def test_a_sampled_cam_goes_to_its_closed_form():
         gaps.append(
             [
                 np.abs(found.motion("guide").value - exact.motion("guide").value).max() / 0.008,
-                np.abs(found.motion("guide").acceleration - exact.motion("guide").acceleration).max() / 20.0,
-                np.abs(found.effort("main") - exact.effort("main")).max() / np.abs(exact.effort("main")).max(),
-                np.abs(found.section("rod").axial - exact.section("rod").axial).max() / np.abs(exact.section("rod").axial).max(),
+                np.abs(
+                    found.motion("guide").acceleration - exact.motion("guide").acceleration
+                ).max()
+                / 20.0,
+                np.abs(found.effort("main") - exact.effort("main")).max()
+                / np.abs(exact.effort("main")).max(),
+                np.abs(found.section("rod").axial - exact.section("rod").axial).max()
+                / np.abs(exact.section("rod").axial).max(),
             ]
         )
     gaps = np.array(gaps)
@@ -158,7 +215,10 @@ def test_a_sampled_cam_goes_to_its_closed_form():
 
 def unit(lift, angle):
     """What a unit of the multiplier of rise - lift(angle) = 0 does: forces at points of bodies."""
-    return lambda place: [(("rod", 0.0, 0.0), 0.0, 1.0, 0.0), (("disc", 0.0, 0.0), 0.0, 0.0, -lift(angle(place).v)[1])]
+    return lambda place: [
+        (("rod", 0.0, 0.0), 0.0, 1.0, 0.0),
+        (("disc", 0.0, 0.0), 0.0, 0.0, -lift(angle(place).v)[1]),
+    ]
 
 
 @pytest.mark.parametrize("t", [0.05, 0.1234, 0.31])
@@ -166,7 +226,11 @@ def test_newton_and_euler_agree_on_a_cam(t):
     """With the same spline, made another way."""
     angles = np.linspace(0.0, 2 * math.pi, 73)
     lift = by_hand(angles, cam_lift(angles), True)
-    spring = by_hand(np.array([-0.002, 0.0, 0.004, 0.008, 0.012]), np.array([-150.0, -200.0, -320.0, -470.0, -700.0]), False)
+    spring = by_hand(
+        np.array([-0.002, 0.0, 0.004, 0.008, 0.012]),
+        np.array([-150.0, -200.0, -320.0, -470.0, -700.0]),
+        False,
+    )
 
     def angle(place):
         return place(("disc", 0.0, 0.0))[2]
@@ -179,7 +243,9 @@ def test_newton_and_euler_agree_on_a_cam(t):
 
     contact = oracle.Extra("contact", gap, unit(lift, angle))
     turned = 0.3 + 40.0 * t + 5.0 * t * t
-    assert_balanced(sampled_cam(), t=t, extras=[contact], loads=[loads], nudge=1e-4, rough={"disc": turned})
+    assert_balanced(
+        sampled_cam(), t=t, extras=[contact], loads=[loads], nudge=1e-4, rough={"disc": turned}
+    )
 
 
 def test_every_way_of_evaluating_agrees():
@@ -188,8 +254,18 @@ def test_every_way_of_evaluating_agrees():
     for name in ways["c"].names():
         size = np.abs(ways["c"].array(name)).max()
         np.testing.assert_array_equal(ways["c"].array(name), ways["vm"].array(name), err_msg=name)
-        np.testing.assert_allclose(ways["lanes"].array(name), ways["c"].array(name), rtol=0, atol=1e-13 * size, err_msg=name)
-    for other in ({"precision": "single"}, {"table": 1e-4}, {"precision": "single", "backend": "c"}):
+        np.testing.assert_allclose(
+            ways["lanes"].array(name),
+            ways["c"].array(name),
+            rtol=0,
+            atol=1e-13 * size,
+            err_msg=name,
+        )
+    for other in (
+        {"precision": "single"},
+        {"table": 1e-4},
+        {"precision": "single", "backend": "c"},
+    ):
         found = evaluate(scene, **other)
         assert found.certified
         for name in ("effort:main", "multiplier:contact", "motion:guide_acceleration"):
@@ -205,8 +281,15 @@ def test_errors_are_estimated_beside_50_digits():
         graph = derive(scene)
         found = evaluate(scene)
         some = range(0, found.t.size, 16)
-        rows = reference(graph, [float(found.t[i]) for i in some], list(scene.mechanism.values().values()))
-        for name in ("effort:main", "multiplier:contact", "motion:guide_acceleration", "motion:guide"):
+        rows = reference(
+            graph, [float(found.t[i]) for i in some], list(scene.mechanism.values().values())
+        )
+        for name in (
+            "effort:main",
+            "multiplier:contact",
+            "motion:guide_acceleration",
+            "motion:guide",
+        ):
             exact = np.array([float(row[graph.names.index(name)]) for row in rows])
             gap = np.abs(found.array(name)[list(some)] - exact).max()
             assert gap <= 1e-12 * np.abs(exact).max()
@@ -214,7 +297,9 @@ def test_errors_are_estimated_beside_50_digits():
 
 
 def test_a_curve_needs_no_count_of_whole_turns():
-    """An angle that loops set is seen by a curve over the turn as by a sine: it is the same a turn further."""
+    """An angle that loops set is seen by a curve over the turn as by a sine: it is the same a turn
+    further.
+    """
     m = Mechanism("driven_by_its_follower")
     disc, rod = m.link("disc", length=0.03, mass=0.6), m.link("rod", length=0.1, mass=0.2)
     m.revolute("main", m.ground, disc)
@@ -225,7 +310,9 @@ def test_a_curve_needs_no_count_of_whole_turns():
     scene = Scene(m, {"main": motion.polynomial(0.0, 9.0)}, t=(0, 1, 41), posture={"rod": 0.0})
     found, angle = evaluate(scene), evaluate(scene).pose("rod").angle
     assert not [name for name in derive(scene).names if name.startswith("_turned")]
-    np.testing.assert_allclose(found.array("load:drag:mz"), curve(ROUND, np.sin(ROUND), periodic=True)(angle), atol=1e-14)
+    np.testing.assert_allclose(
+        found.array("load:drag:mz"), curve(ROUND, np.sin(ROUND), periodic=True)(angle), atol=1e-14
+    )
 
 
 def beyond(motion_law=None):
@@ -234,7 +321,9 @@ def beyond(motion_law=None):
     arm = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0)
     swing = m.parameter("swing", 0.5, "rad")
     joint = m.revolute("J", m.ground, arm)
-    m.torque("stop", arm, curve([-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0])(m.coordinate(joint)))
+    m.torque(
+        "stop", arm, curve([-0.6, -0.2, 0.2, 0.6], [9.0, 1.0, -1.0, -9.0])(m.coordinate(joint))
+    )
     return Scene(m, {"J": motion_law or motion.harmonic(0.0, swing, 1.0)}, t=(0, 1, 101))
 
 
@@ -242,7 +331,10 @@ def test_an_argument_beyond_the_ends_is_refused_by_name():
     scene = beyond()
     assert evaluate(scene, parameters={"swing": 0.6}).certified  # just at the ends
     for backend in ("vm", "c", "lanes"):
-        with pytest.raises(AssemblyError, match=r"load 'stop': .* beyond the curve's ends at t = 0\.15 s, where J ="):
+        with pytest.raises(
+            AssemblyError,
+            match=r"load 'stop': .* beyond the curve's ends at t = 0\.15 s, where J =",
+        ):
             evaluate(scene, parameters={"swing": 0.75}, backend=backend)
         designs = DesignEngine.of(scene, rung=Rung(backend))
         p = np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]])
@@ -258,8 +350,12 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
     arm = m.link("arm", length=curve([1, 2, 3, 4], [0.2, 0.3, 0.5, 0.9])(size), mass=1.0)
     m.revolute("J", m.ground, arm)
     scene = Scene(m, {"J": motion.polynomial(0.0, 1.0)}, t=(0, 1, 11))
-    assert evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"]["length"] == pytest.approx(0.9, rel=1e-14)
-    with pytest.raises(ParameterError, match="link 'arm': what is put into its curve is beyond the curve's ends"):
+    assert evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"][
+        "length"
+    ] == pytest.approx(0.9, rel=1e-14)
+    with pytest.raises(
+        ParameterError, match="link 'arm': what is put into its curve is beyond the curve's ends"
+    ):
         evaluate(scene, parameters={"size": 4.1})
     for backend in ("vm", "lanes"):
         found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[3.0], [0.9], [4.0]]))
@@ -269,7 +365,10 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
 def test_an_open_loop_is_told_before_its_curve():
     """Where its links do not reach, there is nothing to put into a curve."""
     m = Mechanism("reaching")
-    crank, rod = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0), m.link("rod", length=0.2, mass=1.0)
+    crank, rod = (
+        m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0),
+        m.link("rod", length=0.2, mass=1.0),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     ram = m.point_mass("ram", 1.0)
@@ -281,7 +380,9 @@ def test_an_open_loop_is_told_before_its_curve():
     with pytest.raises(AssemblyError, match="cannot be closed"):
         evaluate(scene, parameters={"r": 0.25}, t=(0.2, 1, 81))
     for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[0.1], [0.12], [0.25]]))
+        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+            np.array([[0.1], [0.12], [0.25]])
+        )
         assert found.status.tolist()[:2] == [Status.OK, Status.BEYOND_ENDS]
 
 
@@ -291,10 +392,15 @@ def test_a_motion_beyond_the_ends_is_refused_by_name():
     pace = m.parameters["swing"].symbol
     scene = Scene(m, {"J": motion.expression(lambda t: law(2 * pace * t))}, t=(0, 1, 101))
     assert evaluate(scene).certified
-    with pytest.raises(DeclarationError, match="the motion of joint 'J': what is put into its curve is beyond the curve's ends"):
+    with pytest.raises(
+        DeclarationError,
+        match="the motion of joint 'J': what is put into its curve is beyond the curve's ends",
+    ):
         evaluate(scene, parameters={"swing": 0.6})
     for backend in ("vm", "lanes"):
-        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[0.5, 0.5], [0.5, 0.6]]), histories=True)
+        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+            np.array([[0.5, 0.5], [0.5, 0.6]]), histories=True
+        )
         assert found.status.tolist() == [Status.OK, Status.BEYOND_ENDS]
         assert np.isfinite(found.value[0]).all()
         assert np.isnan(found.value[1]).all()
@@ -311,7 +417,9 @@ def test_a_motion_by_a_curve_is_as_its_samples():
     )
     for name in by_samples.names():
         size = np.abs(by_samples.array(name)).max() or 1.0
-        np.testing.assert_allclose(by_curve.array(name), by_samples.array(name), rtol=0, atol=1e-10 * size)
+        np.testing.assert_allclose(
+            by_curve.array(name), by_samples.array(name), rtol=0, atol=1e-10 * size
+        )
 
 
 def test_a_density_along_a_curve():
@@ -323,7 +431,10 @@ def test_a_density_along_a_curve():
         return evaluate(Scene(m, {"J": motion.polynomial(0.2, 3.0, 4.0)}, t=(0, 1, 5)))
 
     u = np.array([0.0, 0.2, 0.5, 0.6, 0.9, 1.0])
-    found, expected = bar(density.along(curve(u, 4 - 3 * u + u**3))), bar(density.polynomial(4.0, -3.0, 0.0, 1.0))
+    found, expected = (
+        bar(density.along(curve(u, 4 - 3 * u + u**3))),
+        bar(density.polynomial(4.0, -3.0, 0.0, 1.0)),
+    )
     for force in ("axial", "shear", "bending"):
         a, b = (getattr(solution.section("bar"), force) for solution in (found, expected))
         np.testing.assert_allclose(a, b, rtol=0, atol=1e-13 * np.abs(b).max())
@@ -343,18 +454,31 @@ def test_peaks_between_instants_are_those_of_many_instants():
     for name in ("effort:main", "multiplier:contact"):
         size = np.abs(fine.array(name)).max()
         assert abs(abs(peaks[name].value) - size) <= 1e-5 * size
-        assert abs(abs(designs.value[0, [str(q) for q in quantities].index(name)]) - size) <= 1e-5 * size
+        assert (
+            abs(abs(designs.value[0, [str(q) for q in quantities].index(name)]) - size)
+            <= 1e-5 * size
+        )
 
 
 def test_interpolants_of_casadis_are_refused_with_the_way_out():
     m = Mechanism("looked_up")
     p = m.point_mass("p", 1.0)
     x = m.coordinate(m.prismatic("X", m.ground, p, axis=(1, 0)))
-    found = ca.interpolant("spring", "bspline", [[0.0, 1.0, 2.0, 3.0, 4.0]], [0.0, 1.0, 4.0, 9.0, 16.0])
-    for declare in (lambda: m.constraint("cam", x - found(m.time)), lambda: m.force("spring", p, x=found(x))):
-        with pytest.raises(DeclarationError, match=r"calls casadi.interpolant.*expected lagrange_casadi.curve\(x, y\)\(ARGUMENT\)"):
+    found = ca.interpolant(
+        "spring", "bspline", [[0.0, 1.0, 2.0, 3.0, 4.0]], [0.0, 1.0, 4.0, 9.0, 16.0]
+    )
+    for declare in (
+        lambda: m.constraint("cam", x - found(m.time)),
+        lambda: m.force("spring", p, x=found(x)),
+    ):
+        with pytest.raises(
+            DeclarationError,
+            match=r"calls casadi.interpolant.*expected lagrange_casadi.curve\(x, y\)\(ARGUMENT\)",
+        ):
             declare()
-    with pytest.raises(DeclarationError, match=r"the motion of joint 'X' calls casadi\.interpolant"):
+    with pytest.raises(
+        DeclarationError, match=r"the motion of joint 'X' calls casadi\.interpolant"
+    ):
         evaluate(Scene(m, {"X": motion.expression(found)}, t=(0, 1, 3)))
 
 
@@ -368,7 +492,11 @@ def test_a_table_in_a_constraint_names_the_curve():
 
 def test_exported_c_tells_how_large_its_curves_are(tmp_path):
     with pytest.raises(
-        SizeError, match=r"what curves and motions by samples look up takes .* bytes of constants, and the limit is 1000"
+        SizeError,
+        match=(
+            r"what curves and motions by samples look up takes .* bytes of constants, and the limit"
+            r" is 1000"
+        ),
     ):
         export(sampled_cam(), tmp_path / "small", largest=1000)
     assert export(sampled_cam(), tmp_path / "enough").prefix == "cam"

@@ -1,4 +1,6 @@
-"""Cylindrical cams: forces of closed forms, on bodies cut free; the groove that the roller leaves; and what is refused."""
+"""Cylindrical cams: forces of closed forms, on bodies cut free; the groove that the roller leaves;
+and what is refused.
+"""
 
 import math
 
@@ -17,29 +19,60 @@ RADIUS, OMEGA, MASS, DRUM, G = 0.06, 25.0, 0.9, 3.0, 9.81
 
 
 def law(size):
-    parts = [move(size, time=2.0, law="modified_sine"), dwell(0.8), move(0.0, time=2.4, law="polynomial_345"), dwell()]
+    parts = [
+        move(size, time=2.0, law="modified_sine"),
+        dwell(0.8),
+        move(0.0, time=2.4, law="polynomial_345"),
+        dwell(),
+    ]
     return moves(parts, cyclic=True, period=2 * math.pi)
 
 
 def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0), **more):
-    """A drum about an axis through (0.1, 0.2, 0.3), and a carriage beside it that slides along that."""
+    """A drum about an axis through (0.1, 0.2, 0.3), and a carriage beside it that slides along
+    that.
+    """
     m = SpatialMechanism("sliding")
     h = m.parameter("h", 0.05, "m")
     u, r = np.array(axis), np.array(across)
-    drum = m.link("drum", length=0.2, mass=DRUM, centre=(0.02, 0.0, 0.01), inertia=(6e-3, 7e-3, 8e-3))
-    cart = m.link("cart", length=0.1, mass=MASS, centre=(0.01, 0.02, 0.03), inertia=(1e-3, 2e-3, 3e-3))
+    drum = m.link(
+        "drum", length=0.2, mass=DRUM, centre=(0.02, 0.0, 0.01), inertia=(6e-3, 7e-3, 8e-3)
+    )
+    cart = m.link(
+        "cart", length=0.1, mass=MASS, centre=(0.01, 0.02, 0.03), inertia=(1e-3, 2e-3, 3e-3)
+    )
     centre = np.array([0.1, 0.2, 0.3])
-    main = m.revolute("main", m.ground.at(*centre), drum.at(0.0, 0.0, 0.04), axis=axis, turned=[("x", "40 deg"), ("y", "25 deg")])
-    lead = m.prismatic("lead", m.ground.at(*(centre + 0.15 * r + 0.02 * u)), cart, axis=axis, turned=[("z", "70 deg")])
+    main = m.revolute(
+        "main",
+        m.ground.at(*centre),
+        drum.at(0.0, 0.0, 0.04),
+        axis=axis,
+        turned=[("x", "40 deg"), ("y", "25 deg")],
+    )
+    lead = m.prismatic(
+        "lead",
+        m.ground.at(*(centre + 0.15 * r + 0.02 * u)),
+        cart,
+        axis=axis,
+        turned=[("z", "70 deg")],
+    )
     arm = rotation([("z", 70)]).T @ (-(0.15 - RADIUS) * r + 0.03 * u)
-    cam = cylindrical_cam(m, "cam", main, lead, lift or law(h), start=0.01, point=cart.at(*arm), **more)
-    return cam, Scene(m, {"main": polynomial(0.2, OMEGA, 3.0)}, t=(0, 0.24, 61), posture={"lead": 0.02})
+    cam = cylindrical_cam(
+        m, "cam", main, lead, lift or law(h), start=0.01, point=cart.at(*arm), **more
+    )
+    return cam, Scene(
+        m, {"main": polynomial(0.2, OMEGA, 3.0)}, t=(0, 0.24, 61), posture={"lead": 0.02}
+    )
 
 
 def rotation(turns):
     found = np.eye(3)
     for axis, degrees in turns:
-        c, s, k = math.cos(math.radians(degrees)), math.sin(math.radians(degrees)), "xyz".index(axis)
+        c, s, k = (
+            math.cos(math.radians(degrees)),
+            math.sin(math.radians(degrees)),
+            "xyz".index(axis),
+        )
         turn = np.eye(3)
         i, j = (k + 1) % 3, (k + 2) % 3
         turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
@@ -61,7 +94,9 @@ TILTED = tuple(np.array([1.0, 2.0, 2.0]) / 3), tuple(np.array([2.0, 1.0, -2.0]) 
 
 @pytest.mark.parametrize(("axis", "across"), [((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)), TILTED])
 def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
-    """Norton: tan(pressure angle) = s'/R; the force is that of inertia and weight over its cosine."""
+    """Norton: tan(pressure angle) = s'/R; the force is that of inertia and
+    weight over its cosine.
+    """
     _, scene = sliding(axis, across=across)
     solution = evaluate(scene)
     assert solution.certified
@@ -70,19 +105,26 @@ def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
     lead, main = solution.motion("lead"), solution.motion("main")
     value, slope, bend = values_of(law(0.05), main.value)
     assert lead.value == pytest.approx(0.01 + value, abs=1e-13)
-    assert lead.acceleration == pytest.approx(bend * main.rate**2 + slope * main.acceleration, abs=1e-9)
+    assert lead.acceleration == pytest.approx(
+        bend * main.rate**2 + slope * main.acceleration, abs=1e-9
+    )
     lean = np.arctan(slope / RADIUS)
     assert solution.output("cam_pressure_angle") == pytest.approx(np.abs(lean), abs=1e-7)
     force = solution.output("cam_force")
     along = MASS * (lead.acceleration - g @ u)
     size = np.abs(along).max()
     assert force * np.cos(lean) == pytest.approx(along, abs=1e-10 * size)
-    # On the follower it acts so, through the roller's centre; its guide takes what is across, and the moment.
+    # On the follower it acts so, through the roller's centre; its guide takes what is across, and
+    # the moment.
     push = force * (np.cos(lean) * u[:, None] + np.sin(lean) * w[:, None])
     reaction = solution.reaction("lead")
     held = np.stack([reaction.fx, reaction.fy, reaction.fz])
-    assert held + push == pytest.approx((MASS * (lead.acceleration * u[:, None] - g[:, None])), abs=1e-10 * size)
-    seat = (np.array([0.1, 0.2, 0.3]) + RADIUS * r + 0.05 * u)[:, None] + lead.value * u[:, None]  # of the roller
+    assert held + push == pytest.approx(
+        (MASS * (lead.acceleration * u[:, None] - g[:, None])), abs=1e-10 * size
+    )
+    seat = (np.array([0.1, 0.2, 0.3]) + RADIUS * r + 0.05 * u)[:, None] + lead.value * u[
+        :, None
+    ]  # of the roller
     guide = (np.array([0.1, 0.2, 0.3]) + 0.15 * r + 0.02 * u)[:, None] + lead.value * u[:, None]
     heavy = guide + (rotation([("z", 70)]) @ [0.01, 0.02, 0.03])[:, None]
     moment = np.stack([reaction.mx, reaction.my, reaction.mz])
@@ -91,15 +133,25 @@ def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
     # The drum takes the opposite: its drive, and its bearing with all moments.
     place = np.array([0.1, 0.2, 0.3])[:, None]
     bearing = solution.reaction("main")
-    shaft, tilt = np.stack([bearing.fx, bearing.fy, bearing.fz]), np.stack([bearing.mx, bearing.my, bearing.mz])
+    shaft, tilt = (
+        np.stack([bearing.fx, bearing.fy, bearing.fz]),
+        np.stack([bearing.mx, bearing.my, bearing.mz]),
+    )
     drum, (middle, momentum, spin) = solution.effort("main"), inertia_of_drum(main, u, place)
     assert shaft - push == pytest.approx(momentum - DRUM * g[:, None], abs=1e-9 * size)
-    total = tilt + drum * u[:, None] - np.cross(seat - middle, push, axis=0) + np.cross(place - middle, shaft, axis=0)
+    total = (
+        tilt
+        + drum * u[:, None]
+        - np.cross(seat - middle, push, axis=0)
+        + np.cross(place - middle, shaft, axis=0)
+    )
     assert total == pytest.approx(spin, abs=1e-9 * size)
 
 
 def inertia_of_drum(main, u, place):
-    """Where its centre is, what its momentum changes by, and its moment of momentum about the centre."""
+    """Where its centre is, what its momentum changes by, and its moment of momentum about the
+    centre.
+    """
     resting = rotation([("x", 40), ("y", 25)])
     skew = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
     middle, momentum, spin = [], [], []
@@ -108,26 +160,42 @@ def inertia_of_drum(main, u, place):
         arm = axes @ [0.02, 0.0, 0.01 - 0.04]
         inertia = axes @ np.diag([6e-3, 7e-3, 8e-3]) @ axes.T
         middle.append(place[:, 0] + arm)
-        momentum.append(DRUM * (np.cross(change * u, arm) + np.cross(rate * u, np.cross(rate * u, arm))))
+        momentum.append(
+            DRUM * (np.cross(change * u, arm) + np.cross(rate * u, np.cross(rate * u, arm)))
+        )
         spin.append(inertia @ (change * u) + np.cross(rate * u, inertia @ (rate * u)))
     return (np.array(rows).T for rows in (middle, momentum, spin))
 
 
 def swinging(side=1.0):
-    """A drum about x, and an arm above it that swings about z; its roller goes round a circle beside the drum's line."""
+    """A drum about x, and an arm above it that swings about z; its roller goes round a circle
+    beside the drum's line.
+    """
     m = SpatialMechanism("swinging")
     swing = m.parameter("swing", 0.5, "rad")
     drum = m.link("drum", length=0.2, mass=DRUM, centre=(0.0, 0.0, 0.0), inertia=(6e-3, 7e-3, 7e-3))
-    arm = m.link("arm", length=0.12, mass=MASS, centre=(0.05, 0.0, 0.01), inertia=(1e-4, 1e-3, 1e-3))
+    arm = m.link(
+        "arm", length=0.12, mass=MASS, centre=(0.05, 0.0, 0.01), inertia=(1e-4, 1e-3, 1e-3)
+    )
     main = m.revolute("main", m.ground, drum, axis=(1, 0, 0))
-    lead = m.revolute("lead", m.ground.at(0.1, 0.12 * side, RADIUS), arm, axis=(0, 0, 1), turned=[("z", f"{-90 * side} deg")])
+    lead = m.revolute(
+        "lead",
+        m.ground.at(0.1, 0.12 * side, RADIUS),
+        arm,
+        axis=(0, 0, 1),
+        turned=[("z", f"{-90 * side} deg")],
+    )
     cam = cylindrical_cam(m, "cam", main, lead, law(swing), start=-0.25, point=arm.tip)
-    return cam, Scene(m, {"main": polynomial(0.2, OMEGA)}, t=(0, 2 * math.pi / OMEGA, 61), posture={"lead": -0.2})
+    return cam, Scene(
+        m, {"main": polynomial(0.2, OMEGA)}, t=(0, 2 * math.pi / OMEGA, 61), posture={"lead": -0.2}
+    )
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
-    """The pin's reaction and the contact balance the arm; the contact is across the groove, and across the roller's axis."""
+    """The pin's reaction and the contact balance the arm; the contact is across the groove, and
+    across the roller's axis.
+    """
     _, scene = swinging(side)
     solution = evaluate(scene)
     assert solution.certified
@@ -136,13 +204,18 @@ def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
     assert lead.value == pytest.approx(value - 0.25, abs=1e-12)
     angle = lead.value - side * math.pi / 2
     zero = np.zeros_like(angle)
-    along, over = np.stack([np.cos(angle), np.sin(angle), zero]), np.stack([-np.sin(angle), np.cos(angle), zero])
+    along, over = (
+        np.stack([np.cos(angle), np.sin(angle), zero]),
+        np.stack([-np.sin(angle), np.cos(angle), zero]),
+    )
     roller = np.array([[0.1], [0.12 * side], [RADIUS]]) + 0.12 * along
     passing = 0.12 * slope * over - np.cross([1.0, 0.0, 0.0], roller, axis=0)
     bearing = solution.reaction("lead")
     held = np.stack([bearing.fx, bearing.fy, bearing.fz])
     centre = 0.05 * along + np.array([[0.0], [0.0], [0.01]])
-    momentum = MASS * (0.05 * (lead.acceleration * over - lead.rate**2 * along) + np.array([[0.0], [0.0], [G]]))
+    momentum = MASS * (
+        0.05 * (lead.acceleration * over - lead.rate**2 * along) + np.array([[0.0], [0.0], [G]])
+    )
     push = momentum - held
     force, size = solution.output("cam_force"), np.abs(held).max()
     assert np.abs(force) == pytest.approx(np.linalg.norm(push, axis=0), abs=1e-9 * size)
@@ -156,7 +229,9 @@ def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
     assert np.cos(solution.output("cam_pressure_angle"))[pressed] == pytest.approx(cosine, rel=1e-9)
     # The drum gives what the arm takes.
     power = solution.effort("main") * OMEGA
-    assert power == pytest.approx((1e-3 + MASS * 0.05**2) * lead.acceleration * lead.rate, abs=1e-9 * np.abs(power).max())
+    assert power == pytest.approx(
+        (1e-3 + MASS * 0.05**2) * lead.acceleration * lead.rate, abs=1e-9 * np.abs(power).max()
+    )
     thrust, spin = solution.reaction("main").fx, push[0]
     assert thrust == pytest.approx(spin, abs=1e-9 * size)
 
@@ -165,23 +240,36 @@ def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
 def test_the_groove_is_the_way_of_the_roller_on_the_drum(machine):
     cam, scene = machine()
     path = cam.groove(count=90)
-    scene = Scene(scene.mechanism, {"main": polynomial(0.0, 1.0)}, over=("main", 0, "356 deg", 90), posture=scene.posture)
+    scene = Scene(
+        scene.mechanism,
+        {"main": polynomial(0.0, 1.0)},
+        over=("main", 0, "356 deg", 90),
+        posture=scene.posture,
+    )
     solution = evaluate(scene, wanted=["motion"])
     pose = solution.pose("drum")
     body = "cart" if machine is sliding else "arm"
     follower = solution.pose(body)
-    local = np.array([cam.mechanism.number(x, cam.mechanism.values()) for x in roller_of(cam).place])
-    at = np.stack([follower.x, follower.y, follower.z]).T + np.einsum("tik,i->tk", follower.axes, local)
+    local = np.array(
+        [cam.mechanism.number(x, cam.mechanism.values()) for x in roller_of(cam).place]
+    )
+    at = np.stack([follower.x, follower.y, follower.z]).T + np.einsum(
+        "tik,i->tk", follower.axes, local
+    )
     seen = np.einsum("tik,tk->ti", pose.axes, at - np.stack([pose.x, pose.y, pose.z]).T)
     assert path == pytest.approx(seen, abs=1e-12)
     assert path.shape == (90, 3)
-    with pytest.raises(DeclarationError, match="cam 'cam': count must be a whole number of at least 16, got 3"):
+    with pytest.raises(
+        DeclarationError, match="cam 'cam': count must be a whole number of at least 16, got 3"
+    ):
         cam.groove(count=3)
 
 
 def roller_of(cam):
     """The point of the follower that the cam's equation sees."""
-    return next(m.of for m in cam.mechanism.measures.asked if getattr(m.of, "body", None) in followers(cam))
+    return next(
+        m.of for m in cam.mechanism.measures.asked if getattr(m.of, "body", None) in followers(cam)
+    )
 
 
 def followers(cam):
@@ -199,20 +287,34 @@ def broken(**options):
         given |= {"cam": lead, "follower": main}
     if given.get("point") == "drum":
         given["point"] = drum.tip
-    return cylindrical_cam(m, "cam", given.pop("cam"), given.pop("follower"), given.pop("lift"), **given)
+    return cylindrical_cam(
+        m, "cam", given.pop("cam"), given.pop("follower"), given.pop("lift"), **given
+    )
 
 
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"follower": "main"}, "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'"),
+        (
+            {"follower": "main"},
+            "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'",
+        ),
         ({"point": "drum"}, "its point must be on 'cart', which joint 'lead' leads"),
         ({"axis": (1, 0.1, 0)}, "joint 'lead' must be along the drum's axis"),
-        ({"place": (0.0, 0.0, 0.0)}, "cam 'cam': the drum does not pass by the roller; expected it off the axis"),
-        ({"lift": lambda x: 0.01 * x}, "its lift must be the same after a turn of the cam; expected a period of 2 pi"),
+        (
+            {"place": (0.0, 0.0, 0.0)},
+            "cam 'cam': the drum does not pass by the roller; expected it off the axis",
+        ),
+        (
+            {"lift": lambda x: 0.01 * x},
+            "its lift must be the same after a turn of the cam; expected a period of 2 pi",
+        ),
         (
             {"lift": math.sin},
-            "lift is no finite number at 0 deg of the cam; expected a function of CasADi's expressions, with casadi",
+            (
+                "lift is no finite number at 0 deg of the cam; expected a function of CasADi's"
+                " expressions, with casadi"
+            ),
         ),
         ({"lift": 0.02}, "lift: expected a function, got 0.02"),
     ],
@@ -225,8 +327,14 @@ def test_misuse_is_named(options, says):
 def test_planes_have_disc_cams():
     m = Mechanism("flat")
     drum, cart = m.link("drum", length=0.1, mass=1.0), m.point_mass("cart", 1.0)
-    main, lead = m.revolute("main", m.ground, drum), m.prismatic("lead", m.ground, cart, axis=(1, 0))
-    with pytest.raises(DeclarationError, match="expected a revolute joint whose parent is the ground, in space, got 'main'"):
+    main, lead = (
+        m.revolute("main", m.ground, drum),
+        m.prismatic("lead", m.ground, cart, axis=(1, 0)),
+    )
+    with pytest.raises(
+        DeclarationError,
+        match="expected a revolute joint whose parent is the ground, in space, got 'main'",
+    ):
         cylindrical_cam(m, "cam", main, lead, lambda x: 0.0 * x)
 
 
@@ -242,7 +350,9 @@ def pressed(force, radius):
 
 
 def test_the_pressure_of_hertz_on_the_flank_that_is_touched():
-    """Rothbart: the path's radius on the unrolled drum is (R^2 + s'^2)^(3/2)/(R s''); the flank's, more or less the roller's."""
+    """Rothbart: the path's radius on the unrolled drum is (R^2 + s'^2)^(3/2)/(R s''); the flank's,
+    more or less the roller's.
+    """
     _, scene = sliding(lift=(lift := law(0.05)), **HERTZ)
     solution = evaluate(scene)
     assert solution.certified
@@ -258,22 +368,33 @@ def test_the_pressure_of_hertz_on_the_flank_that_is_touched():
 
 
 def test_the_bend_of_a_swinging_arms_groove_is_that_of_its_points():
-    """Across the roller, by three neighbours of the path in the drum's axes, as seen along the roller's axis."""
+    """Across the roller, by three neighbours of the path in the drum's axes, as seen along the
+    roller's axis.
+    """
     cam, scene = swinging()
     count, values = 14400, [*scene.mechanism.values().values()]
     path, rows = cam.groove(count=count), [cam.design.bend, *cam.design.normal]
-    told = ca.Function("told", [cam.design.angle, scene.mechanism.symbols], [ca.vertcat(*map(ca.SX, rows))])
+    told = ca.Function(
+        "told", [cam.design.angle, scene.mechanism.symbols], [ca.vertcat(*map(ca.SX, rows))]
+    )
     for k in range(400, count, count // 12):
         angle = math.tau * k / count
         bend, *normal = told(angle, values).full().ravel()
-        before, here, after = (rotation([("x", math.degrees(angle))]) @ path[(k + j) % count] for j in (-1, 0, 1))
+        before, here, after = (
+            rotation([("x", math.degrees(angle))]) @ path[(k + j) % count] for j in (-1, 0, 1)
+        )
         way, change = (after - before) / 2, after - 2 * here + before
-        assert bend == pytest.approx(change @ normal / (way[0] ** 2 + way[1] ** 2), rel=1e-4, abs=1e-3)
+        assert bend == pytest.approx(
+            change @ normal / (way[0] ** 2 + way[1] ** 2), rel=1e-4, abs=1e-3
+        )
 
 
 def test_a_groove_that_the_roller_would_cut_is_refused_by_name():
     with pytest.raises(
-        DeclarationError, match=r"cam 'cam': its groove is undercut at .* deg of the cam, where its path has a radius"
+        DeclarationError,
+        match=(
+            r"cam 'cam': its groove is undercut at .* deg of the cam, where its path has a radius"
+        ),
     ):
         sliding(lift=law(0.05), **HERTZ | {"roller": 0.08})
     for told, words in (

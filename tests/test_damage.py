@@ -1,4 +1,6 @@
-"""Files damaged at random: every one is refused in one line, and none crashes, hangs, or is believed."""
+"""Files damaged at random: every one is refused in one line, and none crashes, hangs, or is
+believed.
+"""
 
 import os
 import subprocess
@@ -23,13 +25,27 @@ def damage(file, folder, seed, count):
     # Each attempt has a limit of its own; this one is for what goes wrong besides.
     limit = 600 + _SECONDS * count
     environment = os.environ | {"PYTHONPATH": str(program.parent)}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=limit, env=environment, check=False)
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=limit,
+        env=environment,
+        check=False,
+    )
     return done.stdout.splitlines(), done
 
 
 @pytest.fixture
 def run(slider_crank, tmp_path):
-    solution = evaluate(slider_crank.scene, t=(0, 0.08, 21), xi=(0, 1, 5), wanted=("effort", "section:rod"), backend="vm")
+    solution = evaluate(
+        slider_crank.scene,
+        t=(0, 0.08, 21),
+        xi=(0, 1, 5),
+        wanted=("effort", "section:rod"),
+        backend="vm",
+    )
     save(solution, tmp_path / "run.h5")
     return tmp_path / "run.h5"
 
@@ -37,7 +53,12 @@ def run(slider_crank, tmp_path):
 @pytest.fixture
 def swept(monkeypatch, tmp_path):
     sweeps.use(monkeypatch)
-    return sweep(sweeps.scene(), {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 20)}, out=tmp_path / "sweep.h5", xi=(0, 1, 3)).path
+    return sweep(
+        sweeps.scene(),
+        {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 20)},
+        out=tmp_path / "sweep.h5",
+        xi=(0, 1, 3),
+    ).path
 
 
 @pytest.mark.sampled(2)
@@ -56,7 +77,9 @@ def test_damage_is_refused(request, tmp_path, kind, count):
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", ["run", "swept"])
 def test_what_is_whole_is_believed(request, tmp_path, kind):
-    """The same program finds that every reader takes the file as it was written, so it would find a reader that takes another."""
+    """The same program finds that every reader takes the file as it was written, so it would find a
+    reader that takes another.
+    """
     lines, done = damage(request.getfixturevalue(kind), tmp_path / "whole", 0, 0)
     assert done.returncode == 0, done.stderr
     accepted = [f"0: {number}: accepted" for number in range(6 if kind == "run" else 7)]

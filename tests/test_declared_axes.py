@@ -1,4 +1,6 @@
-"""Stresses about the axes that were declared: the spatial oracle's forces, resolved on these axes, and a textbook's formulas."""
+"""Stresses about the axes that were declared: the spatial oracle's forces, resolved on these axes,
+and a textbook's formulas.
+"""
 
 import dataclasses
 
@@ -19,7 +21,11 @@ RATIOS = (0.0, 0.25, 0.5, 0.75, 1.0)
 QUICK = [("anyhow", 8), ("rssr", 0), ("rssp", 1), ("tree", 3)]
 MANY = [("anyhow", 0), ("rsur", 1), ("suspension", 0), ("loop", 1)]
 MANY += [("anyhow", seed) for seed in range(100, 400)]
-MANY += [(name, seed) for name in ("tree", "loop", "rssr", "rsur", "rssp", "rsup") for seed in range(100, 130)]
+MANY += [
+    (name, seed)
+    for name in ("tree", "loop", "rssr", "rsur", "rssp", "rsup")
+    for seed in range(100, 130)
+]
 MANY += [(name, seed) for name in ("suspension", "arm") for seed in range(100, 110)]
 
 
@@ -40,18 +46,26 @@ class Section:
         return beams.given(self.area, self.iz, self.iy, **sides, torsion=1e-9, torsion_modulus=1e-6)
 
     def normal(self, forces, y_sign, z_sign):
-        """The normal stress at a corner: N/A + a y + b z, of which the moments about both axes are the bending moments."""
+        """The normal stress at a corner: N/A + a y + b z, of which the moments about both axes are
+        the bending moments.
+        """
         n, _, _, _, about_y, about_z = forces
         a, b = np.linalg.solve([[self.iz, self.iyz], [self.iyz, self.iy]], [-about_z, about_y])
         return n / self.area + a * y_sign * self.height / 2 + b * z_sign * self.width / 2
 
     def corners(self, forces):
         words = {1: "+", -1: "-"}
-        return {f"corner {words[i]}y {words[j]}z": self.normal(forces, i, j) for i in (1, -1) for j in (1, -1)}
+        return {
+            f"corner {words[i]}y {words[j]}z": self.normal(forces, i, j)
+            for i in (1, -1)
+            for j in (1, -1)
+        }
 
 
 def made(name, seed):
-    """A drawn mechanism whose rods have cross-sections; of some all the mass is that of the beam."""
+    """A drawn mechanism whose rods have cross-sections; of some all the mass
+    is that of the beam.
+    """
     drawn, rng = plain(DRAWS[name](seed)), np.random.default_rng([seed, 7])
     sections = {rod: Section(rng) for rod in drawn.rods}
     bodies = []
@@ -59,11 +73,15 @@ def made(name, seed):
         if body.name in sections and not body.polar and rng.random() < 0.5:
             body = dataclasses.replace(body, density=(STEEL.density * sections[body.name].area,))
         bodies.append(body)
-    return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, bodies=bodies)), sections
+    return dataclasses.replace(
+        drawn, mechanism=dataclasses.replace(drawn.mechanism, bodies=bodies)
+    ), sections
 
 
 def declared_axes(drawn, rod, pose):
-    """The axes of a rod as columns: of a bar y is the part across it of the direction beside, which the ground carries."""
+    """The axes of a rod as columns: of a bar y is the part across it of the direction beside, which
+    the ground carries.
+    """
     R = np.asarray(pose.R, float)
     if rod not in bars_of(drawn):
         return R
@@ -76,7 +94,9 @@ def declared_axes(drawn, rod, pose):
 def compare(name, seed, instants):
     """The rods whose stresses were compared."""
     drawn, sections = made(name, seed)
-    scene = declared(drawn, beams={rod: beams.Beam(section.shape(), STEEL) for rod, section in sections.items()})
+    scene = declared(
+        drawn, beams={rod: beams.Beam(section.shape(), STEEL) for rod, section in sections.items()}
+    )
     solution = evaluate(scene, xi=(0, 1, 5))
     assert solution.certified
     assert {*solution.description["bars"]} == bars_of(drawn)
@@ -92,14 +112,16 @@ def compare(name, seed, instants):
             axes = declared_axes(drawn, rod, true.poses[rod])
             assert np.abs(solution.pose(rod).axes[k] - axes.T).max() < 1e-11, rod
             stress, law = solution.stress(rod), solution.section(rod)
-            size = force / section.area + moment * np.hypot(section.height, section.width) / 2 / min(
-                np.linalg.eigvalsh([[section.iz, section.iyz], [section.iyz, section.iy]])
-            )
+            size = force / section.area + moment * np.hypot(
+                section.height, section.width
+            ) / 2 / min(np.linalg.eigvalsh([[section.iz, section.iyz], [section.iyz, section.iy]]))
             for i, xi in enumerate(RATIOS):
                 own = true.sections[rod].at(xi).astype(float).reshape(2, 3)
                 forces = (own @ np.asarray(true.poses[rod].R, float).T @ axes).ravel()
                 told = np.array([getattr(law, member)[k, i] for member in SECTION])
-                assert np.all(np.abs(told - forces) < 1e-12 * np.array([force] * 3 + [moment] * 3)), (rod, xi)
+                assert np.all(
+                    np.abs(told - forces) < 1e-12 * np.array([force] * 3 + [moment] * 3)
+                ), (rod, xi)
                 values = dict(zip(stress.fibres(xi), stress.at(xi)[:, :, k].T, strict=True))
                 for corner, value in section.corners(forces).items():
                     assert abs(values[corner][0] - value) < 1e-12 * size, (rod, xi, corner)

@@ -1,4 +1,6 @@
-"""Deflections of links: against closed forms of Euler and Bernoulli with Timoshenko's shear, fine sums, and a frame solver."""
+"""Deflections of links: against closed forms of Euler and Bernoulli with Timoshenko's shear, fine
+sums, and a frame solver.
+"""
 
 import math
 
@@ -17,7 +19,11 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 STEEL = beams.material("S235")
 E, G = STEEL.elasticity, STEEL.shear_modulus
 LENGTH = 2.0
-SHAPES = [beams.rectangle(0.05, 0.02), beams.i_section(0.1, 0.055, 0.004, 0.006), beams.tube(0.04, 0.003)]
+SHAPES = [
+    beams.rectangle(0.05, 0.02),
+    beams.i_section(0.1, 0.055, 0.004, 0.006),
+    beams.tube(0.04, 0.003),
+]
 
 
 def cantilever(shape, material=STEEL, weight=False, **forces):
@@ -38,7 +44,9 @@ def test_a_cantilever_with_a_load_at_its_tip(shape):
     p, force = shape.properties(), -100.0
     ei, ga, x = E * p.iz, G * p.shear_y, LENGTH * np.linspace(0, 1, 9)
     assert found.against == "base"
-    assert found.tip["across"] == pytest.approx(force * LENGTH**3 / (3 * ei) + force * LENGTH / ga, rel=1e-13)
+    assert found.tip["across"] == pytest.approx(
+        force * LENGTH**3 / (3 * ei) + force * LENGTH / ga, rel=1e-13
+    )
     assert found.tip["turn"] == pytest.approx(force * LENGTH**2 / (2 * ei), rel=1e-13)
     assert found.tip["along"] == pytest.approx(3e3 * LENGTH / (E * p.area), rel=1e-13)
     curve = force * (3 * LENGTH * x**2 - x**3) / (6 * ei) + force * x / ga
@@ -52,7 +60,9 @@ def test_a_cantilever_under_its_weight():
     shape = SHAPES[0]
     found, p = cantilever(shape, weight=True).deflection("arm"), shape.properties()
     q = -STEEL.density * p.area * 9.81
-    assert found.tip["across"] == pytest.approx(q * LENGTH**4 / (8 * E * p.iz) + q * LENGTH**2 / (2 * G * p.shear_y), rel=1e-12)
+    assert found.tip["across"] == pytest.approx(
+        q * LENGTH**4 / (8 * E * p.iz) + q * LENGTH**2 / (2 * G * p.shear_y), rel=1e-12
+    )
     assert found.tip["turn"] == pytest.approx(q * LENGTH**3 / (6 * E * p.iz), rel=1e-12)
 
 
@@ -60,7 +70,10 @@ def bridge(shape, *loads):
     """A link on a pin and on a slide, with loads (x, force)."""
     m = Mechanism("bridge")
     m.set_gravity(0.0, 0.0)
-    bar, foot = m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL)), m.point_mass("foot", 0.0)
+    bar, foot = (
+        m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL)),
+        m.point_mass("foot", 0.0),
+    )
     m.revolute("A", m.ground, bar)
     m.prismatic("slide", m.ground.at(LENGTH, 0), foot, axis=(1, 0))
     m.revolute("B", bar.tip, foot)
@@ -76,18 +89,24 @@ def test_a_beam_on_two_supports_with_a_load_in_its_middle():
     found = evaluate(bridge(shape, (1.0, force))[1]).deflection("bar")
     assert found.against == "ends"
     peak = found.peak()
-    assert peak.value == pytest.approx(force * LENGTH**3 / (48 * E * p.iz) + force * LENGTH / (4 * G * p.shear_y), rel=1e-12)
+    assert peak.value == pytest.approx(
+        force * LENGTH**3 / (48 * E * p.iz) + force * LENGTH / (4 * G * p.shear_y), rel=1e-12
+    )
     assert peak.xi == pytest.approx(0.5, abs=1e-9)
     assert found.base["turn"] == pytest.approx(force * LENGTH**2 / (16 * E * p.iz), rel=1e-12)
     assert found.tip["across"] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_the_deepest_place_beside_the_middle():
-    """A load at a third: the deepest place is where the slope is zero, at sqrt((l^2 - b^2)/3) from the farther end, shear aside."""
+    """A load at a third: the deepest place is where the slope is zero, at sqrt((l^2 - b^2)/3) from
+    the farther end, shear aside.
+    """
     stiff = beams.rectangle(0.01, 0.02)
     found = evaluate(bridge(stiff, (LENGTH / 3, -10.0))[1]).deflection("bar")
     b = LENGTH / 3
-    assert 1.0 - found.peak().xi == pytest.approx(math.sqrt((LENGTH**2 - b**2) / 3) / LENGTH, abs=1e-4)
+    assert 1.0 - found.peak().xi == pytest.approx(
+        math.sqrt((LENGTH**2 - b**2) / 3) / LENGTH, abs=1e-4
+    )
     dense = found.grid("across", np.linspace(0, 1, 20001))[0]
     assert abs(found.peak().value) == pytest.approx(np.abs(dense).max(), rel=1e-9)
     assert abs(found.peak().value) >= np.abs(dense).max() * (1 - 1e-14)
@@ -106,9 +125,13 @@ def test_a_tapered_link_by_fine_sums():
 
 
 def test_a_wedge_in_closed_form():
-    """Of a height that is linear: M/EI = 12 F y/(E w (h + c y)^3) with y from the tip; its integrals have logarithms."""
+    """Of a height that is linear: M/EI = 12 F y/(E w (h + c y)^3) with y from the tip; its
+    integrals have logarithms.
+    """
     force, e, width, thick, thin = -100.0, E, 0.02, 0.06, 0.02
-    found = cantilever(beams.tapered(beams.rectangle(thick, width), beams.rectangle(thin, width)), y=force).deflection("arm")
+    found = cantilever(
+        beams.tapered(beams.rectangle(thick, width), beams.rectangle(thin, width)), y=force
+    ).deflection("arm")
     c = (thick - thin) / LENGTH
 
     def sag(u):
@@ -118,8 +141,12 @@ def test_a_wedge_in_closed_form():
         return (-1 / u + thin / (2 * u**2)) / c**2
 
     shear = force * math.log(thick / thin) / (c * G * width * 10 * 1.3 / (12 + 11 * 0.3))
-    assert found.tip["across"] == pytest.approx(12 * force / (e * width) * (sag(thick) - sag(thin)) + shear, rel=1e-11)
-    assert found.tip["turn"] == pytest.approx(12 * force / (e * width) * (slope(thick) - slope(thin)), rel=1e-11)
+    assert found.tip["across"] == pytest.approx(
+        12 * force / (e * width) * (sag(thick) - sag(thin)) + shear, rel=1e-11
+    )
+    assert found.tip["turn"] == pytest.approx(
+        12 * force / (e * width) * (slope(thick) - slope(thin)), rel=1e-11
+    )
 
 
 def test_a_tube_in_space_is_twisted_stretched_and_bent():
@@ -135,8 +162,12 @@ def test_a_tube_in_space_is_twisted_stretched_and_bent():
     i = math.pi / 4 * (outer**4 - inner**4)
     bent = {"turn_y": 30.0, "turn_z": -40.0}
     assert found["twist"] == pytest.approx(20.0 * LENGTH / (G * 2 * i), rel=1e-12)
-    assert found["along"] == pytest.approx(3e3 * LENGTH / (E * math.pi * (outer**2 - inner**2)), rel=1e-12)
-    assert {name: found[name][0] for name in bent} == pytest.approx({k: v * LENGTH / (E * i) for k, v in bent.items()}, rel=1e-12)
+    assert found["along"] == pytest.approx(
+        3e3 * LENGTH / (E * math.pi * (outer**2 - inner**2)), rel=1e-12
+    )
+    assert {name: found[name][0] for name in bent} == pytest.approx(
+        {k: v * LENGTH / (E * i) for k, v in bent.items()}, rel=1e-12
+    )
     assert found["across_y"] == pytest.approx(-40.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
     assert found["across_z"] == pytest.approx(-30.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
 
@@ -152,7 +183,11 @@ def test_a_stepped_link():
     assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-12)
 
 
-@pytest.mark.parametrize("shape", [beams.rectangle(0.03, 0.05), beams.c_section(0.1, 0.05, 0.004, 0.006)], ids=lambda s: s.kind)
+@pytest.mark.parametrize(
+    "shape",
+    [beams.rectangle(0.03, 0.05), beams.c_section(0.1, 0.05, 0.004, 0.006)],
+    ids=lambda s: s.kind,
+)
 def test_in_space_it_is_a_frame_s(shape):
     """Bent both ways, pulled and twisted about the shear centre."""
     m = SpatialMechanism("arm")
@@ -163,15 +198,21 @@ def test_in_space_it_is_a_frame_s(shape):
     solution = evaluate(Scene(m, {}, t=(0, 0, 1)))
     p, axes = shape.properties(), solution.pose("arm").axes[0]
     _, moved = frames.of_solution(
-        solution, 0, {"arm": (p, E, G, STEEL.density * p.area)}, [("arm", LENGTH, (50.0, -100.0, 30.0), (5.0, 2.0, -3.0))]
+        solution,
+        0,
+        {"arm": (p, E, G, STEEL.density * p.area)},
+        [("arm", LENGTH, (50.0, -100.0, 30.0), (5.0, 2.0, -3.0))],
     )
     place, turned = axes @ moved["arm", LENGTH][:3], axes @ moved["arm", LENGTH][3:]
     found = solution.deflection("arm").tip
     assert found["along"][0] == pytest.approx(place[0], rel=1e-9)
     assert [found["turn_y"][0], found["turn_z"][0]] == pytest.approx(turned[1:], rel=1e-9)
-    # The frame's beam is twisted about its axis: a shear centre beside it moves the rest by what shear twists.
+    # The frame's beam is twisted about its axis: a shear centre beside it moves the rest by what
+    # shear twists.
     if shape.kind == "rectangle":
-        assert [found["across_y"][0], found["across_z"][0], found["twist"][0]] == pytest.approx([*place[1:], turned[0]], rel=1e-9)
+        assert [found["across_y"][0], found["across_z"][0], found["twist"][0]] == pytest.approx(
+            [*place[1:], turned[0]], rel=1e-9
+        )
     else:
         shear = solution.section("arm").law.at("shear_y", np.zeros((1, 1)))[0, 0]
         torsion = solution.section("arm").law.at("torsion", np.zeros((1, 1)))[0, 0]
@@ -179,19 +220,29 @@ def test_in_space_it_is_a_frame_s(shape):
         assert found["twist"][0] != pytest.approx(turned[0], rel=1e-2)
         assert found["twist"][0] == pytest.approx(weight_twist, rel=0.2)
     largest, _ = solution.deflection("arm").largest()
-    assert largest[0] == pytest.approx(np.hypot(found["across_y"][0], found["across_z"][0]), rel=1e-9)
+    assert largest[0] == pytest.approx(
+        np.hypot(found["across_y"][0], found["across_z"][0]), rel=1e-9
+    )
 
 
 def test_a_rod_that_moves_by_fine_sums():
-    """Stations that slide, a load along it, a taper: the curve from moments on a fine grid, at every instant."""
-    scene = strong.press(beams.tapered(beams.rectangle(0.02, 0.01), beams.rectangle(0.012, 0.01)), sliding=True, t=(0, 0.2, 7))
+    """Stations that slide, a load along it, a taper: the curve from moments on a fine grid, at
+    every instant.
+    """
+    scene = strong.press(
+        beams.tapered(beams.rectangle(0.02, 0.01), beams.rectangle(0.012, 0.01)),
+        sliding=True,
+        t=(0, 0.2, 7),
+    )
     found = evaluate(scene, certificate=False).deflection("rod")
     n, member = 20_000, found.member
     s = (np.arange(n) + 0.5) / n
     u = np.broadcast_to(s, (7, n))
     h, ds, e = 0.02 - 0.008 * s, 0.4 / n, strong.STEEL.elasticity
     bent = member.law.at("bending", u) / (e * 0.01 * h**3 / 12)
-    sheared = member.law.at("shear", u) / (strong.STEEL.shear_modulus * 0.01 * h * 10 * 1.3 / (12 + 11 * 0.3))
+    sheared = member.law.at("shear", u) / (
+        strong.STEEL.shear_modulus * 0.01 * h * 10 * 1.3 / (12 + 11 * 0.3)
+    )
     turned = np.cumsum(bent, axis=1) * ds - bent * ds / 2
     across = np.cumsum(turned + sheared, axis=1) * ds - (turned + sheared) * ds / 2
     tip = np.sum(turned + sheared, axis=1) * ds
@@ -207,7 +258,19 @@ def test_the_command_line_tells_it(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     few = ["--over", "main=90deg:810deg:41"]
     assert (
-        main(["run", "connecting_rod", "--want", "deflection:rod", "--no-figures", "--backend", "vm", "--no-certificate", *few])
+        main(
+            [
+                "run",
+                "connecting_rod",
+                "--want",
+                "deflection:rod",
+                "--no-figures",
+                "--backend",
+                "vm",
+                "--no-certificate",
+                *few,
+            ]
+        )
         == 0
     )
     said = capsys.readouterr().out
@@ -223,19 +286,32 @@ def test_what_has_no_meaning_is_one_line():
     with pytest.raises(DeclarationError, match="expected against='ends' or 'base', got 'middle'"):
         plain.deflection("arm", "middle")
     soft = cantilever(SHAPES[0], beams.Material("paper", 700.0), y=-1.0)
-    with pytest.raises(DeclarationError, match="material 'paper' has no elasticity and no shear_modulus, which"):
+    with pytest.raises(
+        DeclarationError, match="material 'paper' has no elasticity and no shear_modulus, which"
+    ):
         soft.deflection("arm")
     m = SpatialMechanism("odd")
-    arm = m.link("arm", length=1.0, beam=beams.Beam(beams.polygon([(0, 0), (0.02, 0), (0, 0.03)]), STEEL))
+    arm = m.link(
+        "arm", length=1.0, beam=beams.Beam(beams.polygon([(0, 0), (0.02, 0), (0, 0.03)]), STEEL)
+    )
     m.revolute("O", m.ground, arm, axis=(0, 0, 1))
     scene = Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1))
-    with pytest.raises(DeclarationError, match="deflection of 'arm': for torsion of a polygon there is no formula"):
+    with pytest.raises(
+        DeclarationError, match="deflection of 'arm': for torsion of a polygon there is no formula"
+    ):
         evaluate(scene).deflection("arm")
     bare = Mechanism("bare")
     bare.weld("A", bare.ground, bare.link("bar", length=1.0, mass=1.0))
     with pytest.raises(DeclarationError, match="output 'deflection:bar': link 'bar' has no beam"):
         Scene(bare, {}, wanted=["deflection:bar"], t=(0, 0, 1))
     mute = Mechanism("mute")
-    mute.weld("A", mute.ground, mute.link("bar", length=1.0, beam=beams.Beam(SHAPES[0], beams.Material("paper", 700.0))))
-    with pytest.raises(DeclarationError, match="material 'paper' has no elasticity, which output 'deflection:bar' needs"):
+    mute.weld(
+        "A",
+        mute.ground,
+        mute.link("bar", length=1.0, beam=beams.Beam(SHAPES[0], beams.Material("paper", 700.0))),
+    )
+    with pytest.raises(
+        DeclarationError,
+        match="material 'paper' has no elasticity, which output 'deflection:bar' needs",
+    ):
         Scene(mute, {}, wanted=["deflection:bar"], t=(0, 0, 1))

@@ -1,4 +1,6 @@
-"""Graphs are derived once: named by all that they come from, kept on disk, and the same when they come back."""
+"""Graphs are derived once: named by all that they come from, kept on disk, and the same when they
+come back.
+"""
 
 import hashlib
 import os
@@ -52,15 +54,29 @@ def test_an_earlier_name_is_that_of_the_same_function():
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     first = evaluate(slider_crank(), backend="c")
     program = (
-        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from mechanisms import slider_crank; "
-        "__import__('importlib').import_module('lagrange_casadi.equations.derive').assemble = None; "
-        "from lagrange_casadi import evaluate; print(evaluate(slider_crank(), backend='c').effort('O').tobytes().hex())"
+        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from mechanisms import"
+        " slider_crank;"
+        " __import__('importlib').import_module('lagrange_casadi.equations.derive').assemble ="
+        " None; from lagrange_casadi import evaluate; print(evaluate(slider_crank(),"
+        " backend='c').effort('O').tobytes().hex())"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
     assert bytes.fromhex(done.stdout.strip()) == first.effort("O").tobytes()
 
 
-def pendulum(length=0.5, mass=1.2, gravity=9.81, load=3.0, place=0.2, law=None, name="pendulum", wanted=("all",), **keywords):
+def pendulum(
+    length=0.5,
+    mass=1.2,
+    gravity=9.81,
+    load=3.0,
+    place=0.2,
+    law=None,
+    name="pendulum",
+    wanted=("all",),
+    **keywords,
+):
     m = Mechanism(name)
     m.gravity = (0.0, -gravity, 0.0)
     k = m.parameter("k", 2.0, "N")
@@ -98,14 +114,20 @@ def test_every_change_of_a_declaration_has_another_name():
 
 def sleeve(along="slide", apart=False, place=0.0):
     m = SpatialMechanism("sleeve")
-    rod = m.link("rod", between=((0, 0, 0), (0.4, place, 0)), mass=1.0) if apart else m.link("rod", length=0.4, mass=1.0)
+    rod = (
+        m.link("rod", between=((0, 0, 0), (0.4, place, 0)), mass=1.0)
+        if apart
+        else m.link("rod", length=0.4, mass=1.0)
+    )
     joint = m.cylindrical("C", m.ground, rod, axis=(1, 0, 0))
     m.friction("rub", joint, mu=0.2, radius=0.03, length=0.1, along=along)
     return Scene(m, {"C:slide": polynomial(0, 1.0), "C:turn": polynomial(0, 2.0)}, t=(0, 1, 9))
 
 
 def test_mechanisms_in_space_have_names_too(fresh_cache):
-    """Of links between places too; and friction along another coordinate of the same joint is another."""
+    """Of links between places too; and friction along another coordinate of the same joint is
+    another.
+    """
     scenes = [sleeve(), sleeve("turn"), sleeve(apart=True), sleeve(apart=True, place=0.1)]
     names = [name_of(scene) for scene in scenes]
     assert None not in names
@@ -123,12 +145,17 @@ def test_what_is_asked_of_an_evaluation_has_no_part_in_the_name():
 
 @pytest.mark.long
 def test_names_are_the_same_in_every_process(tmp_path):
-    program = "import sys; sys.path[:0] = {!r}; from test_derive import *; print(name_of(four_bar()), name_of(pendulum()))"
+    program = (
+        "import sys; sys.path[:0] = {!r}; from test_derive import *; print(name_of(four_bar()),"
+        " name_of(pendulum()))"
+    )
     program = program.format([os.path.dirname(__file__)])
     for seed in ("1", "2"):
         environment = os.environ | {"PYTHONHASHSEED": seed}
         command = [sys.executable, "-c", program]
-        done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment, cwd=tmp_path)
+        done = subprocess.run(
+            command, capture_output=True, text=True, check=True, env=environment, cwd=tmp_path
+        )
         assert done.stdout.split() == [name_of(four_bar()), name_of(pendulum())]
 
 
@@ -155,9 +182,16 @@ def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
     scene = pendulum(law=Motion(doubled))
     assert name_of(scene) is None
     for _ in range(2):
-        assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0
+        assert (
+            evaluate(scene, backend="vm", wanted=["motion"], certificate=False)
+            .motion("pin")
+            .value[-1]
+            == 2.0
+        )
     assert not list(fresh_cache.glob("*.graph"))
-    with pytest.raises(PickleError, match=r"the scene of '.*' cannot be pickled: it calls a function"):
+    with pytest.raises(
+        PickleError, match=r"the scene of '.*' cannot be pickled: it calls a function"
+    ):
         pickle.dumps(derive(scene, ["motion"]))
 
 

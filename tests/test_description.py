@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, motion
-from lagrange_casadi.declare.description import coordinates_of, drives_of, measured_of, motions_of, shape_of
+from lagrange_casadi.declare.description import (
+    coordinates_of,
+    drives_of,
+    measured_of,
+    motions_of,
+    shape_of,
+)
 from lagrange_casadi.equations.model_data import template
 from lagrange_casadi.store.untrusted import check_shape
 
@@ -22,7 +28,14 @@ def scene(drives=None):
     arm = m.link("arm", length=0.5, mass=1.0)
     tool = m.link("tool", length=0.1, mass=2.0, centre=(0.01, 0.02, 0.03), inertia=INERTIA)
     m.set_gravity(1.0, 2.0, 3.0)
-    m.universal("U", m.ground.at(1, 2, 3), arm, axis=(0, 0, 2), second=(0, 3, 0), turned=[("z", math.pi / 2)])
+    m.universal(
+        "U",
+        m.ground.at(1, 2, 3),
+        arm,
+        axis=(0, 0, 2),
+        second=(0, 3, 0),
+        turned=[("z", math.pi / 2)],
+    )
     m.screw("N", arm.tip, tool.at(0.1, 0.2, 0.3), axis=(1, 0, 0), lead=lead)
     m.force("wind", tool.at(0.1, 0, 0.4), z=1.0, turning=True)
     laws = {"U": [motion.polynomial(0.1), motion.polynomial(0.2)], "N": motion.polynomial(0, 1.0)}
@@ -33,8 +46,17 @@ def test_all_is_told_in_plain_numbers():
     found = template(scene()).filled({"lead": 0.2})
     assert json.loads(json.dumps(found)) == found
     assert found["gravity"] == [1.0, 2.0, 3.0]
-    assert found["bodies"]["tool"]["centre"] == {"x": 0.01, "y": 0.02, "z": 0.03, "inertia": [*map(list, INERTIA)]}
-    assert found["loads"]["wind"] == {"kind": "force", "points": [{"body": "tool", "x": 0.1, "y": 0.0, "z": 0.4}], "turning": True}
+    assert found["bodies"]["tool"]["centre"] == {
+        "x": 0.01,
+        "y": 0.02,
+        "z": 0.03,
+        "inertia": [*map(list, INERTIA)],
+    }
+    assert found["loads"]["wind"] == {
+        "kind": "force",
+        "points": [{"body": "tool", "x": 0.1, "y": 0.0, "z": 0.4}],
+        "turning": True,
+    }
     universal, screw = found["joints"]["U"], found["joints"]["N"]
     assert universal["coordinates"] == {"U:turn_1": "angle", "U:turn_2": "angle"}
     assert universal["driven"] == ["U:turn_1", "U:turn_2"]
@@ -50,7 +72,12 @@ def test_all_is_told_in_plain_numbers():
 @pytest.mark.parametrize("drives", [None, ["U:turn_1", "U:turn_2", "N"]])
 def test_drives_are_coordinates(drives):
     found = template(scene(drives)).filled({"lead": 0.2})
-    assert drives_of(found) == measured_of(found) == [*coordinates_of(found)] == ["U:turn_1", "U:turn_2", "N"]
+    assert (
+        drives_of(found)
+        == measured_of(found)
+        == [*coordinates_of(found)]
+        == ["U:turn_1", "U:turn_2", "N"]
+    )
     assert motions_of(found) == {"U:turn_1": "angle", "U:turn_2": "angle", "N": "angle"}
 
 
@@ -69,7 +96,9 @@ OTHERWISE = [
 
 @pytest.mark.parametrize(("path", "value"), OTHERWISE)
 def test_what_a_file_has_otherwise_is_refused(path, value):
-    """Of a mechanism in space all is held to its own shape, and what has a gravity of two components to that of a plane."""
+    """Of a mechanism in space all is held to its own shape, and what has a gravity of two
+    components to that of a plane.
+    """
     found = json.loads(json.dumps(template(scene()).filled({"lead": 0.2})))
     check_shape(found, shape_of, "mechanism")
     part = found

@@ -1,4 +1,6 @@
-"""Many designs at once: each against its own evaluation and refined peaks, on every rung, whatever the neighbours."""
+"""Many designs at once: each against its own evaluation and refined peaks, on every rung, whatever
+the neighbours.
+"""
 
 import math
 import subprocess
@@ -41,14 +43,20 @@ def test_designs_are_their_own_evaluations(name):
             weights = np.ones(series.size)
             weights[[0, -1]] = 0.5
             size = 1e-13 * np.abs(series).max()
-            assert outcome.mean[row, k] == pytest.approx(np.average(series, weights=weights), abs=size)
-            assert outcome.rms[row, k] == pytest.approx(math.sqrt(np.average(series**2, weights=weights)), rel=1e-13)
+            assert outcome.mean[row, k] == pytest.approx(
+                np.average(series, weights=weights), abs=size
+            )
+            assert outcome.rms[row, k] == pytest.approx(
+                math.sqrt(np.average(series**2, weights=weights)), rel=1e-13
+            )
 
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "sleigh", "rrr3"])
 def test_all_rungs_agree(name):
-    """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's method where they are enough."""
+    """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's
+    method where they are enough.
+    """
     scene = declared(CASES / name)
     p, grid = around(scene, 9), (*scene.t[:2], INSTANTS)
     p[1, 0] = math.nan
@@ -68,12 +76,17 @@ def test_all_rungs_agree(name):
             scale = scales(exact, expected, row)
             for k, quantity in enumerate(exact.quantities):
                 one, other = abs(outcome.value[row, k]), abs(expected.value[row, k])
-                assert one == other or abs(one - other) <= tolerance * (other + scale[quantity]), (rung, quantity)
+                assert one == other or abs(one - other) <= tolerance * (other + scale[quantity]), (
+                    rung,
+                    quantity,
+                )
             np.testing.assert_allclose(outcome.rms[row], expected.rms[row], rtol=50 * tolerance)
 
 
 @pytest.mark.sampled(11)
-@pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c"), Rung("lanes", "single")], ids=lambda rung: rung.options)
+@pytest.mark.parametrize(
+    "rung", [Rung("lanes"), Rung("c"), Rung("lanes", "single")], ids=lambda rung: rung.options
+)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypatch):
     scene = declared(CASES / name)
@@ -84,7 +97,10 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypa
     for fresh in (designs, DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)):
         order = np.random.default_rng(1).permutation(40)
         other = fresh.evaluate(p[order], histories=True)
-        assert all(getattr(other, f).tobytes() == getattr(whole, f)[order].tobytes() for f in (*FIELDS, "series"))
+        assert all(
+            getattr(other, f).tobytes() == getattr(whole, f)[order].tobytes()
+            for f in (*FIELDS, "series")
+        )
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     monkeypatch.setattr(library, "_LONGEST", 3)
     cut = DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)
@@ -98,9 +114,13 @@ def bare(designs, p):
     """What the C leaves in arrays that held NaN."""
     n, q, e = len(p), len(designs.quantities), len(designs.efforts)
     shapes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
-    results = {"status": np.full(n, -1, np.int8)} | {name: np.full((n, many), np.nan) for name, many in shapes.items()}
+    results = {"status": np.full(n, -1, np.int8)} | {
+        name: np.full((n, many), np.nan) for name, many in shapes.items()
+    }
     history = np.full((n, len(designs.graph.columns), designs.t.size), np.nan)
-    designs.library.evaluate(designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": history})
+    designs.library.evaluate(
+        designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": history}
+    )
     return results
 
 
@@ -122,7 +142,9 @@ def test_every_value_is_written_or_is_nan(backend):
     assert np.array_equal(np.isfinite(xi), good[:, None] & along)
     # And what held numbers holds NaN after a design without a result.
     results = {name: np.zeros_like(array) for name, array in found.items()}
-    designs.library.evaluate(designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": None})
+    designs.library.evaluate(
+        designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": None}
+    )
     assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
 
 
@@ -135,7 +157,13 @@ def test_histories_are_the_series_of_an_evaluation(name):
     outcome = designs.evaluate(p, histories=True)
     assert outcome.series.shape == (2, len(designs.columns), 41)
     for row in range(2):
-        solution = evaluate(scene, parameters=values(scene, p[row]), t=(*scene.t[:2], 41), backend="c", certificate=False)
+        solution = evaluate(
+            scene,
+            parameters=values(scene, p[row]),
+            t=(*scene.t[:2], 41),
+            backend="c",
+            certificate=False,
+        )
         assert set(designs.columns) <= set(solution.series)
         for k, column in enumerate(designs.columns):
             assert outcome.series[row, k].tobytes() == solution.series[column].tobytes(), column
@@ -145,7 +173,9 @@ def test_histories_are_the_series_of_an_evaluation(name):
 
 
 def test_a_speed_that_is_a_parameter_keeps_its_phase():
-    """Where parameters set how far a drive turns, its turns are counted in pairs, whatever the defaults."""
+    """Where parameters set how far a drive turns, its turns are counted in pairs, whatever the
+    defaults.
+    """
     m = Mechanism("fast")
     speed = m.parameter("speed", 1.0, "rad/s")
     m.revolute("pin", m.ground, m.link("arm", length=0.5, mass=1.2))
@@ -156,16 +186,29 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
     k = designs.columns.index("effort:pin")
     for row in range(2):
         solution = evaluate(scene, parameters={"speed": p[row, 0]}, backend="c", certificate=False)
-        np.testing.assert_allclose(outcome.series[row, k], solution.effort("pin"), rtol=0, atol=1e-14 * 3)
+        np.testing.assert_allclose(
+            outcome.series[row, k], solution.effort("pin"), rtol=0, atol=1e-14 * 3
+        )
 
 
 def test_what_is_not_determined_has_no_number():
     scene = parallelogram(pendulum=True)
     designs = DesignEngine.of(scene, rung=Rung("c"))
     outcome = designs.evaluate(np.zeros((1, 0)))
-    told = {name for name, value in zip(designs.quantities, outcome.value[0], strict=True) if np.isfinite(value)}
-    assert not [name for name in told if name.startswith(("reaction:A", "section:bar", "section:b:axial"))]
-    assert {"effort:hang", "reaction:hang:resultant", "section:bob:bending", "section:b:bending"} <= told
+    told = {
+        name
+        for name, value in zip(designs.quantities, outcome.value[0], strict=True)
+        if np.isfinite(value)
+    }
+    assert not [
+        name for name in told if name.startswith(("reaction:A", "section:bar", "section:b:axial"))
+    ]
+    assert {
+        "effort:hang",
+        "reaction:hang:resultant",
+        "section:bob:bending",
+        "section:b:bending",
+    } <= told
     solution = evaluate(scene, backend="c", certificate=False)
     names = ["effort:O", "effort:hang", "reaction:hang:fx", "section:bob:bending"]
     found = peaks_of(designs, outcome, 0)
@@ -183,8 +226,15 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     scene = {**SCENES, **made}[name]()
     compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
     graph = derive(scene)
-    for rung in (Rung(), Rung(precision="single"), *([Rung(newton=2)] if graph.newton is not None else [])):
-        stages, kept = stages_of(graph, rung, np.linspace(*scene.span, scene.t[2])), KeptOutputs.of(graph, rung)
+    for rung in (
+        Rung(),
+        Rung(precision="single"),
+        *([Rung(newton=2)] if graph.newton is not None else []),
+    ):
+        stages, kept = (
+            stages_of(graph, rung, np.linspace(*scene.span, scene.t[2])),
+            KeptOutputs.of(graph, rung),
+        )
         source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -208,7 +258,9 @@ def test_misuse_is_named():
     with pytest.raises(DeclarationError, match=r"expected an array of shape \(n, 0\), got \(3,\)"):
         DesignEngine.of(scene).evaluate(np.zeros(3))
     with pytest.raises(DeclarationError, match="samples of the motion"):
-        DesignEngine.of(pendulum(motion.samples([0, 1, 2, 3], [0, 1, 0, 2]), t=(0, 1, 3)), t=(0, 4, 3))
+        DesignEngine.of(
+            pendulum(motion.samples([0, 1, 2, 3], [0, 1, 0, 2]), t=(0, 1, 3)), t=(0, 4, 3)
+        )
     empty = DesignEngine.of(scene).evaluate(np.zeros((0, 0)))
     assert empty.value.shape == (0, len(DesignEngine.of(scene).quantities))
     with pytest.raises(AssemblyError):

@@ -23,11 +23,15 @@ both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("matter", DENSITIES)
 def test_any_density_and_any_station(matter):
-    """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the section law; packs find the same."""
+    """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the
+    section law; packs find the same.
+    """
     scene = crank_and_rod(DENSITIES[matter](), loads=loaded)
     grid, wanted = (0.3, 2.3, 61), ["section:b", "reaction:A"]
     p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
-    designs, packs = (DesignEngine.of(scene, wanted, t=grid, rung=Rung(backend)) for backend in ("c", "lanes"))
+    designs, packs = (
+        DesignEngine.of(scene, wanted, t=grid, rung=Rung(backend)) for backend in ("c", "lanes")
+    )
     outcome, other = designs.evaluate(p), packs.evaluate(p)
     assert outcome.status.tolist() == other.status.tolist() == [Status.OK] * 5 + [Status.IMPOSSIBLE]
     np.testing.assert_allclose(other.value, outcome.value, rtol=1e-11, atol=1e-11)
@@ -39,14 +43,19 @@ def test_any_density_and_any_station(matter):
             there = alone(scene, p[row], (t, t, 1), xi=(0, 1, 4001))
             assert abs(value) >= np.abs(there.array(name)).max() * (1 - 1e-13)
             law = there.section("b").law
-            sides = [float(law.at(name.split(":")[2], np.array([[xi]]), side)[0, 0]) for side in ("tip", "base")]
+            sides = [
+                float(law.at(name.split(":")[2], np.array([[xi]]), side)[0, 0])
+                for side in ("tip", "base")
+            ]
             assert min(abs(value - side) for side in sides) <= 1e-11 * abs(value)
 
 
 @pytest.mark.quick
 @both
 def test_peaks_of_a_turning_pendulum_are_exact(backend):
-    """The effort is m g l/2 cos theta; its mean over a whole turn is zero and its rms the peak over the root of two."""
+    """The effort is m g l/2 cos theta; its mean over a whole turn is zero and its rms the peak over
+    the root of two.
+    """
     speed, start, turn = 3.0, 0.1, 2 * math.pi / 3.0
     scene = pendulum(polynomial(start, speed), t=(0, turn, 41))
     designs = DesignEngine.of(scene, rung=Rung(backend))
@@ -54,7 +63,9 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
     value, t, _ = peaks_of(designs, outcome, 0)["effort:pin"]
     peak = 1.2 * 9.81 * 0.5 / 2
     assert abs(value) == pytest.approx(peak, rel=1e-13)
-    assert (start + speed * t) % math.pi == pytest.approx(0.0, abs=1e-6) or (start + speed * t) % math.pi == pytest.approx(math.pi)
+    assert (start + speed * t) % math.pi == pytest.approx(0.0, abs=1e-6) or (
+        start + speed * t
+    ) % math.pi == pytest.approx(math.pi)
     assert outcome.mean[0, 0] == pytest.approx(0.0, abs=1e-13)
     assert outcome.rms[0, 0] == pytest.approx(peak / math.sqrt(2), rel=1e-13)
 
@@ -62,7 +73,9 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
 @both
 def test_of_peaks_as_large_the_first_is_told(backend):
     """Else rounding would choose between tops and troughs of many turns, and the sign with them."""
-    designs = DesignEngine.of(pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]), rung=Rung(backend))
+    designs = DesignEngine.of(
+        pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]), rung=Rung(backend)
+    )
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
     assert t == pytest.approx((math.pi - 0.1) / 3.0, abs=1e-6)
@@ -72,7 +85,9 @@ def test_of_peaks_as_large_the_first_is_told(backend):
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 6, 7, 8, 9, 15, 16, 17])
 def test_any_number_of_instants(count, backend):
-    """The peak of one instant is its own; of two and more the refined one where a rise between them can be told."""
+    """The peak of one instant is its own; of two and more the refined one where a rise between them
+    can be told.
+    """
     scene = pendulum(polynomial(0.1, 1.0))
     grid = (0.2, 0.2, 1) if count == 1 else (0.0, 4.0, count)
     designs = DesignEngine.of(scene, t=grid, rung=Rung(backend))
@@ -97,7 +112,9 @@ def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise(back
 
 @both
 def test_a_kink_and_a_jump(backend):
-    """A cubic spline's acceleration is a polygon, whose peak is a knot's; a load that is gone from a radian on peaks there."""
+    """A cubic spline's acceleration is a polygon, whose peak is a knot's; a load that is gone from
+    a radian on peaks there.
+    """
     times = np.linspace(0, 2, 9)
     scene = pendulum(motion.samples(times, np.sin(2.3 * times)), gravity=0.0, t=(0.3, 1.9, 24))
     bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
@@ -123,7 +140,9 @@ def test_two_summits_between_the_same_instants(backend):
         return sum(height * ca.exp(-(((t - place) / width) ** 2)) for height, place, width in bells)
 
     scene = pendulum(motion.expression(law), t=(0, 2.0, 21), wanted=["motion"])
-    fine = evaluate(scene, t=(0.9, 1.1, 200_001), backend="vm", certificate=False).peak("motion:pin")
+    fine = evaluate(scene, t=(0.9, 1.1, 200_001), backend="vm", certificate=False).peak(
+        "motion:pin"
+    )
     designs = DesignEngine.of(scene, rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert value == pytest.approx(fine.value, rel=1e-9)
@@ -134,7 +153,9 @@ def test_two_summits_between_the_same_instants(backend):
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
-    """The search in C against the one in ``summits/search.py``, which designs without a compiler take."""
+    """The search in C against the one in ``summits/search.py``, which designs without a compiler
+    take.
+    """
     generator, many = np.random.default_rng(seed), 16
     m = Mechanism("wave")
     names = ["a", "v", "start", "b", "w", "then", "height", "place", "width"]
@@ -142,9 +163,15 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
     m.revolute("pin", m.ground, m.link("arm", length=0.5, mass=1.2))
 
     def law(t):
-        return a * ca.sin(v * t + start) + b * ca.sin(w * t + then) + height * ca.exp(-(((t - place) / width) ** 2))
+        return (
+            a * ca.sin(v * t + start)
+            + b * ca.sin(w * t + then)
+            + height * ca.exp(-(((t - place) / width) ** 2))
+        )
 
-    scene = Scene(m, {"pin": motion.expression(law)}, ["motion", "effort", "section:arm"], t=(0.0, 2.0, 41))
+    scene = Scene(
+        m, {"pin": motion.expression(law)}, ["motion", "effort", "section:arm"], t=(0.0, 2.0, 41)
+    )
     low = [-1, 0.5, 0, -0.5, 4, 0, -1, 0.0, 0.05]
     high = [1, 4.0, 6, 0.5, 12, 6, 1, 2.0, 0.5]
     p = generator.uniform(low, high, (many, len(names)))
@@ -155,11 +182,16 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
     told = expected.status == Status.OK
     assert told.sum() > many / 2
     sizes = np.abs(expected.value[told])
-    np.testing.assert_array_less(np.abs(found.value[told] - expected.value[told]), 1e-9 * sizes + 1e-12)
+    np.testing.assert_array_less(
+        np.abs(found.value[told] - expected.value[told]), 1e-9 * sizes + 1e-12
+    )
     # A summit of size one is flat within 1e-9 of it for some 1e-5 of its width.
     np.testing.assert_allclose(found.t[told], expected.t[told], atol=1e-4)
     instants = (0.0, 2.0, 4001)
-    fine = [evaluate(scene, parameters=values(scene, row), t=instants, certificate=False) for row in p[told][:4]]
+    fine = [
+        evaluate(scene, parameters=values(scene, row), t=instants, certificate=False)
+        for row in p[told][:4]
+    ]
     largest = np.array([[np.abs(solution.array("motion:pin")).max()] for solution in fine])
     np.testing.assert_allclose(found.xi[told], expected.xi[told], atol=1e-4)
     k = designs.quantities.index("motion:pin")
@@ -169,17 +201,26 @@ def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
 @pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
 def test_what_is_zero_throughout_peaks_at_the_first_instant(backend):
     """A place that does not move, an acceleration of an even motion: no time is infinite."""
-    designs = DesignEngine.of(pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]), rung=Rung(backend))
-    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin_acceleration"]
+    designs = DesignEngine.of(
+        pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]), rung=Rung(backend)
+    )
+    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)[
+        "motion:pin_acceleration"
+    ]
     assert (value, t) == (0.0, 0.5)
 
 
 @pytest.mark.long
 def test_a_bar_held_at_rest_has_told_peaks():
-    """Its shear across the weight turns at its base, but for rounding: in C and in the reference the same curve goes on there."""
+    """Its shear across the weight turns at its base, but for rounding: in C and in the reference
+    the same curve goes on there.
+    """
     scene = replace(load_case("five_link_suspension").scene, wanted=["section:toe"])
     p = np.array([list(scene.mechanism.values().values())])
-    engines = [DesignEngine.of(scene, t=(0.0, 1.0, 201), rung=Rung(backend)) for backend in ("vm", "c", "lanes")]
+    engines = [
+        DesignEngine.of(scene, t=(0.0, 1.0, 201), rung=Rung(backend))
+        for backend in ("vm", "c", "lanes")
+    ]
     true, *others = [engine.evaluate(p) for engine in engines]
     for found in (true, *others):
         assert found.status.tolist() == [Status.OK]
@@ -199,14 +240,20 @@ def lift(law, count):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", ["trapezoid", "cycloidal"])
 def test_refined_peaks_are_those_of_the_reference(law):
-    """By the compiled search as by NumPy, also beside rest, and what the evaluation raises comes through it."""
+    """By the compiled search as by NumPy, also beside rest, and what the evaluation raises comes
+    through it.
+    """
     scene = lift(law, 8)
     solution = evaluate(scene, backend="c", certificate=False)
     sampled = [solution.peak(name) for name in forces(solution)]
-    found, expected = (ContinuousSolution.of(scene, solution, backend).peaks(sampled) for backend in ("c", "vm"))
+    found, expected = (
+        ContinuousSolution.of(scene, solution, backend).peaks(sampled) for backend in ("c", "vm")
+    )
     for one, other in zip(found, expected, strict=True):
         assert one.value == pytest.approx(other.value, rel=1e-12)
-        assert one.t == pytest.approx(other.t, abs=1e-7) or abs(one.value) == pytest.approx(abs(other.value), rel=1e-13)
+        assert one.t == pytest.approx(other.t, abs=1e-7) or abs(one.value) == pytest.approx(
+            abs(other.value), rel=1e-13
+        )
 
 
 def test_what_an_evaluation_raises_ends_the_search():
@@ -220,4 +267,6 @@ def test_what_an_evaluation_raises_ends_the_search():
     samples = Samples(np.sin(9 * t)[None], np.full((1, 21), np.nan), np.zeros((0, 21)))
     compiler = codegen.find_compiler("c")
     with pytest.raises(KeyboardInterrupt):
-        codegen.load_search(compiler).peaks(Broken(), Curves((0,), (0,)), t, samples, np.ones(20, bool))
+        codegen.load_search(compiler).peaks(
+            Broken(), Curves((0,), (0,)), t, samples, np.ones(20, bool)
+        )

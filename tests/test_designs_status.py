@@ -41,7 +41,9 @@ both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("backend", ["lanes", "c", pytest.param("vm", marks=pytest.mark.long)])
 def test_lengths_about_a_dead_centre(backend):
-    """A crank as long as its rod, all but, and longer; on the instants of dead centres and beside them."""
+    """A crank as long as its rod, all but, and longer; on the instants of dead centres and beside
+    them.
+    """
     near = [1 + sign * 10.0**k for sign in (-1, 1) for k in (-13, -10, -6, -4, -3)]
     ratios = [*near, 1.0, 1.01, 1.5, -1.0, 0.0, math.nan]
     p = np.array([[0.1, 0.1 * ratio, 0.1, 0.1, 0.1] for ratio in ratios])
@@ -50,19 +52,30 @@ def test_lengths_about_a_dead_centre(backend):
         # Without a compiler one effort is looked at, for peaks along links take long.
         scene = slider_crank(["effort"] if backend == "vm" else ["all"])
         found, expected = statuses(scene, p, Rung(backend), (0, 0.08, count))
-        # Between two instants all but dead centres are passed: what is worth looking at is left to rounding, or has no end.
+        # Between two instants all but dead centres are passed: what is worth looking at is left to
+        # rounding, or has no end.
         for k, ratio in enumerate(ratios):
             if abs(ratio - 1) < 1e-9 and found[k] == Status.PEAK_NOT_TOLD:
                 found[k] = Status.OK
         assert found == expected
         seen |= set(found)
-    assert seen >= {Status.OK, Status.OUT_OF_REACH, Status.PASSES_DEAD_CENTRE, Status.IMPOSSIBLE, Status.INVALID}
+    assert seen >= {
+        Status.OK,
+        Status.OUT_OF_REACH,
+        Status.PASSES_DEAD_CENTRE,
+        Status.IMPOSSIBLE,
+        Status.INVALID,
+    }
 
 
 @both
 def test_a_dead_centre_on_an_instant(backend):
     m = Mechanism("dead")
-    a, b, p = m.link("a", length=1.0, mass=1.0), m.link("b", length=m.parameter("l", 1.0), mass=1.0), m.point_mass("p", 1.0)
+    a, b, p = (
+        m.link("a", length=1.0, mass=1.0),
+        m.link("b", length=m.parameter("l", 1.0), mass=1.0),
+        m.point_mass("p", 1.0),
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, p)
@@ -110,8 +123,12 @@ def test_what_does_not_fit_and_what_a_row_forbids(backend):
     m.weld("W1", m.ground, a)
     m.weld("W2", m.ground.at(1, 0), b)
     m.weld("W3", a.tip, b, angle=m.parameter("angle", 0.0, "rad"))
-    found, expected = statuses(Scene(m, {}, ("motion",), t=(0, 1, 3)), np.array([[0.0], [math.pi], [0.1]]), Rung(backend))
+    found, expected = statuses(
+        Scene(m, {}, ("motion",), t=(0, 1, 3)), np.array([[0.0], [math.pi], [0.1]]), Rung(backend)
+    )
     assert found == expected == [Status.OK, Status.MISFIT, Status.MISFIT]
     scene = declared(CASES / "sleigh")
-    found, expected = statuses(scene, around(scene, 3, spread=0.3), Rung(backend), (*scene.t[:2], 41))
+    found, expected = statuses(
+        scene, around(scene, 3, spread=0.3), Rung(backend), (*scene.t[:2], 41)
+    )
     assert found == expected

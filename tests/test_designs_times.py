@@ -1,4 +1,6 @@
-"""Designs with instants of their own: each against its own evaluation, on every backend, whatever the neighbours."""
+"""Designs with instants of their own: each against its own evaluation, on every backend, whatever
+the neighbours.
+"""
 
 import math
 
@@ -28,7 +30,9 @@ FAILS = {2: Status.NO_INSTANTS, 3: Status.NO_INSTANTS, 5: Status.INVALID}
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("asked", ASKED)
 def test_designs_are_their_own_evaluations(asked, law, backend):
-    """Peaks between instants, their times, the drive's coordinate there; histories at the instants that were asked for."""
+    """Peaks between instants, their times, the drive's coordinate there; histories at the instants
+    that were asked for.
+    """
     scene = press(law, wanted=["effort", "section:rod", "motion"], **ASKED[asked])
     designs = DesignEngine.of(scene, rung=Rung(backend))
     outcome = designs.evaluate(P, histories=True)
@@ -39,13 +43,21 @@ def test_designs_are_their_own_evaluations(asked, law, backend):
         for k, output in enumerate(designs.outputs):
             scale = np.abs(solution.outputs[output]).max()
             np.testing.assert_allclose(
-                outcome.series[row, k], solution.outputs[output], rtol=0, atol=1e-13 * scale, err_msg=str(output)
+                outcome.series[row, k],
+                solution.outputs[output],
+                rtol=0,
+                atol=1e-13 * scale,
+                err_msg=str(output),
             )
         for k, peak in enumerate(refine(scene, solution, designs.quantities)):
-            assert outcome.value[row, k] == pytest.approx(peak.value, rel=1e-11, abs=1e-11), peak.name
+            assert outcome.value[row, k] == pytest.approx(peak.value, rel=1e-11, abs=1e-11), (
+                peak.name
+            )
             if solution.over:
                 w = P[row, 0] * TURN / 60
-                d = w * outcome.t[row, k] + (0.2 * math.sin(w * outcome.t[row, k]) if law is uneven else 0.0)
+                d = w * outcome.t[row, k] + (
+                    0.2 * math.sin(w * outcome.t[row, k]) if law is uneven else 0.0
+                )
                 assert outcome.over[row, k] == pytest.approx(d, abs=1e-12)
     assert np.isnan(outcome.value[2]).all()
     assert np.isnan(outcome.series[2]).all()
@@ -55,20 +67,27 @@ def test_designs_are_their_own_evaluations(asked, law, backend):
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 def test_means_are_over_the_time_of_a_whole_turn(law):
-    """The mean power of a drive without losses is zero, whatever its speed; the mean of a square is that of many more instants."""
+    """The mean power of a drive without losses is zero, whatever its speed; the mean of a square is
+    that of many more instants.
+    """
     scene = press(law, wanted=["effort"], over=("O", 0, TURN, 181))
     p = np.array([[600.0, 0.5], [100.0, 0.4]])
     outcome = DesignEngine.of(scene).evaluate(p)
     for row, (rpm, length) in enumerate(p):
         fine = evaluate(scene, t=(0, 60 / rpm, 20001), parameters={"rpm": rpm, "l": length})
         effort = fine.effort("O")
-        for found, values in ((outcome.mean[row, 0], effort), (outcome.rms[row, 0] ** 2, effort**2)):
+        for found, values in (
+            (outcome.mean[row, 0], effort),
+            (outcome.rms[row, 0] ** 2, effort**2),
+        ):
             mean = (values[1:] + values[:-1]).mean() / 2
             assert found == pytest.approx(mean, abs=1e-6 * np.abs(values).max())
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=lambda rung: rung.options)
+@pytest.mark.parametrize(
+    "rung", [Rung("lanes"), Rung("c", "single")], ids=lambda rung: rung.options
+)
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
     scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))
     p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
@@ -86,7 +105,9 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
 
 
 def test_what_all_designs_have_in_common_is_made_once():
-    """A motion and bounds without parameters: the instants are the same for all, and equal those of an evaluation."""
+    """A motion and bounds without parameters: the instants are the same for all, and equal those of
+    an evaluation.
+    """
     scene = slider_crank(["effort"], over=("O", 0, TURN, 31))
     designs = DesignEngine.of(scene)
     assert designs.times.common
@@ -97,7 +118,9 @@ def test_what_all_designs_have_in_common_is_made_once():
 
 
 def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
-    """A motion without parameters, followed from a time that has them: some designs find it on its way, others on the next."""
+    """A motion without parameters, followed from a time that has them: some designs find it on its
+    way, others on the next.
+    """
     law = motion.harmonic(1.0, 0.4, 2.0)
     scene = press(lambda *_: law, wanted=["motion"], t=lambda rpm: (rpm / 1000, 2 + rpm / 1000, 2))
     designs = DesignEngine.of(scene, timing=scene.timing(over=("O", 0.7, 1.3, 9)))
@@ -107,7 +130,9 @@ def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
 
 def test_loops_that_are_iterated_begin_where_the_drive_starts():
     """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
-    scene, closed = (press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute))
+    scene, closed = (
+        press(wanted=["effort", "motion"], pin=pin) for pin in (pinned, Mechanism.revolute)
+    )
     rung = Rung("c", newton=6)
     timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
     designs = DesignEngine.of(scene, rung=rung, timing=timing)
@@ -124,22 +149,36 @@ def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
     stop = m.parameter("stop", 1.0, "s")
     arm = m.link("arm", length=0.4, mass=2.0)
     m.revolute("O", m.ground, arm)
-    law = motion.samples(np.linspace(0, 2, 21), np.linspace(0, 7, 21) + 0.2 * np.sin(np.linspace(0, 7, 21)))
+    law = motion.samples(
+        np.linspace(0, 2, 21), np.linspace(0, 7, 21) + 0.2 * np.sin(np.linspace(0, 7, 21))
+    )
     scene = Scene(m, {"O": law}, ["effort"], t=(0, stop, 41))
     outcome = DesignEngine.of(scene).evaluate(np.array([[0.5], [2.0], [2.1], [1.3]]))
     assert outcome.status.tolist() == [0, 0, Status.NO_INSTANTS, 0]
     for row, seconds in ((0, 0.5), (1, 2.0), (3, 1.3)):
         solution = evaluate(scene, t=(0, seconds, 41))
-        assert abs(outcome.value[row, 0]) == pytest.approx(abs(refine(scene, solution, ["effort:O"])[0].value), rel=1e-9)
+        assert abs(outcome.value[row, 0]) == pytest.approx(
+            abs(refine(scene, solution, ["effort:O"])[0].value), rel=1e-9
+        )
     over = DesignEngine.of(Scene(m, {"O": law}, ["effort"], over=("O", 0, 6.0 * stop, 41)))
-    assert over.evaluate(np.array([[0.5], [1.0], [1.3]])).status.tolist() == [0, 0, Status.NO_INSTANTS]
+    assert over.evaluate(np.array([[0.5], [1.0], [1.3]])).status.tolist() == [
+        0,
+        0,
+        Status.NO_INSTANTS,
+    ]
 
 
 def test_a_gear_ratio_in_the_motion_makes_times_of_its_own():
     """An expression of parameters in the law itself: the same angles at other times."""
-    scene = press(lambda _, w: motion.expression(lambda t: w * t + 0.1 * ca.sin(w * t)), wanted=["motion"], over=("O", 0, TURN, 13))
+    scene = press(
+        lambda _, w: motion.expression(lambda t: w * t + 0.1 * ca.sin(w * t)),
+        wanted=["motion"],
+        over=("O", 0, TURN, 13),
+    )
     designs = DesignEngine.of(scene)
     found = designs.evaluate(np.array([[60.0, 0.5], [6.0, 0.5]]), histories=True)
     np.testing.assert_allclose(found.times[1], 10 * found.times[0], rtol=1e-14)
     k = designs.columns.index("motion:O")
-    np.testing.assert_allclose(found.series[:, k], np.tile(np.linspace(0, TURN, 13), (2, 1)), atol=1e-14)
+    np.testing.assert_allclose(
+        found.series[:, k], np.tile(np.linspace(0, TURN, 13), (2, 1)), atol=1e-14
+    )

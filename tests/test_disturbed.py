@@ -43,7 +43,9 @@ def instants_of(scene, stages):
 
 
 def of_load(scene, stages="double", change=lambda out, row: None):
-    """What errors do to the load, (trials and the result, n), and the load; ``change`` has its will on the result's load."""
+    """What errors do to the load, (trials and the result, n), and the load; ``change`` has its will
+    on the result's load.
+    """
     graph, instants, out, angles = instants_of(scene, stages)
     row = graph.names.index("load:t:mz")
     change(out, row)
@@ -87,13 +89,22 @@ JUMPS = {
     "sign of an angle": (lambda t, q, w: 1e3 * ca.sign(q - AT), harmonic(0.3, 1.0, 1.0)),
     "sign of a rate": (lambda t, q, w: 1e3 * ca.sign(w), harmonic(0.3, 1.0, 1.0)),
     "rate above zero": (lambda t, q, w: 1e3 * (w > 0), harmonic(0.3, 1.0, 1.0)),
-    "if_else of an angle": (lambda t, q, w: ca.if_else(q > 0.3, 1e3, -2e3 * q), harmonic(0.3, 1.0, 1.0)),
+    "if_else of an angle": (
+        lambda t, q, w: ca.if_else(q > 0.3, 1e3, -2e3 * q),
+        harmonic(0.3, 1.0, 1.0),
+    ),
     "floor": (lambda t, q, w: 1e3 * ca.floor(q / 0.1), polynomial(0.1, 2.0)),
     "fmod": (lambda t, q, w: 1e3 * ca.fmod(q, 0.1), polynomial(0.1, 2.0)),
     "remainder": (lambda t, q, w: 1e3 * ca.remainder(q, 0.1), polynomial(0.05, 2.0)),
-    "direction at half a turn": (lambda t, q, w: 1e3 * ca.atan2(ca.sin(q), ca.cos(q)), polynomial(0.0, 2 * math.pi)),
+    "direction at half a turn": (
+        lambda t, q, w: 1e3 * ca.atan2(ca.sin(q), ca.cos(q)),
+        polynomial(0.0, 2 * math.pi),
+    ),
     "copysign": (lambda t, q, w: ca.copysign(1e3, w), harmonic(0.3, 1.0, 1.0)),
-    "several": (lambda t, q, w: 1e3 * ca.sign(w) + ca.sign(q - 0.3) * 7e3 + 3e4 * (t >= 0.25), harmonic(0.3, 1.0, 1.0)),
+    "several": (
+        lambda t, q, w: 1e3 * ca.sign(w) + ca.sign(q - 0.3) * 7e3 + 3e4 * (t >= 0.25),
+        harmonic(0.3, 1.0, 1.0),
+    ),
 }
 
 
@@ -107,7 +118,9 @@ def turned(out, row, where, load):
 @pytest.mark.parametrize("stages", STAGES)
 @pytest.mark.parametrize("jump", JUMPS)
 def test_trials_stay_on_the_side_of_a_jump(jump, stages):
-    """Rates and angles that are zero at instants but for rounding, and angles that are where the load jumps."""
+    """Rates and angles that are zero at instants but for rounding, and angles that are where the
+    load jumps.
+    """
     load, motion = JUMPS[jump]
     changes, _ = of_load(arm(load, motion), stages)
     unit = 2.0**-24 if stages == "single" else 2.0**-53
@@ -115,7 +128,10 @@ def test_trials_stay_on_the_side_of_a_jump(jump, stages):
 
 
 @pytest.mark.parametrize("load", [-1e3, 1e3])
-@pytest.mark.parametrize("jump", [lambda q: ca.sign(q - AT), lambda q: ca.copysign(1.0, q - AT), lambda q: 1 - 2 * (q < AT)])
+@pytest.mark.parametrize(
+    "jump",
+    [lambda q: ca.sign(q - AT), lambda q: ca.copysign(1.0, q - AT), lambda q: 1 - 2 * (q < AT)],
+)
 def test_the_side_that_a_result_took_is_found(jump, load):
     """A result on either side of the jump, where rounding decides, is none the worse."""
     scene = arm(lambda t, q, w: 1e3 * jump(q))
@@ -172,4 +188,8 @@ def test_many_instants_are_followed_in_blocks(monkeypatch):
     (whole,) = instants.blocks(chosen)
     np.testing.assert_array_equal(whole, chosen)
     monkeypatch.setattr("lagrange_casadi.judge.disturbed._AT_ONCE", 1)
-    assert [block.tolist() for block in instants.blocks(chosen)] == [[*range(16)], [*range(16, 32)], [*range(32, 41)]]
+    assert [block.tolist() for block in instants.blocks(chosen)] == [
+        [*range(16)],
+        [*range(16, 32)],
+        [*range(32, 41)],
+    ]

@@ -23,7 +23,18 @@ PAGES = [
     *(
         f"docs/{page}.md"
         for page in (
-            *("method", "declaring", "loads", "machines", "space", "strength", "sweeps", "report", "animations", "optimise"),
+            *(
+                "method",
+                "declaring",
+                "loads",
+                "machines",
+                "space",
+                "strength",
+                "sweeps",
+                "report",
+                "animations",
+                "optimise",
+            ),
             *("reference/python", "tutorials/connecting_rod", "tutorials/two_loops"),
         )
     ),
@@ -41,7 +52,9 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
     assert blocks
     names = {}
     for block in blocks:
-        exec(compile(block, page, "exec"), names if "tutorials" in page else {})  # a tutorial goes on where it was
+        exec(
+            compile(block, page, "exec"), names if "tutorials" in page else {}
+        )  # a tutorial goes on where it was
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
@@ -50,10 +63,26 @@ def test_the_exported_c_is_called_as_shown(page, tmp_path):
     (block,) = re.findall(r"```c\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
     body = block.replace("slider_crank_prepare(", "slider_crank_status s = slider_crank_prepare(")
-    checked = re.sub(r"^slider_crank_(evaluate|section)\(", r"s = s ? s : slider_crank_\1(", body, flags=re.MULTILINE)
-    program = f'#include "slider_crank.h"\nint main(void) {{\n{checked}\nreturn s || forces.bending == 0;\n}}\n'
+    checked = re.sub(
+        r"^slider_crank_(evaluate|section)\(",
+        r"s = s ? s : slider_crank_\1(",
+        body,
+        flags=re.MULTILINE,
+    )
+    program = (
+        f'#include "slider_crank.h"\nint main(void) {{\n{checked}\nreturn s || forces.bending =='
+        " 0;\n}\n"
+    )
     (tmp_path / "shown.c").write_text(program)
-    command = [*compiler.command, "-std=c99", tmp_path / "shown.c", tmp_path / "slider_crank.c", "-o", tmp_path / "shown", "-lm"]
+    command = [
+        *compiler.command,
+        "-std=c99",
+        tmp_path / "shown.c",
+        tmp_path / "slider_crank.c",
+        "-o",
+        tmp_path / "shown",
+        "-lm",
+    ]
     subprocess.run(command, check=True)
     subprocess.run([tmp_path / "shown"], check=True)
 
@@ -67,7 +96,9 @@ def test_links_lead_somewhere(page):
 def synopses(page, heading):
     """The options that a page's synopses give every command."""
     found = {}
-    for line in (ROOT / page).read_text().partition(f"## {heading}")[2].split("\n\n")[1].splitlines():
+    for line in (
+        (ROOT / page).read_text().partition(f"## {heading}")[2].split("\n\n")[1].splitlines()
+    ):
         if line.startswith("    lagrange-casadi "):
             name = line.split()[1]
         found.setdefault(name, set()).update(re.findall(r"--[a-z-]+", line))
@@ -75,7 +106,12 @@ def synopses(page, heading):
 
 
 def options(name):
-    return {option for parameter in program.commands[name].params for option in parameter.opts if option.startswith("--")}
+    return {
+        option
+        for parameter in program.commands[name].params
+        for option in parameter.opts
+        if option.startswith("--")
+    }
 
 
 def test_the_synopses_of_sweeps_are_whole():
@@ -105,8 +141,17 @@ def rows(quantities, *axes):
         "holding": "/holding/JOINT/",
         "reaction": "/reaction/JOINT/",
     }
-    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "friction": "/friction/NAME/", "output": "/output/NAME"}
-    places |= {"certificate": "/certificate/", "stress": "/stress/LINK/", "utilisation": "/utilisation/LINK/"}
+    places |= {
+        "multiplier": "/multiplier/NAME",
+        "load": "/load/NAME/",
+        "friction": "/friction/NAME/",
+        "output": "/output/NAME",
+    }
+    places |= {
+        "certificate": "/certificate/",
+        "stress": "/stress/LINK/",
+        "utilisation": "/utilisation/LINK/",
+    }
     places |= {
         "deflection": "/deflection/LINK/",
         "section": "/section/LINK/",
@@ -128,9 +173,14 @@ def test_the_schema_lists_every_quantity(request):
     axes = ("| /t | t | s | time | |", "| /xi | xi | 1 | place along a link, ratio xi/l | |")
     others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
     new = text
-    for name, lines in (("quantities", rows(QUANTITIES, *axes)), ("quantities in space", rows(others))):
+    for name, lines in (
+        ("quantities", rows(QUANTITIES, *axes)),
+        ("quantities in space", rows(others)),
+    ):
         table = f"<!-- {name} -->\n" + "\n".join(lines) + f"\n<!-- /{name} -->"
-        new = re.sub(f"<!-- {name} -->.*<!-- /{name} -->", lambda _, table=table: table, new, flags=re.DOTALL)
+        new = re.sub(
+            f"<!-- {name} -->.*<!-- /{name} -->", lambda _, table=table: table, new, flags=re.DOTALL
+        )
     if request.config.getoption("--update"):
         page.write_text(new)
     assert page.read_text() == new
@@ -142,11 +192,21 @@ def test_readme_is_short():
 
 
 def test_the_reference_has_every_public_name():
-    parts = re.findall(r"currentmodule:: (\S+)\n(.*?)\n```", (ROOT / "docs" / "reference" / "python.md").read_text(), re.DOTALL)
+    parts = re.findall(
+        r"currentmodule:: (\S+)\n(.*?)\n```",
+        (ROOT / "docs" / "reference" / "python.md").read_text(),
+        re.DOTALL,
+    )
     listed = {f"{module}.{name}" for module, part in parts for name in part.split()}
-    doors = {name: thing for name in lagrange_casadi.__all__ if inspect.ismodule(thing := getattr(lagrange_casadi, name))}
+    doors = {
+        name: thing
+        for name in lagrange_casadi.__all__
+        if inspect.ismodule(thing := getattr(lagrange_casadi, name))
+    }
     named = {
-        f"lagrange_casadi.{name}" for name in lagrange_casadi.__all__ if name not in (*doors, "LagrangeCasadiError", "__version__")
+        f"lagrange_casadi.{name}"
+        for name in lagrange_casadi.__all__
+        if name not in (*doors, "LagrangeCasadiError", "__version__")
     }
     for door, module in doors.items():
         named |= {f"lagrange_casadi.{door}.{name}" for name in getattr(module, "__all__", [])}
@@ -156,13 +216,21 @@ def test_the_reference_has_every_public_name():
 def rows_of(page):
     """Cells of the rows of a page's tables, code without its marks."""
     lines = (ROOT / page).read_text().splitlines()
-    return [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+    return [
+        [cell.strip(" `") for cell in line.strip("|").split("|")]
+        for line in lines
+        if line.startswith("|")
+    ]
 
 
 def test_every_error_and_every_status_has_a_cure():
     cells = {row[0]: row[1:] for row in rows_of("docs/reference/errors.md")}
     for name, error in vars(errors).items():
-        if inspect.isclass(error) and issubclass(error, errors.LagrangeCasadiError) and error is not errors.LagrangeCasadiError:
+        if (
+            inspect.isclass(error)
+            and issubclass(error, errors.LagrangeCasadiError)
+            and error is not errors.LagrangeCasadiError
+        ):
             assert cells[name][0] == str(error.exit_status)
             assert all(cells[name])
     for status in Status:
@@ -183,7 +251,9 @@ def test_the_changelog_names_the_version():
 def test_pages_keep_to_their_width(page):
     """Prose and code to 120 columns; a row of a table cannot break, and keeps to 160."""
     for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
-        assert len(line) <= (160 if line.startswith("|") else 120), f"{page}:{number}: {len(line)} columns"
+        assert len(line) <= (160 if line.startswith("|") else 120), (
+            f"{page}:{number}: {len(line)} columns"
+        )
 
 
 def anchor(heading):
@@ -213,7 +283,12 @@ def test_the_glossary_is_in_order_and_found():
 
 
 TRUSTED = {
-    "What runs code": ["loading it runs it", "Dask scheduler as pickles", "`--flags` (`flags=`) go to it", "The cache folder"],
+    "What runs code": [
+        "loading it runs it",
+        "Dask scheduler as pickles",
+        "`--flags` (`flags=`) go to it",
+        "The cache folder",
+    ],
     "The seal": ["tells damage", "no signature"],
     "Files of unknown origin": ["`--time-limit`", "What it does not promise"],
 }

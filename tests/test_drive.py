@@ -26,7 +26,11 @@ def press(law, **options):
     """A slider-crank that presses and weighs, in all of which the inertia has no part."""
     m = Mechanism("press")
     l = m.parameter("l", 0.4, "m")
-    crank, rod, ram = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=l, mass=2.0), m.point_mass("ram", 15.0)
+    crank, rod, ram = (
+        m.link("crank", length=0.1, mass=1.2),
+        m.link("rod", length=l, mass=2.0),
+        m.point_mass("ram", 15.0),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, ram)
@@ -46,7 +50,14 @@ def test_a_slider_cranks_inertia_is_that_of_its_velocities():
         np.stack([-r * np.sin(angle), r * np.cos(angle)]),
         np.stack([0 * angle, r * np.cos(angle) - l * np.cos(lean) * -turning]),
     ]
-    rod = 2.0 / 3.0 * sum((a * b).sum(axis=0) for a, b in ((ends[0], ends[0]), (ends[0], ends[1]), (ends[1], ends[1])))
+    rod = (
+        2.0
+        / 3.0
+        * sum(
+            (a * b).sum(axis=0)
+            for a, b in ((ends[0], ends[0]), (ends[0], ends[1]), (ends[1], ends[1]))
+        )
+    )
     expected = 1.2 * r**2 / 3 + rod + 15.0 * ends[1][1] ** 2
     assert inertia_at(scene, "O", parameters={"l": l}) == pytest.approx(expected, rel=1e-12)
     assert np.ptp(expected) > 0.5 * expected.mean()
@@ -58,7 +69,11 @@ def added(scene, joint, at):
     law = more[joint]
     more[joint] = type(law)(lambda t: law.graph(t) + (t - at) ** 2 / 2)
     found = [
-        evaluate(Scene(scene.mechanism, motion, posture=scene.posture, t=(*scene.t[:2], 3)), wanted=["effort"], t=(at, at, 1))
+        evaluate(
+            Scene(scene.mechanism, motion, posture=scene.posture, t=(*scene.t[:2], 3)),
+            wanted=["effort"],
+            t=(at, at, 1),
+        )
         for motion in (scene.motion, more)
     ]
     return float((found[1].effort(joint) - found[0].effort(joint))[0])
@@ -66,10 +81,19 @@ def added(scene, joint, at):
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
-    ("name", "joint"), [("four_bar", "O"), ("rssr", "O"), ("spatial_slider_crank", "A"), ("arm", "elbow"), ("scara", "shoulder")]
+    ("name", "joint"),
+    [
+        ("four_bar", "O"),
+        ("rssr", "O"),
+        ("spatial_slider_crank", "A"),
+        ("arm", "elbow"),
+        ("scara", "shoulder"),
+    ],
 )
 def test_it_is_what_a_unit_of_acceleration_takes_more(name, joint):
-    """Inverse dynamics knows nothing of the energy's second derivative: two efforts whose drives differ in acceleration alone."""
+    """Inverse dynamics knows nothing of the energy's second derivative: two efforts whose drives
+    differ in acceleration alone.
+    """
     scene = load_case(CASES / name).scene
     at = scene.span[0] + 0.3 * (scene.span[1] - scene.span[0])
     seen = inertia_at(scene, joint, t=(at, at, 1))
@@ -80,7 +104,9 @@ def test_at_rest_a_mechanism_has_inertia_too():
     law = moves([move("90 deg", time=0.3), dwell(0.2)], start="20 deg")
     seen = inertia_at(press(law, t=(0, 0.5, 51)), "O")
     assert seen[30:] == pytest.approx(seen[30], rel=1e-12)
-    assert inertia_at(press(polynomial(math.radians(90), 1.0), t=(0, 0, 1)), "O")[0] == pytest.approx(seen[40], rel=1e-12)
+    assert inertia_at(press(polynomial(math.radians(90), 1.0), t=(0, 0, 1)), "O")[
+        0
+    ] == pytest.approx(seen[40], rel=1e-12)
 
 
 def hoist(law, **options):
@@ -100,13 +126,21 @@ def test_a_drive_elsewhere_feels_it_through_its_lever():
     assert seen == pytest.approx(150.0 * 9.0 / 3 / lever**2, rel=1e-12)
 
 
-@pytest.mark.parametrize("alone", [pytest.param("boom_cylinder"), pytest.param("bucket_cylinder", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "alone",
+    [pytest.param("boom_cylinder"), pytest.param("bucket_cylinder", marks=pytest.mark.long)],
+)
 def test_of_several_drives_the_others_are_at_rest(alone):
-    """The excavator's pose is given; beside it the same machine of which the cylinders' motion is given, and one moves."""
+    """The excavator's pose is given; beside it the same machine of which the cylinders' motion is
+    given, and one moves.
+    """
     scene = load_case(CASES / "excavator").scene
     at = (scene.span[1], scene.span[1], 1)
     solution = evaluate(scene, t=at, wanted=["motion"])
-    laws = {name: polynomial(solution.motion(name).value[0], float(name == alone)) for name in scene.weights}
+    laws = {
+        name: polynomial(solution.motion(name).value[0], float(name == alone))
+        for name in scene.weights
+    }
     rough = {link: solution.pose(link).angle[0] for link in scene.mechanism.links}
     other = Scene(scene.mechanism, laws, t=(0, 0, 1), posture=rough)
     expected = 2.0 * sum(map(float, energies(other)))
@@ -125,8 +159,16 @@ def energies(scene):
         pose = solution.pose(name)
         angle = np.zeros(5) if pose.angle is None else pose.angle
         mass, (x, y), inertia = matter(scene.mechanism, body, values)
-        place = np.stack([pose.x + x * np.cos(angle) - y * np.sin(angle), pose.y + x * np.sin(angle) + y * np.cos(angle)])
-        speed, turning = ((f[..., 0] - 8 * f[..., 1] + 8 * f[..., 3] - f[..., 4]) / (12 * h) for f in (place, angle))
+        place = np.stack(
+            [
+                pose.x + x * np.cos(angle) - y * np.sin(angle),
+                pose.y + x * np.sin(angle) + y * np.cos(angle),
+            ]
+        )
+        speed, turning = (
+            (f[..., 0] - 8 * f[..., 1] + 8 * f[..., 3] - f[..., 4]) / (12 * h)
+            for f in (place, angle)
+        )
         yield mass * speed @ speed / 2 + inertia * turning**2 / 2
 
 
@@ -151,7 +193,10 @@ def matter(mechanism, body, values):
 def test_what_no_drive_feels_alone_is_told():
     with pytest.raises(UnknownNameError, match="unknown drive 'P'; valid: O"):
         inertia_at(press(polynomial(0.1, 7.0)), "P")
-    with pytest.raises(DeclarationError, match="inertia at 'X': with non-holonomic constraints no drive moves alone"):
+    with pytest.raises(
+        DeclarationError,
+        match="inertia at 'X': with non-holonomic constraints no drive moves alone",
+    ):
         inertia_at(load_case(CASES / "sleigh").scene, "X")
 
 
@@ -166,12 +211,16 @@ def test_the_ratio_of_inertias():
     for missing in ({"inertia": 1e-3}, {"carried": seen}):
         with pytest.raises(DeclarationError, match="inertia ratio of 'O': expected"):
             _ = duty_of(solution, "O", **missing).inertia_ratio
-    with pytest.raises(DeclarationError, match="carried: expected an inertia at each of the 37 instants"):
+    with pytest.raises(
+        DeclarationError, match="carried: expected an inertia at each of the 37 instants"
+    ):
         duty_of(solution, "O", carried=seen[1:])
 
 
 def test_a_winding_warms_and_cools_as_its_law_says():
-    """On for 2 s, off for 6 s, over and over: the exponentials of any textbook, at the end of the pull."""
+    """On for 2 s, off for 6 s, over and over: the exponentials of any textbook, at the end of the
+    pull.
+    """
     t = np.array([0.0, 2.0, 2.0 + 1e-9, 8.0])
     torque = np.array([3.0, 3.0, 0.0, 0.0])
     assert warmest(t, torque) == pytest.approx(3.0 * math.sqrt(2.0 / 8.0), rel=1e-8)
@@ -180,7 +229,11 @@ def test_a_winding_warms_and_cools_as_its_law_says():
         assert warmest(t, torque, tau) == pytest.approx(3.0 * math.sqrt(peak), rel=1e-8)
 
 
-@given(st.lists(st.floats(0.0, 9.0), min_size=2, max_size=30), st.floats(1e-3, 1e3), st.floats(1.0, 100.0))
+@given(
+    st.lists(st.floats(0.0, 9.0), min_size=2, max_size=30),
+    st.floats(1e-3, 1e3),
+    st.floats(1.0, 100.0),
+)
 def test_the_warmest_instant_is_between_the_mean_and_the_peak(pulls, tau, more):
     torque, t = np.array(pulls), np.cumsum(np.linspace(0.1, 0.5, len(pulls)))
     least, slow, quick = warmest(t, torque), warmest(t, torque, tau * more), warmest(t, torque, tau)
@@ -191,7 +244,18 @@ def test_the_warmest_instant_is_between_the_mean_and_the_peak(pulls, tau, more):
 
 def test_a_motor_that_its_voltage_limits_gives_less_at_speed():
     plain = Motor("plain", 2.0, 1.5, 300.0, 6.0, 500.0, 0.0)
-    weak = Motor("weak", 2.0, 1.5, 300.0, 6.0, 500.0, 0.0, knee_speed=200.0, end_torque=1.0, time_constant=0.05)
+    weak = Motor(
+        "weak",
+        2.0,
+        1.5,
+        300.0,
+        6.0,
+        500.0,
+        0.0,
+        knee_speed=200.0,
+        end_torque=1.0,
+        time_constant=0.05,
+    )
     assert weak.at_most(np.array([0.0, -200.0, 350.0, 500.0])).tolist() == [6.0, 6.0, 3.5, 1.0]
     m = Mechanism("table")
     m.set_gravity(0, 0)
@@ -218,14 +282,21 @@ def test_linear_motors_have_forces_and_masses(here):
     assert (motor.linear, motor.inertia, motor.max_speed) == (True, 1.5, 4.0)
     m = Mechanism("stage")
     m.prismatic("X", m.ground, m.point_mass("table", 10.0), axis=(1, 0))
-    solution = evaluate(Scene(m, {"X": harmonic(0.0, 0.1, 1.0)}, t=(0, 1, 401)), wanted=["effort", "motion"])
+    solution = evaluate(
+        Scene(m, {"X": harmonic(0.0, 0.1, 1.0)}, t=(0, 1, 401)), wanted=["effort", "motion"]
+    )
     choice = judge(motor, duty_of(solution, "X", inertia=motor.inertia, linear=True))
     assert choice.torque == pytest.approx(11.5 * 0.1 * (2 * math.pi) ** 2 / 300.0, rel=1e-6)
     assert choice.governs in choice.shares
-    with pytest.raises(DeclarationError, match="motor 'L1' is a linear one, and the duty of 'X' is that of a rotary one"):
+    with pytest.raises(
+        DeclarationError,
+        match="motor 'L1' is a linear one, and the duty of 'X' is that of a rotary one",
+    ):
         judge(motor, duty_of(solution, "X", ratio=600.0))
     solution = evaluate(press(polynomial(0.1, 7.0), t=(0, 0.9, 37)), wanted=["effort", "motion"])
-    with pytest.raises(DeclarationError, match="drive 'O' turns, and a linear motor slides; expected a rotary one"):
+    with pytest.raises(
+        DeclarationError, match="drive 'O' turns, and a linear motor slides; expected a rotary one"
+    ):
         duty_of(solution, "O", linear=True)
 
 
@@ -258,13 +329,28 @@ def gantry(here):
 
 
 def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
-    assert main(["drive", "case.py", "--motors", "rotary.csv", "--lead", "0.02", "--efficiency", "0.9"]) == 0
+    assert (
+        main(
+            ["drive", "case.py", "--motors", "rotary.csv", "--lead", "0.02", "--efficiency", "0.9"]
+        )
+        == 0
+    )
     out = capsys.readouterr().out
     solution = evaluate(load_case("case.py").scene, wanted=["effort", "motion"])
     for name, mass in (("X", 20.0), ("Y", 8.0)):
         turns = math.tau / 0.02
         choices = [
-            judge(motor, duty_of(solution, name, ratio=turns, efficiency=0.9, inertia=motor.inertia, carried=np.full(441, mass)))
+            judge(
+                motor,
+                duty_of(
+                    solution,
+                    name,
+                    ratio=turns,
+                    efficiency=0.9,
+                    inertia=motor.inertia,
+                    carried=np.full(441, mass),
+                ),
+            )
             for motor in read_motors("rotary.csv")
         ]
         first = next(choice for choice in choices if choice.serves)
@@ -272,11 +358,16 @@ def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
         assert f"smallest of 3 motors that serves: '{first.motor.name}'" in told
         assert f"it feels an inertia of {mass:.5g} to {mass:.5g} kg\n" in told
         ratio = mass / (turns**2 * first.motor.inertia)
-        assert f"inertia of the load over the motor's: {ratio:.5g} to {ratio:.5g}, in the mean {ratio:.5g}\n" in told
+        assert (
+            f"inertia of the load over the motor's: {ratio:.5g} to {ratio:.5g}, in the mean"
+            f" {ratio:.5g}\n" in told
+        )
         for limit, share in first.shares.items():
             assert f"    {limit:<12} {share:>8.4g} |" in told
         assert f"rms {first.duty.rms_torque:.5g} N m, peak {first.duty.peak_torque:.5g} N m" in told
-        assert f"{first.duty.energy:.5g} J a cycle, {first.duty.regenerated:.5g} J come back" in told
+        assert (
+            f"{first.duty.energy:.5g} J a cycle, {first.duty.regenerated:.5g} J come back" in told
+        )
     assert out.splitlines()[-1].startswith("certificate: closure")
 
 
@@ -295,7 +386,9 @@ def test_it_draws_and_takes_linear_motors_and_other_parameters(gantry, capsys):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("ending", [".png", ".pdf", ".svg"])
 def test_a_picture_has_the_same_bytes_every_time(here, ending):
-    duty = duty_of(evaluate(press(polynomial(0.1, 7.0), t=(0, 0.9, 37)), wanted=["effort", "motion"]), "O")
+    duty = duty_of(
+        evaluate(press(polynomial(0.1, 7.0), t=(0, 0.9, 37)), wanted=["effort", "motion"]), "O"
+    )
     first, second = here / f"a{ending}", here / f"b{ending}"
     for path in (first, second):
         plot_duty(duty, path, Motor("m", 60.0, 40.0, 30.0, 200.0, 50.0, 0.0, 20.0, 90.0))
@@ -317,7 +410,11 @@ def test_without_a_catalogue_it_tells_the_load(gantry, capsys):
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
-        (["--motors", "rotary.csv"], 2, "drive 'X' slides: expected --lead, its way in a turn of the motor, or linear motors"),
+        (
+            ["--motors", "rotary.csv"],
+            2,
+            "drive 'X' slides: expected --lead, its way in a turn of the motor, or linear motors",
+        ),
         (["--motors", "linear.csv", "--lead", "0.1"], 2, "--lead: linear motors have no lead"),
         (["--lead", "-1"], 2, "--lead: expected a positive length"),
         (["--inertia", "nan"], 2, "--inertia: expected a number that is not negative"),
@@ -325,9 +422,17 @@ def test_without_a_catalogue_it_tells_the_load(gantry, capsys):
         (["--ratio", "0"], 2, "got '0'"),
         (["--drive", "Z"], 2, "unknown drive 'Z'; valid: X, Y"),
         (["--plot", "x.png"], 2, "--plot: expected one drive, by --drive; there are X, Y"),
-        (["--drive", "X", "--plot", "x.txt"], 2, "x.txt: expected a name that ends in .png, .pdf, .svg"),
+        (
+            ["--drive", "X", "--plot", "x.txt"],
+            2,
+            "x.txt: expected a name that ends in .png, .pdf, .svg",
+        ),
         (["--motors", "none.csv"], 2, "none.csv: no such file"),
-        (["--motors", "rotary.csv", "--lead", "0.02", "--efficiency", "2"], 2, "efficiency must be above 0 and at most 1, got 2.0"),
+        (
+            ["--motors", "rotary.csv", "--lead", "0.02", "--efficiency", "2"],
+            2,
+            "efficiency must be above 0 and at most 1, got 2.0",
+        ),
         (["--motors", "rotary.csv", "--ratio", "5000"], 1, "no motor of 3 serves; nearest comes"),
     ],
 )
@@ -348,7 +453,8 @@ def test_friction_at_rest_leaves_a_duty_open_but_for_its_range(here):
     scene = Scene(m, {"X": moves([move(0.2, time=0.4), dwell(0.2)])}, t=(0, 0.6, 61))
     solution = evaluate(scene)
     with pytest.raises(
-        DeclarationError, match=r"the effort of drive 'X' is open at 2\d of 61 instants; joints that rub are at rest"
+        DeclarationError,
+        match=r"the effort of drive 'X' is open at 2\d of 61 instants; joints that rub are at rest",
     ):
         duty_of(replace(solution, held={}), "X")
     assert np.abs(duty_of(solution, "X").torque[-1]) == pytest.approx(0.1 * 10.0 * 9.81)

@@ -30,7 +30,9 @@ PAIRS = list(itertools.combinations("OCADP", 2))
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize("pair", PAIRS, ids=map("".join, PAIRS))
 def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
-    """Pins of the tree and pins that close its loop, at bodies that bear sections: all forces are those of free bodies."""
+    """Pins of the tree and pins that close its loop, at bodies that bear sections: all forces are
+    those of free bodies.
+    """
     loads = [lambda place: [(("c", 0.5, 0), -20.0, 5.0, 0.0)]]
     assert_balanced(five_bar(pair), t=0.3, loads=loads)
     solution = evaluate(five_bar(pair))
@@ -44,7 +46,10 @@ def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
 def test_drives_do_the_power_of_the_motion(pair):
     """The power is the motion's and the loads', whoever does it."""
     usual, other = evaluate(five_bar()), evaluate(five_bar(pair))
-    power = [sum(s.effort(j) * s.motion(j).rate for j in joints) for s, joints in ((usual, "OC"), (other, pair))]
+    power = [
+        sum(s.effort(j) * s.motion(j).rate for j in joints)
+        for s, joints in ((usual, "OC"), (other, pair))
+    ]
     assert np.abs(power[1] - power[0]).max() < 1e-12 * np.abs(power[0]).max()
 
 
@@ -53,11 +58,20 @@ def test_a_slide_drives_where_the_crank_moves(slides):
     """The crank's motion is given, the piston drives: F x' = M q'."""
     made = block() if slides else slider_crank(t=(0.005, 0.03, 51))
     joint = "P" if slides else "guide"
-    scene = Scene(made.mechanism, made.motion, posture=made.posture, t=(0.3, 0.4, 21) if slides else made.t, drives=[joint])
+    scene = Scene(
+        made.mechanism,
+        made.motion,
+        posture=made.posture,
+        t=(0.3, 0.4, 21) if slides else made.t,
+        drives=[joint],
+    )
     found = evaluate(scene)
     first = evaluate(Scene(scene.mechanism, scene.motion, posture=scene.posture, t=scene.t))
     assert found.certified
-    work, moved = found.effort(joint) * found.motion(joint).rate, first.effort("O") * first.motion("O").rate
+    work, moved = (
+        found.effort(joint) * found.motion(joint).rate,
+        first.effort("O") * first.motion("O").rate,
+    )
     assert np.abs(work - moved).max() < 1e-12 * np.abs(moved).max()
     with pytest.raises(UnknownNameError):
         found.effort("O")
@@ -67,7 +81,9 @@ def test_a_slide_drives_where_the_crank_moves(slides):
 @settings(max_examples=3, deadline=None)
 @given(st.lists(st.floats(0.01, 100.0), min_size=3, max_size=5))
 def test_of_more_drives_the_efforts_are_the_least(weights):
-    """Efforts times weights are a combination of what the motions do at the drives (Lagrange's condition of the least)."""
+    """Efforts times weights are a combination of what the motions do at the drives (Lagrange's
+    condition of the least).
+    """
     drives = dict(zip("OCADP", weights, strict=False))
     found = evaluate(five_bar(drives, t=(0.2, 0.8, 3)))
     assert found.certified
@@ -75,9 +91,14 @@ def test_of_more_drives_the_efforts_are_the_least(weights):
         rates = []
         for turning in "OC":
             m = five_bar(t=(t, t, 1))
-            laws = {j: motion.polynomial(float(found.motion(j).value[i]), float(j == turning)) for j in "OC"}
+            laws = {
+                j: motion.polynomial(float(found.motion(j).value[i]), float(j == turning))
+                for j in "OC"
+            }
             posture = {b: float(found.pose(b).angle[i]) for b in "abcd"}
-            one = evaluate(Scene(m.mechanism, laws, ["motion"], t=(0, 0, 1), posture=posture), backend="vm")
+            one = evaluate(
+                Scene(m.mechanism, laws, ["motion"], t=(0, 0, 1), posture=posture), backend="vm"
+            )
             rates.append([one.motion(j).rate[0] for j in drives])
         pull = np.array([w * found.effort(j)[i] for j, w in drives.items()])
         left = pull - np.array(rates).T @ np.linalg.lstsq(np.array(rates).T, pull, rcond=None)[0]
@@ -85,7 +106,10 @@ def test_of_more_drives_the_efforts_are_the_least(weights):
 
 
 def test_weights_may_be_parameters():
-    told = {p: evaluate(five_bar(lambda h: {"O": 1.0, "C": h, "A": 3.0}), parameters={"heavier": p}) for p in (2.0, 5.0)}
+    told = {
+        p: evaluate(five_bar(lambda h: {"O": 1.0, "C": h, "A": 3.0}), parameters={"heavier": p})
+        for p in (2.0, 5.0)
+    }
     for p, found in told.items():
         same = evaluate(five_bar({"O": 1.0, "C": p, "A": 3.0}))
         for joint in "OCA":
@@ -97,34 +121,52 @@ def test_weights_may_be_parameters():
 
 def test_the_joints_of_the_motion_themselves_change_nothing():
     usual, told = evaluate(five_bar()), evaluate(five_bar(["C", "O"]))
-    assert all(np.array_equal(usual.outputs[output], told.outputs[output]) for output in usual.outputs)
+    assert all(
+        np.array_equal(usual.outputs[output], told.outputs[output]) for output in usual.outputs
+    )
     assert derive(five_bar(["C", "O"])).instructions == derive(five_bar()).instructions
 
 
 def test_over_constrained_mechanisms_are_driven_elsewhere():
     """What equilibrium leaves open stays open, and the efforts are none of it."""
     made = truss_platform()
-    joints = [name for name, joint in made.mechanism.joints.items() if joint.coordinate and name not in made.motion]
+    joints = [
+        name
+        for name, joint in made.mechanism.joints.items()
+        if joint.coordinate and name not in made.motion
+    ]
     usual = evaluate(made)
     for joint in joints[:4]:
         drives = [joint, *list(made.motion)[1:]]
         try:
-            found = evaluate(Scene(made.mechanism, made.motion, posture=made.posture, t=made.t, drives=drives))
+            found = evaluate(
+                Scene(made.mechanism, made.motion, posture=made.posture, t=made.t, drives=drives)
+            )
         except AssemblyError:
             continue
         assert found.certified
-        power = [sum(s.effort(j) * s.motion(j).rate for j in names) for s, names in ((usual, made.motion), (found, drives))]
+        power = [
+            sum(s.effort(j) * s.motion(j).rate for j in names)
+            for s, names in ((usual, made.motion), (found, drives))
+        ]
         assert np.abs(power[1] - power[0]).max() < 1e-10 * np.abs(power[0]).max()
 
 
 def test_all_ways_of_evaluating_agree():
     scene = five_bar(["A", "P"])
     exact = evaluate(scene, backend="vm")
-    ways = [({"backend": "c"}, 1e-12), ({"backend": "lanes"}, 1e-12), ({"precision": "single"}, 1e-4)]
+    ways = [
+        ({"backend": "c"}, 1e-12),
+        ({"backend": "lanes"}, 1e-12),
+        ({"precision": "single"}, 1e-4),
+    ]
     for keywords, close in ways:
         found = evaluate(scene, **keywords)
         for joint in "AP":
-            gap, size = np.abs(found.effort(joint) - exact.effort(joint)).max(), np.abs(exact.effort(joint)).max()
+            gap, size = (
+                np.abs(found.effort(joint) - exact.effort(joint)).max(),
+                np.abs(exact.effort(joint)).max(),
+            )
             assert gap < close * size
             assert gap <= 1.01 * float(np.max(found.errors[f"effort:{joint}"])) + 1e-13
 
@@ -133,26 +175,39 @@ def two_loops():
     """Two four-bars that have nothing to do with each other."""
     m = Mechanism("two_loops")
     for k, x in enumerate((0.0, 2.0)):
-        a, b, c = (m.link(f"{name}{k}", length=l, mass=0.3) for name, l in zip("abc", (0.1, 0.35, 0.25), strict=True))
+        a, b, c = (
+            m.link(f"{name}{k}", length=l, mass=0.3)
+            for name, l in zip("abc", (0.1, 0.35, 0.25), strict=True)
+        )
         m.revolute(f"O{k}", m.ground.at(x, 0), a)
         m.revolute(f"A{k}", a.tip, b)
         m.revolute(f"B{k}", b.tip, c.tip)
         m.revolute(f"C{k}", m.ground.at(x + 0.3, 0.05), c)
-    return m, {f"O{k}": motion.polynomial(0.2, 3.0, 4.0) for k in range(2)}, {f"c{k}": 1.5 for k in range(2)}
+    return (
+        m,
+        {f"O{k}": motion.polynomial(0.2, 3.0, 4.0) for k in range(2)},
+        {f"c{k}": 1.5 for k in range(2)},
+    )
 
 
 def test_drives_that_depend_on_each_other_are_refused_by_name():
     m, laws, posture = two_loops()
     with pytest.raises(AssemblyError, match=r"the drives O0, C0 cannot make the motion at t = 0 s"):
         evaluate(Scene(m, laws, posture=posture, drives=["O0", "C0"]))
-    assert evaluate(Scene(m, laws, posture=posture, drives=["C0", "B1"], t=(0.2, 0.3, 11))).certified
+    assert evaluate(
+        Scene(m, laws, posture=posture, drives=["C0", "B1"], t=(0.2, 0.3, 11))
+    ).certified
 
 
 def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
     """A piston cannot turn the crank through its dead centre."""
     made = slider_crank()
-    scene = Scene(made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"])
-    with pytest.raises(AssemblyError, match=r"the drives guide cannot make the motion (at|after) t = 0\.0(39|4)"):
+    scene = Scene(
+        made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"]
+    )
+    with pytest.raises(
+        AssemblyError, match=r"the drives guide cannot make the motion (at|after) t = 0\.0(39|4)"
+    ):
         evaluate(scene)
     at = Scene(made.mechanism, made.motion, posture=made.posture, t=(0.0, 0.0, 1), drives=["guide"])
     with pytest.raises(AssemblyError, match="the drives guide cannot make the motion at t = 0 s"):
@@ -167,14 +222,33 @@ def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
         (
             ["O"],
             DeclarationError,
-            "drives: 1 cannot make 2 independent motions; name at least 2 joints for .* O, C, got O",
+            (
+                "drives: 1 cannot make 2 independent motions; name at least 2 joints for .* O, C,"
+                " got O"
+            ),
         ),
         ([], DeclarationError, "drives: 0 cannot make 2 independent motions; .* got none"),
         (["O", "X"], UnknownNameError, "unknown joint in drives 'X'; valid: O, C, A"),
-        (["O", "hung"], DeclarationError, "drives: joint 'hung' has no coordinate that an effort could work along"),
-        ({"O": -1.0, "C": 1.0}, DeclarationError, "drives: expected a positive weight of joint 'O', got -1.0"),
-        ({"O": math.nan, "C": 1.0}, DeclarationError, "drives: expected a positive weight of joint 'O', got nan"),
-        ({"O": ca.SX.sym("w"), "C": 1.0}, DeclarationError, "the weight of joint 'O' depends on w, which is no parameter"),
+        (
+            ["O", "hung"],
+            DeclarationError,
+            "drives: joint 'hung' has no coordinate that an effort could work along",
+        ),
+        (
+            {"O": -1.0, "C": 1.0},
+            DeclarationError,
+            "drives: expected a positive weight of joint 'O', got -1.0",
+        ),
+        (
+            {"O": math.nan, "C": 1.0},
+            DeclarationError,
+            "drives: expected a positive weight of joint 'O', got nan",
+        ),
+        (
+            {"O": ca.SX.sym("w"), "C": 1.0},
+            DeclarationError,
+            "the weight of joint 'O' depends on w, which is no parameter",
+        ),
         (3, DeclarationError, "drives: expected a list of joints, or weights by joint, got 3"),
     ],
 )
@@ -185,7 +259,9 @@ def test_misuse_is_told(drives, error, told):
 
 def test_a_weight_that_becomes_negative_is_no_result():
     with pytest.raises(AssemblyError):
-        evaluate(five_bar(lambda h: {"O": 1.0, "C": h - 3.0, "A": 1.0}), parameters={"heavier": 1.0})
+        evaluate(
+            five_bar(lambda h: {"O": 1.0, "C": h - 3.0, "A": 1.0}), parameters={"heavier": 1.0}
+        )
 
 
 def test_a_four_bar_driven_by_its_coupler():
@@ -195,7 +271,9 @@ def test_a_four_bar_driven_by_its_coupler():
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("drives", [["A", "P"], {"O": 1.0, "C": 2.0, "P": 3.0}], ids=["two", "three"])
+@pytest.mark.parametrize(
+    "drives", [["A", "P"], {"O": 1.0, "C": 2.0, "P": 3.0}], ids=["two", "three"]
+)
 def test_sweeps_have_the_peaks_of_the_api(drives):
     scene = five_bar(drives, t=(0, 1, 64))
     designs, p = DesignEngine.of(scene, rung=Rung("c")), around(scene, 2)
@@ -207,9 +285,13 @@ def test_sweeps_have_the_peaks_of_the_api(drives):
 
 def test_sweeps_refuse_what_the_api_refuses():
     made = slider_crank()
-    scene = Scene(made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"])
+    scene = Scene(
+        made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"]
+    )
     for backend in ("c", "vm"):
-        outcome = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([list(scene.mechanism.values().values())]))
+        outcome = DesignEngine.of(scene, rung=Rung(backend)).evaluate(
+            np.array([list(scene.mechanism.values().values())])
+        )
         assert outcome.status.tolist() in ([Status.DEAD_CENTRE], [Status.PASSES_DEAD_CENTRE])
 
 
@@ -221,7 +303,9 @@ def test_exported_c_has_the_efforts(precision, tmp_path):
     solution = solve(scene, precision)
     found = by_c99(tmp_path, told, instants(solution.t, precision))
     assert {"effort/O", "effort/C", "effort/P"} <= {row["path"] for row in told["outputs"]}
-    compare(found, expected(scene, told, solution), told, made, solution, exact=precision == "double")
+    compare(
+        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
+    )
 
 
 def test_a_file_keeps_who_drives(tmp_path):
@@ -237,13 +321,20 @@ def test_a_file_keeps_who_drives(tmp_path):
 @pytest.mark.parametrize("ratio", [1e-5, 1e-2, 1e4])
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_gear_of_any_ratio_holds(ratio, precision):
-    """A drive that turns slowly or fast beside the motion bears the torque by that much more or less."""
+    """A drive that turns slowly or fast beside the motion bears the torque by that much more or
+    less.
+    """
     m = Mechanism("geared")
-    arm, wheel = m.link("arm", length=1.0, mass=2.0), m.link("wheel", length=0.1, mass=0.0, centre=(0.0, 0.0), inertia=0.0)
+    arm, wheel = (
+        m.link("arm", length=1.0, mass=2.0),
+        m.link("wheel", length=0.1, mass=0.0, centre=(0.0, 0.0), inertia=0.0),
+    )
     main, motor = m.revolute("main", m.ground, arm), m.revolute("motor", m.ground.at(2, 0), wheel)
     m.gear("mesh", main, motor, ratio=ratio)
     scene = Scene(m, {"main": motion.polynomial(0.3, 1.0)}, t=(0, 1, 11), drives=["motor"])
     found = evaluate(scene, precision=precision)
     torque = 2.0 * 9.81 * 0.5 * np.cos(0.3 + found.t)
     assert found.certified
-    assert np.abs(found.effort("motor") * ratio / torque - 1.0).max() < (1e-12 if precision == "double" else 1e-5)
+    assert np.abs(found.effort("motor") * ratio / torque - 1.0).max() < (
+        1e-12 if precision == "double" else 1e-5
+    )

@@ -26,18 +26,32 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
     st.booleans(),
 )
 def test_polygons_are_their_triangles(radii, turn, middle, backwards):
-    """Against triangles from a point inside: the area of each, its centre, and A/36 (a^2 + b^2 + c^2) by Steiner's rule."""
+    """Against triangles from a point inside: the area of each, its centre, and A/36 (a^2 + b^2 +
+    c^2) by Steiner's rule.
+    """
     count = len(radii)
     ring = [
-        (middle[0] + r * math.cos(turn + math.tau * k / count), middle[1] + r * math.sin(turn + math.tau * k / count))
+        (
+            middle[0] + r * math.cos(turn + math.tau * k / count),
+            middle[1] + r * math.sin(turn + math.tau * k / count),
+        )
         for k, r in enumerate(radii)
     ]
     inside = np.array(middle)
     triangles = [np.array([inside, ring[k], ring[(k + 1) % count]]) for k in range(count)]
-    areas = [abs((t[1] - t[0])[0] * (t[2] - t[0])[1] - (t[1] - t[0])[1] * (t[2] - t[0])[0]) / 2 for t in triangles]
+    areas = [
+        abs((t[1] - t[0])[0] * (t[2] - t[0])[1] - (t[1] - t[0])[1] * (t[2] - t[0])[0]) / 2
+        for t in triangles
+    ]
     centre = sum(a * t.mean(axis=0) for a, t in zip(areas, triangles, strict=True)) / sum(areas)
-    own = [a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3)) for a, t in zip(areas, triangles, strict=True)]
-    second = sum(o + a * np.sum((t.mean(axis=0) - centre) ** 2) for o, a, t in zip(own, areas, triangles, strict=True))
+    own = [
+        a / 36 * sum(np.sum((t[i] - t[i - 1]) ** 2) for i in range(3))
+        for a, t in zip(areas, triangles, strict=True)
+    ]
+    second = sum(
+        o + a * np.sum((t.mean(axis=0) - centre) ** 2)
+        for o, a, t in zip(own, areas, triangles, strict=True)
+    )
     area, x, y, found = area_of(ring[::-1] if backwards else ring)
     assert abs(area) == pytest.approx(sum(areas), rel=1e-10)
     assert (area < 0) == backwards
@@ -59,23 +73,38 @@ def swung(make, values=None):
 
 @pytest.mark.parametrize("values", [{}, {"side": 0.7}])
 def test_a_plate_swings_as_its_closed_form(values):
-    """A right-angled triangle about its right angle: I = m (a^2 + b^2) / 6, the centre a third along each leg."""
+    """A right-angled triangle about its right angle: I = m (a^2 + b^2) / 6, the centre a third
+    along each leg.
+    """
     b, a = 0.3, values.get("side", 0.4)
-    solution = swung(lambda m, side: plate(m, "sheet", [(0, 0), (side, 0), (0, b)], per_area=20.0).corner(0), values)
+    solution = swung(
+        lambda m, side: plate(m, "sheet", [(0, 0), (side, 0), (0, b)], per_area=20.0).corner(0),
+        values,
+    )
     mass, motion = 20.0 * a * b / 2, solution.motion("O")
     weight = mass * 9.81 * (a / 3 * np.cos(motion.value) - b / 3 * np.sin(motion.value))
     expected = mass * (a * a + b * b) / 6 * motion.acceleration + weight
-    assert solution.effort("O") == pytest.approx(expected, rel=1e-12, abs=1e-12 * np.abs(expected).max())
+    assert solution.effort("O") == pytest.approx(
+        expected, rel=1e-12, abs=1e-12 * np.abs(expected).max()
+    )
 
 
 @pytest.mark.parametrize("values", [{}, {"side": 0.7}])
 def test_a_bent_bar_has_the_sections_of_its_pieces(values):
-    """An L about its corner: each leg is a rod of its own, whose bending at the corner swings it against its weight."""
+    """An L about its corner: each leg is a rod of its own, whose bending at the corner swings it
+    against its weight.
+    """
     a, b = values.get("side", 0.4), 0.3
-    solution = swung(lambda m, side: bent_bar(m, "L", [(side, 0), (0, 0), (0, b)], per_length=5.0).corner(1), values)
+    solution = swung(
+        lambda m, side: bent_bar(m, "L", [(side, 0), (0, 0), (0, b)], per_length=5.0).corner(1),
+        values,
+    )
     # The joint's coordinate is the direction of the first piece, from its tip to the corner.
     angle, turning = solution.motion("O").value - np.pi, solution.motion("O").acceleration
-    legs = [5.0 * c**3 / 3 * turning + 5.0 * c * 9.81 * c / 2 * np.cos(angle + way) for c, way in ((a, 0.0), (b, np.pi / 2))]
+    legs = [
+        5.0 * c**3 / 3 * turning + 5.0 * c * 9.81 * c / 2 * np.cos(angle + way)
+        for c, way in ((a, 0.0), (b, np.pi / 2))
+    ]
     assert solution.effort("O") == pytest.approx(sum(legs), rel=1e-11)
     first, second = solution.section("L_1").bending[:, -1], solution.section("L_2").bending[:, 0]
     assert second == pytest.approx(-legs[1], rel=1e-11, abs=1e-11 * np.abs(legs[1]).max())
@@ -83,7 +112,9 @@ def test_a_bent_bar_has_the_sections_of_its_pieces(values):
 
 
 def test_a_bar_bent_in_space_bends_and_twists_as_statics_says():
-    """A crank handle that hangs on three ways at right angles, held at its base, with a weight at its end."""
+    """A crank handle that hangs on three ways at right angles, held at its base, with a weight at
+    its end.
+    """
     m = SpatialMechanism("handle")
     bar = bent_bar(m, "bar", [(0, 0, 0), (0.3, 0, 0), (0.3, 0.2, 0), (0.3, 0.2, 0.1)], mass=0.6)
     m.revolute("O", m.ground, bar.base, axis=(0, 0, 1))
@@ -91,13 +122,18 @@ def test_a_bar_bent_in_space_bends_and_twists_as_statics_says():
     m.set_gravity(0, 0, 0)
     solution = evaluate(Scene(m, {"O": polynomial(0.0)}, t=(0, 1, 2)))
     assert solution.certified
-    push, places = np.array([7.0, 0.0, -30.0]), {"bar_1": (0, 0, 0), "bar_2": (0.3, 0, 0), "bar_3": (0.3, 0.2, 0)}
+    push, places = (
+        np.array([7.0, 0.0, -30.0]),
+        {"bar_1": (0, 0, 0), "bar_2": (0.3, 0, 0), "bar_3": (0.3, 0.2, 0)},
+    )
     for name, way in (("bar_1", (1, 0, 0)), ("bar_2", (0, 1, 0)), ("bar_3", (0, 0, 1))):
         moment = np.cross(np.array([0.3, 0.2, 0.1]) - places[name], push)
         section, along = solution.section(name), np.array(way)
         assert section.axial[0, 0] == pytest.approx(push @ along, abs=1e-13)
         assert section.torsion[0, 0] == pytest.approx(moment @ along, abs=1e-13)
-        assert section.bending[0, 0] == pytest.approx(np.linalg.norm(moment - (moment @ along) * along), abs=1e-13)
+        assert section.bending[0, 0] == pytest.approx(
+            np.linalg.norm(moment - (moment @ along) * along), abs=1e-13
+        )
 
 
 def test_corners_oblique_in_space_are_where_they_are_told():
@@ -109,17 +145,24 @@ def test_corners_oblique_in_space_are_where_they_are_told():
     for k, (x, y, z) in enumerate(ends):
         for axis, value in zip("xyz", (x, y, z), strict=True):
             m.output(f"c{k}_{axis}", value)
-    still = {f"J:{axis}": polynomial(0.3) for axis in ("slide_1", "slide_2", "slide_3", "turn_1", "turn_2", "turn_3")}
+    still = {
+        f"J:{axis}": polynomial(0.3)
+        for axis in ("slide_1", "slide_2", "slide_3", "turn_1", "turn_2", "turn_3")
+    }
     solution = evaluate(Scene(m, still, t=(0, 1, 2)))
     found = np.array([[solution.output(f"c{k}_{axis}")[0] for axis in "xyz"] for k in range(4)])
     gaps = [[math.dist(one, other) for other in found] for one in found]
-    assert np.array(gaps) == pytest.approx(np.array([[math.dist(one, other) for other in corners] for one in corners]), abs=1e-14)
+    assert np.array(gaps) == pytest.approx(
+        np.array([[math.dist(one, other) for other in corners] for one in corners]), abs=1e-14
+    )
     volume = [np.linalg.det(np.diff(np.array(places), axis=0)) for places in (found, corners)]
     assert volume[0] == pytest.approx(volume[1], abs=1e-14)  # no mirror image
 
 
 def test_plates_are_drawn_and_kept_as_they_are(tmp_path):
-    """A plate with a notch, in the description, in a file, in the shapes of reports and in figures."""
+    """A plate with a notch, in the description, in a file, in the shapes
+    of reports and in figures.
+    """
     corners = [(0.0, 0.0), (0.4, 0.0), (0.4, 0.3), (0.2, 0.1), (0.0, 0.3)]
     solution = swung(lambda m, side: plate(m, "notched", corners, mass=3.0).corner(0))
     save(solution, tmp_path / "plate.h5")
@@ -139,21 +182,54 @@ def declared(make, space=False):
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0)], mass=1.0)), "plate 'p': expected three corners or more"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (2, 0)], mass=1.0)), "plate 'p': its corners lie on a line"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 1), (1, 0), (0, 1)], mass=1.0)), "the edges from corners 0 and 2 cross"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0), 3], mass=1.0)), r"plate 'p': corner 2: expected \(x, y\), got 3"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)])), "plate 'p': give its mass, or what it has per_area"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True), "plates lie in a plane"),
-        (declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)), "'p': corner 3 is none of 0 to 2"),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0)], mass=1.0)),
+            "plate 'p': expected three corners or more",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (2, 0)], mass=1.0)),
+            "plate 'p': its corners lie on a line",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 1), (1, 0), (0, 1)], mass=1.0)),
+            "the edges from corners 0 and 2 cross",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), 3], mass=1.0)),
+            r"plate 'p': corner 2: expected \(x, y\), got 3",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)])),
+            "plate 'p': give its mass, or what it has per_area",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True),
+            "plates lie in a plane",
+        ),
+        (
+            declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)),
+            "'p': corner 3 is none of 0 to 2",
+        ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0)], mass=1.0)),
             "a straight bar is a link",
         ),
-        (declared(lambda m: bent_bar(m, "b", [(0, 0), (0, 0), (1, 0)], mass=1.0)), "corners 0 and 1 lie on each other"),
-        (declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 0, 0)], mass=1.0)), "corner 2: expected 2 numbers"),
-        (declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)])), "give its mass, or what it has per_length"),
-        (declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)), "'b_1': corner -1 is none of 0 to 2"),
+        (
+            declared(lambda m: bent_bar(m, "b", [(0, 0), (0, 0), (1, 0)], mass=1.0)),
+            "corners 0 and 1 lie on each other",
+        ),
+        (
+            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 0, 0)], mass=1.0)),
+            "corner 2: expected 2 numbers",
+        ),
+        (
+            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)])),
+            "give its mass, or what it has per_length",
+        ),
+        (
+            declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)),
+            "'b_1': corner -1 is none of 0 to 2",
+        ),
     ],
 )
 def test_misuse_is_named(make, says):

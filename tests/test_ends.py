@@ -8,7 +8,10 @@ from lagrange_casadi.declare.ends import beyond_ends, share_beyond
 
 pytestmark = pytest.mark.quick
 
-ENDED, ROUND = curve([1.0, 2.0, 3.0, 5.0], [0.0, 1.0, 0.5, 2.0]), curve([0, 1, 2, 3], [0, 1, 2, 0], periodic=True)
+ENDED, ROUND = (
+    curve([1.0, 2.0, 3.0, 5.0], [0.0, 1.0, 0.5, 2.0]),
+    curve([0, 1, 2, 3], [0, 1, 2, 0], periodic=True),
+)
 
 
 def test_every_argument_of_a_curve_with_ends_is_found_once():
@@ -29,4 +32,6 @@ def test_ends_are_found_beside_functions_that_cannot_be_followed():
     (far,) = beyond_ends(called(x) + ENDED(3.0 + called(x)))
     function = ca.Function("far", [x], [far])
     assert float(function(0.0)) == pytest.approx(-1.0)
-    assert share_beyond(float(ca.Function("far", [x], beyond_ends(ENDED(x)))(5.4))) == pytest.approx(0.1)
+    assert share_beyond(
+        float(ca.Function("far", [x], beyond_ends(ENDED(x)))(5.4))
+    ) == pytest.approx(0.1)

@@ -1,4 +1,6 @@
-"""Motions, constraints, lifts and loads of all operations, at places drawn anew: refused where they have a kink, and only there."""
+"""Motions, constraints, lifts and loads of all operations, at places drawn anew: refused where they
+have a kink, and only there.
+"""
 
 import casadi as ca
 import numpy as np
@@ -20,13 +22,19 @@ TIMES = np.linspace(0.0, 1.0, 4001)[None]
 
 
 def judged(seed):
-    """A drawn expression, a value of its parameter, whether it is broken, and its values; None where that is not clear."""
+    """A drawn expression, a value of its parameter, whether it is broken, and its values; None
+    where that is not clear.
+    """
     r = np.random.default_rng(seed)
     graph, k = drawn(r), float(r.choice(VALUES))
     if not ca.depends_on(graph, T):
         return None
     found = verdict(graph, k)
-    return (graph, k, found.what == "broken", found.values) if found.what in ("smooth", "broken") else None
+    return (
+        (graph, k, found.what == "broken", found.values)
+        if found.what in ("smooth", "broken")
+        else None
+    )
 
 
 def kinks(seeds):
@@ -40,7 +48,9 @@ def kinks(seeds):
         smooth = Smooth.of(graph, T, K)
         kink = None if smooth is None else smooth.kink(TIMES, (k,))
         told = kink is not None
-        assert told == broken or (told and shown(graph, k, kink.at["t"])), f"seed {seed}: {kink}, of {graph} with k = {k}"
+        assert told == broken or (told and shown(graph, k, kink.at["t"])), (
+            f"seed {seed}: {kink}, of {graph} with k = {k}"
+        )
         many[broken] += 1
     return many
 
@@ -54,7 +64,11 @@ def slide(law):
 
 def constraint(law):
     m = Mechanism("constraint")
-    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    crank, body, k = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.point_mass("body", 2.0),
+        m.parameter("k", 0.0),
+    )
     turn = m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - law(m.coordinate(turn), k))
@@ -63,15 +77,29 @@ def constraint(law):
 
 def cam(law):
     m = Mechanism("cam")
-    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", 0.0)
+    wheel, rod, k = (
+        m.link("wheel", length=0.1, mass=1.0),
+        m.link("rod", length=0.1, mass=1.0),
+        m.parameter("k", 0.0),
+    )
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
-    disc_cam(m, "profile", main, lead, lambda x: law((1 + ca.sin(x)) / 2, k), base_radius=0.1, roller=0.01)
+    disc_cam(
+        m,
+        "profile",
+        main,
+        lead,
+        lambda x: law((1 + ca.sin(x)) / 2, k),
+        base_radius=0.1,
+        roller=0.01,
+    )
     return Scene(m, {"turn": polynomial("-90 deg", np.pi)}, t=(0.0, 1.0, 101), wanted=("effort",))
 
 
 def refused(scene, seeds):
-    """Put drawn expressions into a scene: for the parameter in use, and beside a value that may be another verdict."""
+    """Put drawn expressions into a scene: for the parameter in use, and beside a value that may be
+    another verdict.
+    """
     many = {True: 0, False: 0}
     for seed in seeds:
         case = judged(seed)
@@ -97,19 +125,29 @@ def refused(scene, seeds):
             # A loop that does not close at an instant says nothing of kinks.
             continue
         # Designs are looked at between instants too, where a place alone is hit by none.
-        lone = None if told or status != Status.CORNER else Smooth.of(graph, T, K).isolated(TIMES, (k,), between=True)
-        assert told or status != Status.CORNER or told_by_limits(scaled, k, lone.at["t"]) == "isolated", f"{said}: {lone}"
+        lone = (
+            None
+            if told or status != Status.CORNER
+            else Smooth.of(graph, T, K).isolated(TIMES, (k,), between=True)
+        )
+        assert (
+            told or status != Status.CORNER or told_by_limits(scaled, k, lone.at["t"]) == "isolated"
+        ), f"{said}: {lone}"
         # A design may be refused for something else before its corners are looked for.
         assert not told or status != Status.OK, said
         if status in (Status.OK, Status.CORNER) and (told or broken):
             place = Smooth.of(graph, T, K).kink(TIMES, (k,))
-            assert told == broken or (told and place is not None and shown(graph, k, place.at["t"])), said
+            assert told == broken or (
+                told and place is not None and shown(graph, k, place.at["t"])
+            ), said
         many[broken] += 1
     return many
 
 
 def loads(seeds):
-    """Load a slide that runs steadily: its effort is the load, whose largest value is not missed between instants."""
+    """Load a slide that runs steadily: its effort is the load, whose largest value is not missed
+    between instants.
+    """
     many = {True: 0, False: 0}
     for seed in seeds:
         case = judged(seed)
@@ -125,7 +163,9 @@ def loads(seeds):
         found = DesignEngine.of(scene, ["effort"]).evaluate(np.array([[k]]))
         largest = np.abs(values[0]).max()
         if found.status[0] == Status.OK:
-            assert abs(found.value[0, 0]) >= largest * (1 - 1e-5) - 1e-9, f"seed {seed}: {graph} with k = {k}"
+            assert abs(found.value[0, 0]) >= largest * (1 - 1e-5) - 1e-9, (
+                f"seed {seed}: {graph} with k = {k}"
+            )
         many[broken] += 1
     return many
 

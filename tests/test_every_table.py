@@ -1,4 +1,6 @@
-"""Every reader of tables: the dialects that it takes, and what is refused by its line, whatever the table is of."""
+"""Every reader of tables: the dialects that it takes, and what is refused by its line, whatever the
+table is of.
+"""
 
 import os
 
@@ -22,7 +24,15 @@ pytestmark = pytest.mark.quick
 HEADS = {
     "samples": ["t", "q", "p"],
     "designs": ["r", "l", "phi"],
-    "motors": ["name", "stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia"],
+    "motors": [
+        "name",
+        "stall_torque",
+        "rated_torque",
+        "rated_speed",
+        "peak_torque",
+        "max_speed",
+        "inertia",
+    ],
     "profiles": ["name", "height [mm]", "width", "web [cm]"],
     "cam": ["x [mm]", "y"],
 }
@@ -66,7 +76,10 @@ def tables(draw):
 
 def write(folder, kind, rows, delimiter=",", mark="."):
     path = folder / f"{kind}.csv"
-    lines = [delimiter.join(HEADS[kind]), *(delimiter.join(cell.replace(".", mark) for cell in row) for row in rows)]
+    lines = [
+        delimiter.join(HEADS[kind]),
+        *(delimiter.join(cell.replace(".", mark) for cell in row) for row in rows),
+    ]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return path
 
@@ -98,7 +111,9 @@ def test_a_row_of_another_length_is_refused_by_its_line(folder, table, data):
     path = write(folder, kind, [*rows[:k], row, *rows[k + 1 :]], delimiter, mark)
     with pytest.raises(DeclarationError) as caught:
         READERS[kind](path)
-    assert str(caught.value).startswith(f"{path}, line {k + 2}: {len(row)} cells, expected {len(HEADS[kind])}")
+    assert str(caught.value).startswith(
+        f"{path}, line {k + 2}: {len(row)} cells, expected {len(HEADS[kind])}"
+    )
 
 
 @given(tables(), st.data())
@@ -106,8 +121,13 @@ def test_decimal_commas_among_commas_are_named(folder, table, data):
     """``2,1,5`` was 1.0: the rest was dropped."""
     kind, rows = table
     k = data.draw(st.integers(0, len(rows) - 1))
-    path = write(folder, kind, [*rows[:k], [cell.replace(".", ",") for cell in rows[k]], *rows[k + 1 :]])
-    with pytest.raises(DeclarationError, match=rf"line {k + 2}: .* decimal commas\? expected points, or ';' between cells$"):
+    path = write(
+        folder, kind, [*rows[:k], [cell.replace(".", ",") for cell in rows[k]], *rows[k + 1 :]]
+    )
+    with pytest.raises(
+        DeclarationError,
+        match=rf"line {k + 2}: .* decimal commas\? expected points, or ';' between cells$",
+    ):
         READERS[kind](path)
 
 
@@ -116,11 +136,18 @@ def test_a_mark_that_parts_thousands_is_refused(folder, table, data):
     """``1.234`` among ``2,5`` is 1234, and 1.234 to whoever does not look at the others."""
     kind, rows = table
     k, mark = data.draw(st.integers(0, len(rows) - 1)), data.draw(st.sampled_from(",."))
-    column = data.draw(st.sampled_from([j for j, cell in enumerate(rows[k]) if "." in cell and (kind != "samples" or j < 2)]))
+    column = data.draw(
+        st.sampled_from(
+            [j for j, cell in enumerate(rows[k]) if "." in cell and (kind != "samples" or j < 2)]
+        )
+    )
     other = {",": ".", ".": ","}[mark]
     changed = [[cell.replace(".", mark) for cell in row] for row in rows]
     changed[k][column] = rows[k][column].replace(".", other)
-    with pytest.raises(DeclarationError, match=r"among numbers with decimal (points|commas), as in .*; expected one kind$"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"among numbers with decimal (points|commas), as in .*; expected one kind$",
+    ):
         READERS[kind](write(folder, kind, changed, ";", "."))
 
 
@@ -131,12 +158,19 @@ def test_digits_of_other_scripts_are_no_numbers(folder, table, data):
     kind, rows = table
     zero = 0x660 if data is None else data.draw(st.sampled_from([0x660, 0x966, 0xFF10, 0x1D7CE]))
     k = 0 if data is None else data.draw(st.integers(0, len(rows) - 1))
-    columns = [j for j, cell in enumerate(rows[k]) if cell[0].isdigit() and (kind != "samples" or j < 2)]
+    columns = [
+        j for j, cell in enumerate(rows[k]) if cell[0].isdigit() and (kind != "samples" or j < 2)
+    ]
     column = columns[0] if data is None else data.draw(st.sampled_from(columns))
     cell = "".join(chr(zero + int(sign)) if sign.isdigit() else sign for sign in rows[k][column])
     assume(cell != rows[k][column])
-    path = write(folder, kind, [*rows[:k], [*rows[k][:column], cell, *rows[k][column + 1 :]], *rows[k + 1 :]])
-    with pytest.raises(DeclarationError, match=rf"line {k + 2}.* must be a positive number|expected a (finite|positive) number"):
+    path = write(
+        folder, kind, [*rows[:k], [*rows[k][:column], cell, *rows[k][column + 1 :]], *rows[k + 1 :]]
+    )
+    with pytest.raises(
+        DeclarationError,
+        match=rf"line {k + 2}.* must be a positive number|expected a (finite|positive) number",
+    ):
         READERS[kind](path)
 
 
@@ -145,7 +179,11 @@ def test_what_is_no_regular_file_is_refused_at_once(here, kind):
     os.mkfifo("pipe.csv")
     (here / "link.csv").symlink_to("pipe.csv")
     (here / "folder.csv").mkdir()
-    for name, what in (("pipe", "a device or a pipe"), ("link", "a device or a pipe"), ("folder", "a folder")):
+    for name, what in (
+        ("pipe", "a device or a pipe"),
+        ("link", "a device or a pipe"),
+        ("folder", "a folder"),
+    ):
         with pytest.raises(PathError, match=rf"^{name}\.csv: is {what}, not a file$"):
             READERS[kind](f"{name}.csv")
     with pytest.raises(PathError, match=r"^/dev/zero: is a device or a pipe, not a file$"):
@@ -182,5 +220,8 @@ def test_lines_without_any_cell_are_passed_over(here):
 
 def test_a_motion_without_a_head_is_held_to_its_first_row(here):
     (here / "axis.csv").write_text("0,0\n" + "".join(f"{k},{k},5\n" for k in range(1, 9)))
-    with pytest.raises(DeclarationError, match=r"axis\.csv, line 2: 3 cells, expected 2: decimal commas\? expected points, or"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"axis\.csv, line 2: 3 cells, expected 2: decimal commas\? expected points, or",
+    ):
         read_samples("axis.csv")

@@ -1,4 +1,6 @@
-"""The exported folder: what it holds, that it is clean C, that it fails loudly, and that it is the same bytes each time."""
+"""The exported folder: what it holds, that it is clean C, that it fails loudly, and that it is the
+same bytes each time.
+"""
 
 import re
 import subprocess
@@ -23,7 +25,12 @@ ARITHMETIC = [
 ]
 ITERATED = {"iterated": iterated, "truss_platform": truss_platform}
 SCENES = {"cam": sampled_cam, "slider_crank": slider_crank, "spline_arm": spline_arm} | ITERATED
-ON = [(name, options) for name in SCENES for options in ARITHMETIC if name in ITERATED or "newton" not in options]
+ON = [
+    (name, options)
+    for name in SCENES
+    for options in ARITHMETIC
+    if name in ITERATED or "newton" not in options
+]
 CASES = sorted(path.parent for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 
 
@@ -38,7 +45,9 @@ def keywords():
 
 # Only one drive that turns has a cycle to be read from a table.
 @pytest.mark.sampled(19)
-@pytest.mark.parametrize(("name", "options"), [(n, o) for n, o in ON if n == "slider_crank" or "table" not in o], ids=str)
+@pytest.mark.parametrize(
+    ("name", "options"), [(n, o) for n, o in ON if n == "slider_crank" or "table" not in o], ids=str
+)
 def test_the_source_is_clean(name, options, tmp_path):
     clean(SCENES[name](), tmp_path, options, compilers())
 
@@ -55,7 +64,11 @@ def clean(scene, folder, options, commands):
     for label, command in commands:
         if not present(command[0]):
             continue
-        programs = [f"{made.prefix}.c"] if "++" in label else [f"{made.prefix}.c", "selftest.c", "example.c"]
+        programs = (
+            [f"{made.prefix}.c"]
+            if "++" in label
+            else [f"{made.prefix}.c", "selftest.c", "example.c"]
+        )
         for source in programs:
             result = cc([*command, "-O2", "-c"], folder, source, output="x.o")
             assert result.returncode == 0, f"{label} {source}: {result.stderr}"
@@ -65,7 +78,13 @@ def clean(scene, folder, options, commands):
 @pytest.mark.parametrize(("name", "options"), [(n, o) for n, o in ON if "table" not in o], ids=str)
 def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
     made = export(SCENES[name](), tmp_path, **options)
-    sanitized = ["cc", "-std=c99", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+    sanitized = [
+        "cc",
+        "-std=c99",
+        "-g",
+        "-fsanitize=address,undefined",
+        "-fno-sanitize-recover=all",
+    ]
     result = cc(sanitized, tmp_path, f"{made.prefix}.c", "selftest.c")
     if "cannot find" in result.stderr:
         pytest.skip("this compiler has no sanitizers' libraries")
@@ -83,18 +102,29 @@ def test_mechanisms_in_space_pass_their_self_test(name, precision, tmp_path):
 
 
 def test_a_product_of_two_roundings_is_allowed_for(tmp_path):
-    """In single precision it is as much larger as the square of its roundings: the square of a shaft's rate across its axis."""
-    assert "0 wrong" in self_tested(load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"])
+    """In single precision it is as much larger as the square of its roundings: the square of a
+    shaft's rate across its axis.
+    """
+    assert "0 wrong" in self_tested(
+        load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"]
+    )
 
 
 def test_what_is_left_open_is_no_part_of_the_self_test(tmp_path):
-    assert "0 wrong" in self_tested(load_case("bricard").scene, "single", tmp_path, wanted=["section:link1"])
+    assert "0 wrong" in self_tested(
+        load_case("bricard").scene, "single", tmp_path, wanted=["section:link1"]
+    )
 
 
 def self_tested(scene, precision, folder, **options):
     """What the self-test of an exported folder says."""
     made = export(scene, folder, precision=precision, **options)
-    assert cc(["cc", "-std=c99", "-O1", "-ffp-contract=off"], folder, f"{made.prefix}.c", "selftest.c").returncode == 0
+    assert (
+        cc(
+            ["cc", "-std=c99", "-O1", "-ffp-contract=off"], folder, f"{made.prefix}.c", "selftest.c"
+        ).returncode
+        == 0
+    )
     return subprocess.run([folder / "program"], capture_output=True, text=True, check=False).stdout
 
 
@@ -102,7 +132,10 @@ def test_the_self_test_passes_under_valgrind(tmp_path):
     if not present("valgrind"):
         pytest.skip("needs valgrind")
     made = export(slider_crank(), tmp_path)
-    assert cc(["cc", "-std=c99", "-O1", "-g"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
+    assert (
+        cc(["cc", "-std=c99", "-O1", "-g"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode
+        == 0
+    )
     command = ["valgrind", "-q", "--error-exitcode=9", "--leak-check=full", tmp_path / "program"]
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
@@ -112,7 +145,9 @@ def test_the_self_test_can_fail(tmp_path):
     source = (tmp_path / "selftest.c").read_text()
     _, _, rows = source.partition("outputs_at[INSTANTS][OUTPUTS] = {\n  {")
     first = rows.partition(",")[0]
-    (tmp_path / "selftest.c").write_text(source.replace(rows, rows.replace(first, f"{float(first) + 1e-3!r}", 1)))
+    (tmp_path / "selftest.c").write_text(
+        source.replace(rows, rows.replace(first, f"{float(first) + 1e-3!r}", 1))
+    )
     assert cc(["cc", "-std=c99"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
     ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
     assert ran.returncode == 1
@@ -121,7 +156,9 @@ def test_the_self_test_can_fail(tmp_path):
 
 def symbols(folder, prefix):
     assert cc(["cc", "-std=c99", "-O2", "-c"], folder, f"{prefix}.c", output="x.o").returncode == 0
-    lines = subprocess.run(["nm", folder / "x.o"], capture_output=True, text=True, check=True).stdout.splitlines()
+    lines = subprocess.run(
+        ["nm", folder / "x.o"], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     return [line.split()[-2:] for line in lines]
 
 
@@ -132,7 +169,11 @@ def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_pat
     found = symbols(tmp_path, made.prefix)
     assert all(name.startswith(f"{made.prefix}_") for kind, name in found if kind in "TDRBC")
     assert not [name for kind, name in found if kind in "DdBbC"], "no state"
-    needed = {name for kind, name in found if kind == "U"} - {"_GLOBAL_OFFSET_TABLE_", "memset", "memcpy"}
+    needed = {name for kind, name in found if kind == "U"} - {
+        "_GLOBAL_OFFSET_TABLE_",
+        "memset",
+        "memcpy",
+    }
     functions = {"sin", "cos", "sincos", "atan2", "sqrt", "ceil", "floor", "fmax"}
     suffix = "f" if options.get("precision") == "single" else ""
     assert needed <= {name + suffix for name in functions}
@@ -140,7 +181,10 @@ def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_pat
 
 def test_a_table_needs_no_sine(tmp_path):
     made = export(slider_crank(wanted=["effort"]), tmp_path, table=64, precision="single")
-    assert {name for kind, name in symbols(tmp_path, made.prefix) if kind == "U"} <= {"floorf", "_GLOBAL_OFFSET_TABLE_"}
+    assert {name for kind, name in symbols(tmp_path, made.prefix) if kind == "U"} <= {
+        "floorf",
+        "_GLOBAL_OFFSET_TABLE_",
+    }
 
 
 def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
@@ -148,7 +192,9 @@ def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
     text = (tmp_path / f"{made.prefix}.c").read_text()
     assert not re.search(r"\b(malloc|calloc|realloc|free|alloca)\b", text)
     assert not re.search(r"\bdouble\b", text)
-    assert not re.search(r"(?<![\w.])\d+\.\d*(e[+-]?\d+)?(?![\w.])", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL))
+    assert not re.search(
+        r"(?<![\w.])\d+\.\d*(e[+-]?\d+)?(?![\w.])", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    )
 
 
 PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
@@ -159,18 +205,45 @@ PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inp
     ("statements", "sentence"),
     [
         ("model.seal = 0; inputs.O = 0; " + EVALUATED, "the model was not prepared"),
-        ("parameters.l = -1; status = @_prepare(&model, &parameters);", "a parameter is not finite, or out of its range"),
-        ("parameters.r = 0; status = @_prepare(&model, &parameters);", "or leaves a link without length"),
-        ("parameters.l = NAN; status = @_prepare(&model, &parameters);", "a parameter is not finite"),
-        ("parameters.m2 = INFINITY; status = @_prepare(&model, &parameters);", "a parameter is not finite"),
+        (
+            "parameters.l = -1; status = @_prepare(&model, &parameters);",
+            "a parameter is not finite, or out of its range",
+        ),
+        (
+            "parameters.r = 0; status = @_prepare(&model, &parameters);",
+            "or leaves a link without length",
+        ),
+        (
+            "parameters.l = NAN; status = @_prepare(&model, &parameters);",
+            "a parameter is not finite",
+        ),
+        (
+            "parameters.m2 = INFINITY; status = @_prepare(&model, &parameters);",
+            "a parameter is not finite",
+        ),
         (PREPARED + "inputs.O_rate = NAN; " + EVALUATED, "an input is not finite"),
         (PREPARED + "inputs.O = INFINITY; " + EVALUATED, "an input is not finite"),
-        (PREPARED + "status = @_motion(&model, NAN, &inputs); " + EVALUATED, "an input is not finite"),
-        (PREPARED + "status = @_motion(&model, NAN, &inputs); outputs.effort_O = NAN;", "the time is not finite"),
-        ("parameters.l = 0.05; " + PREPARED + "inputs.O = 1.5; " + EVALUATED, "its links do not reach"),
-        ("parameters.l = 0.1; " + PREPARED + "inputs.O = 1.5707963267948966; " + EVALUATED, "a loop is at a dead centre"),
+        (
+            PREPARED + "status = @_motion(&model, NAN, &inputs); " + EVALUATED,
+            "an input is not finite",
+        ),
+        (
+            PREPARED + "status = @_motion(&model, NAN, &inputs); outputs.effort_O = NAN;",
+            "the time is not finite",
+        ),
+        (
+            "parameters.l = 0.05; " + PREPARED + "inputs.O = 1.5; " + EVALUATED,
+            "its links do not reach",
+        ),
+        (
+            "parameters.l = 0.1; " + PREPARED + "inputs.O = 1.5707963267948966; " + EVALUATED,
+            "a loop is at a dead centre",
+        ),
         (PREPARED + "inputs.O_rate = 1e200; " + EVALUATED, "a result is not finite"),
-        (PREPARED + "outputs.effort_O = NAN; status = (@_status) 99;", "no status of this mechanism"),
+        (
+            PREPARED + "outputs.effort_O = NAN; status = (@_status) 99;",
+            "no status of this mechanism",
+        ),
     ],
 )
 def test_failures_say_so_and_leave_nothing_undefined(statements, sentence, tmp_path):
@@ -183,7 +256,10 @@ def test_failures_say_so_and_leave_nothing_undefined(statements, sentence, tmp_p
 
 def test_ratios_outside_a_link(tmp_path):
     made = export(slider_crank(), tmp_path)
-    call = "@_forces forces; %s%s status = @_section(&model, &outputs, @_LINK_ROD, %s, &forces); outputs.effort_O = forces.axial;"
+    call = (
+        "@_forces forces; %s%s status = @_section(&model, &outputs, @_LINK_ROD, %s, &forces);"
+        " outputs.effort_O = forces.axial;"
+    )
     call = call.replace("@_LINK", "SLIDER_CRANK_LINK")
     for ratio in ("-0.001", "1.001", "NAN", "INFINITY"):
         status, axial, sentence = told(tmp_path, made, call % (PREPARED, EVALUATED, ratio))
@@ -198,13 +274,19 @@ def test_ratios_outside_a_link(tmp_path):
 
 def test_times_outside_the_samples(tmp_path):
     made = export(spline_arm(), tmp_path)
-    text = HARNESS.replace("effort_O", "effort_J").replace("@_parameters parameters = @_defaults;", "")
+    text = HARNESS.replace("effort_O", "effort_J").replace(
+        "@_parameters parameters = @_defaults;", ""
+    )
     for time, outside in (("0.0", False), ("3.0", False), ("-1e-9", True), ("3.0000001", True)):
         (tmp_path / "harness.c").write_text(
-            (text % f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);").replace("@", made.prefix)
+            (text % f"@_prepare(&model); status = @_motion(&model, {time}, &inputs);").replace(
+                "@", made.prefix
+            )
         )
         assert cc(["cc", "-std=c99"], tmp_path, "harness.c", f"{made.prefix}.c").returncode == 0
-        answer = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout
+        answer = subprocess.run(
+            [tmp_path / "program"], capture_output=True, text=True, check=True
+        ).stdout
         assert ("outside the samples" in answer) is outside
 
 
@@ -212,7 +294,10 @@ def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
     made = export(iterated(), tmp_path, newton=2)
     far = "inputs.O += 2.5; " + EVALUATED
     back = "inputs.O -= 2.5; " + EVALUATED
-    for statements, lost in ((PREPARED + EVALUATED + far, True), (PREPARED + EVALUATED + far + back, False)):
+    for statements, lost in (
+        (PREPARED + EVALUATED + far, True),
+        (PREPARED + EVALUATED + far + back, False),
+    ):
         status, effort, _ = told(tmp_path, made, statements)
         assert np.isnan(effort) is np.bool_(lost)
         assert (status != 0) is lost
@@ -220,12 +305,21 @@ def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
 
 def test_twice_the_same_bytes(tmp_path):
     program = (
-        "import sys; sys.path.insert(0, sys.argv[1]); from mechanisms import slider_crank; from lagrange_casadi import export; "
+        "import sys; sys.path.insert(0, sys.argv[1]); from mechanisms import slider_crank; from"
+        " lagrange_casadi import export; "
     )
     program += "export(slider_crank(), sys.argv[2], precision='single')"
     for name, seed in (("one", "1"), ("two", "2")):
-        environment = {"PYTHONHASHSEED": seed, "PATH": "", "XDG_CACHE_HOME": str(tmp_path / f"cache_{name}")}
-        subprocess.run([sys.executable, "-c", program, Path(__file__).parent, tmp_path / name], check=True, env=environment)
+        environment = {
+            "PYTHONHASHSEED": seed,
+            "PATH": "",
+            "XDG_CACHE_HOME": str(tmp_path / f"cache_{name}"),
+        }
+        subprocess.run(
+            [sys.executable, "-c", program, Path(__file__).parent, tmp_path / name],
+            check=True,
+            env=environment,
+        )
     files = {path.name: path.read_bytes() for path in (tmp_path / "one").iterdir()}
     assert files == {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir()}
     assert not any(str(tmp_path).encode() in content for content in files.values())
@@ -240,7 +334,10 @@ def test_names_that_c_keeps_for_itself(tmp_path):
         "parameter register": "register_",
         "input class": "class_",
     }
-    for text in ((tmp_path / "README.md").read_text(), (tmp_path / "double_mechanism.h").read_text()):
+    for text in (
+        (tmp_path / "README.md").read_text(),
+        (tmp_path / "double_mechanism.h").read_text(),
+    ):
         assert "parameter register" in text
         assert "register_" in text
     for _, command in compilers():

@@ -35,39 +35,52 @@ def test_the_scene_hash_tells_scenes_apart(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("options", "low", "high"), [({}, 0, 1e-12), ({"precision": "single"}, 1e-9, 1e-4), ({"table": 8}, 1e-3, 1)]
+    ("options", "low", "high"),
+    [({}, 0, 1e-12), ({"precision": "single"}, 1e-9, 1e-4), ({"table": 8}, 1e-3, 1)],
 )
 def test_the_folder_says_how_it_is_evaluated_and_how_exactly(options, low, high, tmp_path):
     export(slider_crank(), tmp_path, parameters={"l": 0.3125}, **options)
     content = json.loads((tmp_path / "export.json").read_text())
     assert low < content["error"]["largest"] < high
-    said = f"options of the export: {content['options']}. Its outputs are off by about {content['error']['largest']:.0e}"
+    said = (
+        f"options of the export: {content['options']}. Its outputs are off by about"
+        f" {content['error']['largest']:.0e}"
+    )
     for file in ("slider_crank.h", "README.md"):
         text = re.sub(r"\s+", " ", (tmp_path / file).read_text())
         assert said in text
         assert ("l = 0.3125" in text) is ("table" in options)
-    assert content["fixed"] == ({"r": 0.1, "l": 0.3125, "m1": 0.1, "m2": 0.1, "m3": 0.1} if "table" in options else {})
+    assert content["fixed"] == (
+        {"r": 0.1, "l": 0.3125, "m1": 0.1, "m2": 0.1, "m3": 0.1} if "table" in options else {}
+    )
 
 
 def test_a_coarse_table_is_compared_with_the_mechanism_itself(tmp_path):
     export(slider_crank(), tmp_path / "exact")
     export(slider_crank(), tmp_path / "table", table=8)
     rows = [
-        (tmp_path / kind / "selftest.c").read_text().partition("outputs_at[INSTANTS]")[2].partition("};")[0]
+        (tmp_path / kind / "selftest.c")
+        .read_text()
+        .partition("outputs_at[INSTANTS]")[2]
+        .partition("};")[0]
         for kind in ("exact", "table")
     ]
     assert rows[0] == rows[1]
 
 
 def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
-    for number, (scene, options) in enumerate(((iterated(), {"newton": 1}), (truss_platform(), {}))):
+    for number, (scene, options) in enumerate(
+        ((iterated(), {"newton": 1}), (truss_platform(), {}))
+    ):
         folder = tmp_path / str(number)
         made = export(scene, folder, **options)
         assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "example.c").returncode == 0
         ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=False)
         assert ran.returncode == 0, ran.stderr
         assert ran.stdout.count("\n") == 13
-        (folder / "shown.c").write_text(shown((folder / f"{made.prefix}.h").read_text(), made.prefix))
+        (folder / "shown.c").write_text(
+            shown((folder / f"{made.prefix}.h").read_text(), made.prefix)
+        )
         assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "shown.c").returncode == 0
         assert subprocess.run([folder / "program"], check=False).returncode == 0
 
@@ -75,7 +88,10 @@ def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
 def shown(header, prefix):
     """The header's own example as a program that answers with its last status."""
     lines = re.search(rf"     {prefix}_model model;\n.*?puts\([^\n]*\n", header, re.DOTALL).group()
-    return f'#include "{prefix}.h"\n#include <stdio.h>\nint main(void) {{\n{lines}return (int) status;\n}}\n'
+    return (
+        f'#include "{prefix}.h"\n#include <stdio.h>\nint main(void) {{\n{lines}return (int)'
+        " status;\n}\n"
+    )
 
 
 def test_a_joint_may_be_called_as_a_rest_is(tmp_path):
@@ -83,7 +99,9 @@ def test_a_joint_may_be_called_as_a_rest_is(tmp_path):
     first, second = m.link("first", length=1, mass=1), m.link("second", length=1, mass=1)
     m.revolute("O", m.ground, first)
     m.revolute("O_rest", first.tip, second)
-    scene = Scene(m, {"O": motion.polynomial(0, 1), "O_rest": motion.polynomial(0, 2)}, t=(0, 1, 11))
+    scene = Scene(
+        m, {"O": motion.polynomial(0, 1), "O_rest": motion.polynomial(0, 2)}, t=(0, 1, 11)
+    )
     made = export(scene, tmp_path, precision="single")
     assert len({member.name for member in made.inputs}) == len(made.inputs) == 8
     assert {"O_rest", "O_rest_2"} < {member.name for member in made.inputs}
@@ -128,7 +146,12 @@ def test_what_an_earlier_export_alone_had_goes(tmp_path):
     with pytest.raises(PathError, match="holds an export of another name"):
         export(slider_crank(), tmp_path, name="pump")
     export(slider_crank(), tmp_path, name="pump", force=True)
-    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {"pump", "pump_mex", "example", "selftest"}
+    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {
+        "pump",
+        "pump_mex",
+        "example",
+        "selftest",
+    }
     assert (tmp_path / "build").is_dir()
 
 
@@ -140,14 +163,19 @@ def test_nothing_of_others_is_touched_even_by_force(tmp_path):
 
 
 def test_a_table_too_large_for_its_target(tmp_path):
-    with pytest.raises(SizeError, match=r"the table of the cycle takes \d+ bytes of constants, and the limit is 64000"):
+    with pytest.raises(
+        SizeError,
+        match=r"the table of the cycle takes \d+ bytes of constants, and the limit is 64000",
+    ):
         export(slider_crank(), tmp_path / "out", table=4096, precision="single")
     assert not (tmp_path / "out").exists()
     t = np.linspace(0, 1, 4001)
     m = Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=1, mass=1))
     scene = Scene(m, {"J": motion.samples(t, t**2)}, t=(0, 1, 11))
-    with pytest.raises(SizeError, match=r"what curves and motions by samples look up takes 176004 bytes"):
+    with pytest.raises(
+        SizeError, match=r"what curves and motions by samples look up takes 176004 bytes"
+    ):
         export(scene, tmp_path / "out", precision="single")
     export(scene, tmp_path / "out", precision="single", largest=200_000)
 
@@ -155,7 +183,9 @@ def test_a_table_too_large_for_its_target(tmp_path):
 def test_what_no_drive_moves_is_refused(tmp_path):
     m = Mechanism("bracket")
     m.weld("wall", m.ground, m.link("arm", length=1.0, mass=2.0))
-    with pytest.raises(DeclarationError, match="'bracket' has no drive, and C without inputs computes nothing"):
+    with pytest.raises(
+        DeclarationError, match="'bracket' has no drive, and C without inputs computes nothing"
+    ):
         export(Scene(m, {}), tmp_path / "out")
     assert not list(tmp_path.iterdir())
 

@@ -1,4 +1,6 @@
-"""Sensitivities in exported C: what it gives, for which parameters, its self-test, and what it costs where they are not wanted."""
+"""Sensitivities in exported C: what it gives, for which parameters, its self-test, and what it
+costs where they are not wanted.
+"""
 
 import json
 import re
@@ -39,9 +41,15 @@ int main(void) {
 
 
 def printed(scene, folder, parameters, by, span):
-    """The outputs and their derivatives that exported C gives over instants, (t, outputs, 1 + parameters)."""
+    """The outputs and their derivatives that exported C gives over instants, (t, outputs, 1 +
+    parameters).
+    """
     made = export(scene, folder, wanted=[*scene.wanted, *(f"sensitivity:{name}" for name in by)])
-    values = [f"outputs.{m.name}" if name is None else f"slopes.{m.name}.{name}" for m in made.outputs for name in (None, *by)]
+    values = [
+        f"outputs.{m.name}" if name is None else f"slopes.{m.name}.{name}"
+        for m in made.outputs
+        for name in (None, *by)
+    ]
     start, stop, count = span
     words = {
         "SET": " ".join(f"parameters.{name} = {value!r};" for name, value in parameters.items()),
@@ -59,7 +67,9 @@ def printed(scene, folder, parameters, by, span):
     (folder / "main.c").write_text(text)
     result = cc(["cc", "-std=c99", "-Wall", "-Werror"], folder, f"{made.prefix}.c", "main.c")
     assert result.returncode == 0, result.stderr
-    lines = subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.splitlines()
+    lines = subprocess.run(
+        [folder / "program"], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
     found = np.array([[float(word) for word in line.split()] for line in lines])
     return made, found.reshape(count, len(made.outputs), 1 + len(by))
 
@@ -78,7 +88,11 @@ def rotor():
 @pytest.mark.parametrize(
     ("make", "parameters", "by"),
     [
-        (lambda: slider_crank(["effort", "reaction", "section:rod"]), {"l": 0.27, "m2": 0.3}, ["r", "m2"]),
+        (
+            lambda: slider_crank(["effort", "reaction", "section:rod"]),
+            {"l": 0.27, "m2": 0.3},
+            ["r", "m2"],
+        ),
         (rotor, {"speed": 31.0}, ["speed", "l"]),
         (truss_platform, {"shaft": 0.053}, ["shaft"]),
     ],
@@ -88,7 +102,9 @@ def test_it_gives_what_an_evaluation_gives(make, parameters, by, tmp_path):
     span = (*scene.t[:2], 21)
     made, found = printed(scene, tmp_path, parameters, by, span)
     names = [*scene.wanted, *(f"sensitivity:{name}" for name in by)]
-    solution = evaluate(scene, parameters=parameters, t=span, wanted=names, backend="vm", certificate=False)
+    solution = evaluate(
+        scene, parameters=parameters, t=span, wanted=names, backend="vm", certificate=False
+    )
     compared = 0
     for k, member in enumerate(made.outputs):
         if member.source not in solution.sensitivities.quantities:
@@ -98,10 +114,15 @@ def test_it_gives_what_an_evaluation_gives(make, parameters, by, tmp_path):
             exact = solution.sensitivities.array(member.source, name)
             size = (
                 np.abs(exact).max()
-                + np.abs(solution.array(member.source)).max() / solution.description["parameters"][name]["value"]
+                + np.abs(solution.array(member.source)).max()
+                / solution.description["parameters"][name]["value"]
             )
             np.testing.assert_allclose(
-                found[:, k, 1 + j], exact, rtol=0, atol=1e-11 * size + 1e-13, err_msg=f"{member.name} {name}"
+                found[:, k, 1 + j],
+                exact,
+                rtol=0,
+                atol=1e-11 * size + 1e-13,
+                err_msg=f"{member.name} {name}",
             )
     assert compared >= 3
     assert np.abs(found[:, :, 1:]).max() > 0.0
@@ -118,7 +139,15 @@ def test_it_is_clean_and_its_self_test_passes(make, tmp_path):
             for source in sources:
                 result = cc([*command, "-O1", "-c"], tmp_path, source, output="x.o")
                 assert result.returncode == 0, f"{label} {source}: {result.stderr}"
-    assert cc(["cc", "-std=c99", "-O1", "-ffp-contract=off"], tmp_path, f"{made.prefix}.c", "selftest.c").returncode == 0
+    assert (
+        cc(
+            ["cc", "-std=c99", "-O1", "-ffp-contract=off"],
+            tmp_path,
+            f"{made.prefix}.c",
+            "selftest.c",
+        ).returncode
+        == 0
+    )
     ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout
     source = (tmp_path / "selftest.c").read_text()
@@ -136,12 +165,18 @@ def test_it_is_clean_and_its_self_test_passes(make, tmp_path):
 
 
 def test_what_does_not_change_may_be_rounded(tmp_path):
-    """The derivative of l/l is a difference of what is as large as 1/l; compilers round it otherwise."""
+    """The derivative of l/l is a difference of what is as large as 1/l; compilers round it
+    otherwise.
+    """
     m = Mechanism("still")
     l = m.parameter("l", 0.3, "m")
     m.revolute("O", m.ground, m.link("arm", length=l, mass=1.0))
     m.output("same", sqrt(l * l * (1.0 + m.time)) / l)
-    export(Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9)), tmp_path, wanted=["output:same", "sensitivity"])
+    export(
+        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9)),
+        tmp_path,
+        wanted=["output:same", "sensitivity"],
+    )
     (off,) = re.findall(r"slopes_off\[1\] = \{(.*)\};", (tmp_path / "selftest.c").read_text())
     assert 1e-12 / 0.3 < float(off) < 1e-9 / 0.3
 

@@ -1,4 +1,6 @@
-"""Texts that users give, in files that others compile, build and read: they are shown, and nothing else comes of them."""
+"""Texts that users give, in files that others compile, build and read: they are shown, and nothing
+else comes of them.
+"""
 
 import json
 import re
@@ -34,7 +36,9 @@ WICKED = [
     "%{ %} '); system('touch PWNED'); ('",
     "</title><script>alert(1)</script>",
 ]
-LINES = st.text(st.characters(exclude_categories=["C", "Zs", "Zl", "Zp"], include_characters=" "), max_size=12)
+LINES = st.text(
+    st.characters(exclude_categories=["C", "Zs", "Zl", "Zp"], include_characters=" "), max_size=12
+)
 
 
 def arm(unit="m", name="arm"):
@@ -48,10 +52,20 @@ def build_and_run(folder, prefix):
     said = []
     for kind, command in compilers():
         if present(command[0]):
-            done = cc(command + (["-c"] if "++" in kind else []), folder, f"{prefix}.c", *([] if "++" in kind else ["selftest.c"]))
+            done = cc(
+                command + (["-c"] if "++" in kind else []),
+                folder,
+                f"{prefix}.c",
+                *([] if "++" in kind else ["selftest.c"]),
+            )
             assert done.returncode == 0, done.stderr
     for source in ("selftest.c", "example.c"):
-        done = cc(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"], folder, f"{prefix}.c", source)
+        done = cc(
+            ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"],
+            folder,
+            f"{prefix}.c",
+            source,
+        )
         assert done.returncode == 0, done.stderr
         ran = subprocess.run([folder / "program"], cwd=folder, capture_output=True, check=True)
         said.append(ran.stdout.decode())
@@ -174,7 +188,19 @@ def test_a_name_that_is_taken_is_another_one(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["slider_crank", "press", "engine", "interface_2", "Interface", "library", "A", "E1", "B0", "console"]
+    "name",
+    [
+        "slider_crank",
+        "press",
+        "engine",
+        "interface_2",
+        "Interface",
+        "library",
+        "A",
+        "E1",
+        "B0",
+        "console",
+    ],
 )
 def test_other_names_stay(name):
     assert naming.prefix(name) == name
@@ -183,18 +209,38 @@ def test_other_names_stay(name):
 def test_parameters_and_joints_may_be_called_as_macros_are(tmp_path):
     """Of ISO C's headers, which are all there before the exported header."""
     m = Mechanism("macros")
-    names = ["NULL", "EOF", "M_PI", "INT_MAX", "SEEK_SET", "stdin", "errno", "SIGINT", "DBL_EPSILON", "true", "I", "SEAL", "EDOM"]
+    names = [
+        "NULL",
+        "EOF",
+        "M_PI",
+        "INT_MAX",
+        "SEEK_SET",
+        "stdin",
+        "errno",
+        "SIGINT",
+        "DBL_EPSILON",
+        "true",
+        "I",
+        "SEAL",
+        "EDOM",
+    ]
     parts = [m.parameter(name, 0.1, "m", low=0.0) for name in names]
     first = m.link("NAN", length=sum(parts), mass=1.0)
     m.revolute("INFINITY", m.ground, first)
     m.revolute("RAND_MAX", first.tip, m.link("BUFSIZ", length=0.3, mass=1.0))
-    scene = Scene(m, {"INFINITY": motion.polynomial(0, 1), "RAND_MAX": motion.polynomial(0, 2)}, t=(0, 1, 5))
+    scene = Scene(
+        m, {"INFINITY": motion.polynomial(0, 1), "RAND_MAX": motion.polynomial(0, 2)}, t=(0, 1, 5)
+    )
     made = export(scene, tmp_path)
     assert {f"parameter {name}": f"{name}_" for name in names}.items() <= made.mapped.items()
     headers = (
-        "assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdarg stdbool stddef stdint stdio stdlib"
+        "assert complex ctype errno fenv float inttypes limits locale math setjmp signal stdarg"
+        " stdbool stddef stdint stdio stdlib"
     )
-    first = "".join(f"#include <{header}.h>\n" for header in [*headers.split(), "string", "tgmath", "time", "wchar", "wctype"])
+    first = "".join(
+        f"#include <{header}.h>\n"
+        for header in [*headers.split(), "string", "tgmath", "time", "wchar", "wctype"]
+    )
     for file in ("macros.c", "selftest.c"):
         (tmp_path / file).write_text(first + (tmp_path / file).read_text())
     done = cc(["cc", "-std=gnu11"], tmp_path, "macros.c", "selftest.c")
@@ -205,8 +251,14 @@ def test_parameters_and_joints_may_be_called_as_macros_are(tmp_path):
 def test_what_an_export_defines_is_no_members_name(tmp_path):
     made = export(iterated(), tmp_path, precision="single", newton=2)
     texts = [path.read_text() for path in tmp_path.glob("*.[ch]")]
-    defined = {word for text in texts for word in re.findall(r"^ *#\s*define (\w+)(?!\()\b", text, re.MULTILINE)}
-    own = {word for word in defined if not word.startswith((made.prefix.upper(), "CASADI", "casadi"))}
+    defined = {
+        word
+        for text in texts
+        for word in re.findall(r"^ *#\s*define (\w+)(?!\()\b", text, re.MULTILINE)
+    }
+    own = {
+        word for word in defined if not word.startswith((made.prefix.upper(), "CASADI", "casadi"))
+    }
     assert own
     assert all(map(naming.reserved, own)), own
 
@@ -217,21 +269,32 @@ def test_links_that_differ_in_capitals_alone(tmp_path):
     m.revolute("A", m.ground, links[0])
     m.revolute("B", links[0].tip, links[1])
     m.revolute("C", links[1].tip, links[2])
-    scene = Scene(m, {name: motion.polynomial(0, k + 1) for k, name in enumerate("ABC")}, t=(0, 1, 5))
+    scene = Scene(
+        m, {name: motion.polynomial(0, k + 1) for k, name in enumerate("ABC")}, t=(0, 1, 5)
+    )
     made = export(scene, tmp_path)
-    assert [link.constant for link in made.links] == ["TWO_LINK_ROD", "TWO_LINK_ROD_2", "TWO_LINK_ROD_2_2"]
+    assert [link.constant for link in made.links] == [
+        "TWO_LINK_ROD",
+        "TWO_LINK_ROD_2",
+        "TWO_LINK_ROD_2_2",
+    ]
     assert made.mapped == {"link Rod": "TWO_LINK_ROD_2", "link ROD_2": "TWO_LINK_ROD_2_2"}
     build_and_run(tmp_path, "two")
 
 
-@pytest.mark.parametrize("wicked", ["two\nlines", "tab\t", "nul\0", "\u202eright", "lone \udcff", "\x1b[31m", "\x85"])
+@pytest.mark.parametrize(
+    "wicked", ["two\nlines", "tab\t", "nul\0", "\u202eright", "lone \udcff", "\x1b[31m", "\x85"]
+)
 def test_what_is_no_line_of_text_is_refused(tmp_path, wicked):
     for what in (lambda: export(slider_crank(), tmp_path, name=wicked), lambda: arm(wicked)):
         with pytest.raises(DeclarationError, match="must be a line of printable characters, got "):
             what()
     with pytest.raises(DeclarationError, match="unit: expected a text, got 7"):
         arm(7)
-    with pytest.raises(DeclarationError, match=r"flags: expected options of a compiler, .*: they hold a null character"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"flags: expected options of a compiler, .*: they hold a null character",
+    ):
         evaluate(arm(), flags="-DX=\0")
     assert not list(tmp_path.iterdir())
 
@@ -242,10 +305,13 @@ def test_any_line_is_what_c_reads(lines, tmp_path_factory):
     """In strings and formats, byte by byte, with trigraphs; and no comment ends in it."""
     folder = tmp_path_factory.mktemp("lines")
     prints = "".join(
-        f'  /* {text.comment(line)} */ fputs("{text.quoted(line)}\\n", stdout); printf("{text.printed(line)}\\n");\n'
+        f'  /* {text.comment(line)} */ fputs("{text.quoted(line)}\\n", stdout);'
+        f' printf("{text.printed(line)}\\n");\n'
         for line in lines
     )
-    (folder / "x.c").write_text(f"#include <stdio.h>\nint main(void) {{\n{prints}  return 0;\n}}\n", encoding="utf-8")
+    (folder / "x.c").write_text(
+        f"#include <stdio.h>\nint main(void) {{\n{prints}  return 0;\n}}\n", encoding="utf-8"
+    )
     assert cc(["cc", "-std=c99", "-Wall", "-Werror"], folder, "x.c").returncode == 0
     said = subprocess.run([folder / "program"], capture_output=True, check=True).stdout
     assert said.decode() == "".join(f"{line}\n{line}\n" for line in lines)
@@ -261,7 +327,9 @@ def test_a_comment_stays_one(line):
 @given(LINES)
 def test_a_string_of_octave_stays_one(line):
     assert text.octave(line).replace("''", "").count("'") == 0
-    assert re.sub(r"%%|\\\\", "", text.octave_printed(line)).strip("%\\") == re.sub(r"%%|\\\\", "", text.octave_printed(line))
+    assert re.sub(r"%%|\\\\", "", text.octave_printed(line)).strip("%\\") == re.sub(
+        r"%%|\\\\", "", text.octave_printed(line)
+    )
 
 
 def test_a_unit_shows_in_a_figure_as_it_is(tmp_path):
@@ -306,5 +374,11 @@ def test_from_the_command_line(here, capfd):
     assert main(["export", str(case), "--out", "c", "--name", WICKED[0]]) == 0
     assert f"name {WICKED[0]} is called x_fopen_PWNED_w_printf in C" in capfd.readouterr().out
     assert main(["export", str(case), "--out", "d", "--name", "a\nb"]) == 2
-    assert capfd.readouterr().err == "error: name must be a line of printable characters, got 'a\\nb'\n"
-    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == ["c", "case.py"]
+    assert (
+        capfd.readouterr().err
+        == "error: name must be a line of printable characters, got 'a\\nb'\n"
+    )
+    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == [
+        "c",
+        "case.py",
+    ]

@@ -1,4 +1,6 @@
-"""Extremes: as exact as their condition lets any algorithm be, in doubles and in singles; and named refusals at singular limits."""
+"""Extremes: as exact as their condition lets any algorithm be, in doubles and in singles; and named
+refusals at singular limits.
+"""
 
 import math
 from dataclasses import replace
@@ -53,8 +55,14 @@ def test_extremes(extreme):
 
 def test_the_documentation_lists_every_extreme():
     """``python tests/extremes.py`` prints its table."""
-    page = (Path(__file__).parent.parent / "docs" / "accuracy.md").read_text().partition("## Extremes")[2]
-    assert [line.split(" | ")[0][2:] for line in page.splitlines() if line.startswith("| ")][2:] == [e.name for e in EXTREMES]
+    page = (
+        (Path(__file__).parent.parent / "docs" / "accuracy.md")
+        .read_text()
+        .partition("## Extremes")[2]
+    )
+    assert [line.split(" | ")[0][2:] for line in page.splitlines() if line.startswith("| ")][
+        2:
+    ] == [e.name for e in EXTREMES]
 
 
 @pytest.mark.sampled(11)
@@ -66,8 +74,16 @@ def test_a_dead_centre_has_a_name(limit, count, precision):
     for width in (0.3, 0.3 / count):
         for shift in (-width, 0.0, width):
             values = limit.values | {"angle": limit.centre + shift - width, "change": 0.0}
-            with pytest.raises(AssemblyError, match=r"dead centre|did not converge|links do not reach"):
-                evaluate(limit.scene(), parameters=values, t=(0, 2 * width / RATE, count), precision=precision, backend="c")
+            with pytest.raises(
+                AssemblyError, match=r"dead centre|did not converge|links do not reach"
+            ):
+                evaluate(
+                    limit.scene(),
+                    parameters=values,
+                    t=(0, 2 * width / RATE, count),
+                    precision=precision,
+                    backend="c",
+                )
 
 
 @precisions
@@ -77,15 +93,29 @@ def test_a_dead_centre_beside_the_first_or_last_instant(limit, count, precision)
     for place in (0.4, count - 1.4):
         values = limit.values | {"angle": limit.centre - 0.02 * place, "change": 0.0}
         with pytest.raises(AssemblyError, match="dead centre"):
-            evaluate(limit.scene(), parameters=values, t=(0, 0.02 * (count - 1) / RATE, count), precision=precision, backend="c")
+            evaluate(
+                limit.scene(),
+                parameters=values,
+                t=(0, 0.02 * (count - 1) / RATE, count),
+                precision=precision,
+                backend="c",
+            )
 
 
 @precisions
 def test_a_rod_that_is_too_short_by_little(precision):
     """Between two instants, too, it is seen."""
     for count in (9, 4001):
-        with pytest.raises(AssemblyError, match=r"joint 'guide' (passes a dead centre|is at a dead centre|cannot be closed)"):
-            evaluate(slider_crank(), parameters={"r": 0.2 * (1 + 1e-9)}, t=(0, 0.04, count), precision=precision)
+        with pytest.raises(
+            AssemblyError,
+            match=r"joint 'guide' (passes a dead centre|is at a dead centre|cannot be closed)",
+        ):
+            evaluate(
+                slider_crank(),
+                parameters={"r": 0.2 * (1 + 1e-9)},
+                t=(0, 0.04, count),
+                precision=precision,
+            )
 
 
 @pytest.mark.parametrize("count", [9, 81, 641])
@@ -95,19 +125,26 @@ def test_near_a_dead_centre_instants_may_be_few(count):
     coarse = evaluate(slider_crank(), parameters=values, t=(0, 0.04, count))
     alone = evaluate(slider_crank(), parameters=values, t=(0, 0.04 / (count - 1) * 2, 3))
     for name, row in alone.series.items():
-        np.testing.assert_allclose(coarse.series[name][:2], row[:2], rtol=1e-13, atol=1e-13 * np.max(np.abs(row)))
+        np.testing.assert_allclose(
+            coarse.series[name][:2], row[:2], rtol=1e-13, atol=1e-13 * np.max(np.abs(row))
+        )
 
 
 def test_a_loop_that_comes_near_beside_one_that_is_iterated_asks_for_instants():
     scene = two_rods(polynomial(ANGLE - 0.01, RATE), t=(0, 0.04, 81))
-    with pytest.raises(AssemblyError, match=r"joint 'closed_guide' passes a dead centre .*, take more instants"):
+    with pytest.raises(
+        AssemblyError, match=r"joint 'closed_guide' passes a dead centre .*, take more instants"
+    ):
         evaluate(scene, parameters={"r": 0.2 * (1 - 1e-9), "l": 0.2})
 
 
 @precisions
 def test_lengths_beyond_numbers_are_named(precision):
     for size in (1e-160, 1e160):
-        with pytest.raises(AssemblyError, match=rf"link '\w+' is [12]e[-+]16\d m long, and {precision} precision can only square"):
+        with pytest.raises(
+            AssemblyError,
+            match=rf"link '\w+' is [12]e[-+]16\d m long, and {precision} precision can only square",
+        ):
             evaluate(slider_crank(), parameters={"r": size, "l": 2 * size}, precision=precision)
 
 
@@ -124,9 +161,13 @@ def test_a_lost_phase_is_in_the_estimate(scene):
         assert lost.errors[name] > gap / 10
 
 
-@pytest.mark.parametrize(("name", "scene"), [("r/l = 1 - 1e-9", slider_crank), ("stretched but for 1e-09", four_bar)])
+@pytest.mark.parametrize(
+    ("name", "scene"), [("r/l = 1 - 1e-9", slider_crank), ("stretched but for 1e-09", four_bar)]
+)
 def test_half_iterated_loops_are_in_the_estimate(name, scene):
-    """Steps of Newton that are too few so near to a dead centre: one more of them would not tell."""
+    """Steps of Newton that are too few so near to a dead centre: one more
+    of them would not tell.
+    """
     (extreme,) = (replace(e, scene=lambda: scene(pin=pinned)) for e in EXTREMES if name in e.name)
     exact, rough = extreme.solution(), extreme.solution(newton=1)
     gaps = {name: np.max(np.abs(row - exact.series[name])) for name, row in rough.series.items()}
@@ -136,7 +177,10 @@ def test_half_iterated_loops_are_in_the_estimate(name, scene):
 
 def test_a_reference_means_whole_turns():
     """The double nearest to a turn would be off by 3e-9 rad after 1.25e7 of them."""
-    graph, values = derive(slider_crank(), ["motion"]), slider_crank().mechanism.values({"change": 0.0})
+    graph, values = (
+        derive(slider_crank(), ["motion"]),
+        slider_crank().mechanism.values({"change": 0.0}),
+    )
     (row,) = reference(graph, [1e6], list(values.values()))
     found = dict(zip(graph.names, row, strict=True))
     with mp.workdps(50):

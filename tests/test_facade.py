@@ -1,4 +1,6 @@
-"""The public names are there after a bare import, no others are listed, and little is loaded before it is asked for."""
+"""The public names are there after a bare import, no others are listed, and little is loaded before
+it is asked for.
+"""
 
 import ast
 import json
@@ -23,13 +25,17 @@ STUB = Path(lc.__file__).with_suffix(".pyi")
 
 def fresh(program):
     """What a program prints as JSON, in a process of its own."""
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     return json.loads(done.stdout)
 
 
 def test_the_public_names_are_listed_and_nothing_else():
     tree = ast.parse(STUB.read_text())
-    named = [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    named = [
+        alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    ]
     (listed,) = (ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign))
     assert sorted(listed) == sorted(named) == dir(lc) == sorted(lc.__all__)
     assert fresh("import json, lagrange_casadi as lc; print(json.dumps(dir(lc)))") == dir(lc)
@@ -38,7 +44,9 @@ def test_the_public_names_are_listed_and_nothing_else():
 
 
 def test_each_name_is_there_after_a_bare_import():
-    """And is what its stub says: no module takes the place of a function of its name, in whatever order they are asked for."""
+    """And is what its stub says: no module takes the place of a function of its name, in whatever
+    order they are asked for.
+    """
     program = """
 import json, sys, lagrange_casadi as lc
 names = dir(lc)
@@ -48,19 +56,38 @@ import lagrange_casadi.cli, lagrange_casadi.exports, lagrange_casadi.studies.swe
 print(json.dumps({name: type(getattr(lc, name)).__name__ for name in names}))
 """
     tree = ast.parse(STUB.read_text())
-    submodules = {a.name for node in tree.body if isinstance(node, ast.ImportFrom) and node.module is None for a in node.names}
+    submodules = {
+        a.name
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom) and node.module is None
+        for a in node.names
+    }
     for order in ("0", "1"):
-        done = subprocess.run([sys.executable, "-c", program, order], capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [sys.executable, "-c", program, order], capture_output=True, text=True, check=True
+        )
         kinds = json.loads(done.stdout)
         assert {name for name, kind in kinds.items() if kind == "module"} == submodules
-        assert all(kinds[name] == "function" for name in ("evaluate", "sweep", "optimise", "export", "table", "check", "size"))
+        assert all(
+            kinds[name] == "function"
+            for name in ("evaluate", "sweep", "optimise", "export", "table", "check", "size")
+        )
 
 
 def test_no_package_has_the_name_of_a_public_function():
     """Imported late, it would replace the function as the package's attribute."""
     tree = ast.parse(STUB.read_text())
-    functions = {a.name for node in tree.body if isinstance(node, ast.ImportFrom) and node.module for a in node.names}
-    modules = {path.stem for path in STUB.parent.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
+    functions = {
+        a.name
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom) and node.module
+        for a in node.names
+    }
+    modules = {
+        path.stem
+        for path in STUB.parent.iterdir()
+        if path.suffix == ".py" or (path / "__init__.py").exists()
+    }
     assert not functions & modules
 
 
@@ -70,10 +97,22 @@ LOADED = "import json, sys\n{}\nprint(json.dumps(sorted(name for name in sys.mod
 @pytest.mark.parametrize(
     ("program", "unneeded"),
     [
-        ("import lagrange_casadi", ("numpy", "casadi", "h5py", "matplotlib", "lagrange_casadi.declare")),
-        ("import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate", ("h5py", "matplotlib", "lagrange_casadi.equations")),
-        ("import lagrange_casadi.cli", ("numpy", "casadi", "h5py", "matplotlib", "tqdm", "lagrange_casadi.declare")),
-        ("import lagrange_casadi as lc\nfor name in dir(lc): getattr(lc, name)", ("matplotlib", "tqdm", "distributed")),
+        (
+            "import lagrange_casadi",
+            ("numpy", "casadi", "h5py", "matplotlib", "lagrange_casadi.declare"),
+        ),
+        (
+            "import lagrange_casadi as lc; lc.Mechanism, lc.Scene, lc.evaluate",
+            ("h5py", "matplotlib", "lagrange_casadi.equations"),
+        ),
+        (
+            "import lagrange_casadi.cli",
+            ("numpy", "casadi", "h5py", "matplotlib", "tqdm", "lagrange_casadi.declare"),
+        ),
+        (
+            "import lagrange_casadi as lc\nfor name in dir(lc): getattr(lc, name)",
+            ("matplotlib", "tqdm", "distributed"),
+        ),
     ],
 )
 def test_what_is_not_asked_for_is_not_loaded(program, unneeded):
@@ -96,7 +135,9 @@ def processor_time(*command):
     return min(found)
 
 
-@pytest.mark.skipif("PYTHONDONTWRITEBYTECODE" in os.environ, reason="nothing would be compiled before")
+@pytest.mark.skipif(
+    "PYTHONDONTWRITEBYTECODE" in os.environ, reason="nothing would be compiled before"
+)
 def test_imports_take_little_time():
     """In processor time, over that of what every mechanism needs."""
     least = processor_time(sys.executable, "-c", "import casadi, numpy")

@@ -48,7 +48,11 @@ def test_a_folder_is_drawn_again_and_keeps_what_lies_beside(command):
     assert main(words) == 0
     first = contents(folder)
     told = json.loads(first[MANIFEST.name])["files"]
-    assert told == {name: hashlib.sha256(text).hexdigest() for name, text in first.items() if name != MANIFEST.name}
+    assert told == {
+        name: hashlib.sha256(text).hexdigest()
+        for name, text in first.items()
+        if name != MANIFEST.name
+    }
     assert len(told.keys() - {"index.html"}) == len(told) - 1 > 0
     (folder / "notes.txt").write_text("mine")
     (folder / "own.png").write_text("mine")
@@ -65,7 +69,9 @@ def test_a_folder_of_somebody_else_is_refused_before_anything_is_written(command
     assert main(words) == 2
     err = capsys.readouterr().err
     assert err.startswith(f"error: cannot draw into {folder.name}: ")
-    assert {f"'{name}'", "choose another folder"} == {words for words in (f"'{name}'", "choose another folder") if words in err}
+    assert {f"'{name}'", "choose another folder"} == {
+        words for words in (f"'{name}'", "choose another folder") if words in err
+    }
     assert contents(folder) == {name: b"mine"}
     assert sorted(folder.parent.iterdir()) == before
 
@@ -77,7 +83,10 @@ def test_what_was_changed_or_came_under_a_name_of_ours_stays(command, capsys):
     drawn = picture.read_bytes()
     picture.write_bytes(b"with my notes")
     assert main(words) == 2
-    assert f"it holds an earlier drawing whose '{picture.name}' was changed since" in capsys.readouterr().err
+    assert (
+        f"it holds an earlier drawing whose '{picture.name}' was changed since"
+        in capsys.readouterr().err
+    )
     assert picture.read_bytes() == b"with my notes"
     picture.unlink()
     assert main(words) == 0
@@ -87,7 +96,10 @@ def test_what_was_changed_or_came_under_a_name_of_ours_stays(command, capsys):
     (folder / MANIFEST.name).write_text(json.dumps(told))
     capsys.readouterr()
     assert main(words) == 2
-    assert f"'{picture.name}' there is no file of an earlier drawing; move it" in capsys.readouterr().err
+    assert (
+        f"'{picture.name}' there is no file of an earlier drawing; move it"
+        in capsys.readouterr().err
+    )
 
 
 def test_what_is_drawn_no_more_is_known_still(files, tmp_path, monkeypatch):
@@ -95,7 +107,9 @@ def test_what_is_drawn_no_more_is_known_still(files, tmp_path, monkeypatch):
     for wanted in ("effort", "motion", "effort"):
         assert main(["run", "four_bar", "--t", "0:0.1:11", "--want", wanted]) == 0
     assert main(["plot", str(files[1]), "--out", "four_bar_figures"]) == 0
-    assert {"effort_O.png", "index.html", "mechanism.png"} <= MANIFEST.known(tmp_path / "four_bar_figures").keys()
+    assert {"effort_O.png", "index.html", "mechanism.png"} <= MANIFEST.known(
+        tmp_path / "four_bar_figures"
+    ).keys()
 
 
 def test_an_empty_folder_and_one_with_hidden_files_are_free(files, tmp_path):
@@ -107,7 +121,9 @@ def test_an_empty_folder_and_one_with_hidden_files_are_free(files, tmp_path):
 OURS = '{"schema": "lagrange-casadi figures"'
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{", "[" * 100_000, "\xff", OURS + "}", OURS + ', "files": 3}'])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", "[" * 100_000, "\xff", OURS + "}", OURS + ', "files": 3}']
+)
 def test_what_is_no_manifest_is_a_file_of_somebody_else(tmp_path, text):
     (tmp_path / MANIFEST.name).write_bytes(text.encode("latin-1"))
     with pytest.raises(PathError, match=r"'figures\.json' there is no file of an earlier drawing"):
@@ -120,7 +136,9 @@ def test_a_link_or_a_folder_under_a_known_name_was_changed(tmp_path):
     (tmp_path / "drawn").mkdir()
     for make in (lambda path: path.symlink_to(one), lambda path: path.mkdir()):
         place = tmp_path / "drawn" / "one.png"
-        (tmp_path / "drawn" / MANIFEST.name).write_text(MANIFEST.text({"one.png": hashlib.sha256(b"drawn").hexdigest()}))
+        (tmp_path / "drawn" / MANIFEST.name).write_text(
+            MANIFEST.text({"one.png": hashlib.sha256(b"drawn").hexdigest()})
+        )
         make(place)
         with pytest.raises(PathError, match=r"whose 'one\.png' was changed since"):
             MANIFEST.check(tmp_path / "drawn")

@@ -26,7 +26,9 @@ def test_time_plot_applies_the_factor(solution):
     spec = TimePlot("guide", ("reaction:guide:fy",), "guide", factor=-1, note="sign of the paper")
     figure = spec.draw(solution)
     (curve,) = curves(figure)
-    np.testing.assert_array_equal(curve, np.column_stack([solution.t, -solution.reaction("guide").fy]))
+    np.testing.assert_array_equal(
+        curve, np.column_stack([solution.t, -solution.reaction("guide").fy])
+    )
     assert figure.axes[0].get_ylabel().endswith("[N]")
     assert figure.get_supxlabel() == "sign of the paper"
 
@@ -39,7 +41,9 @@ def test_time_plot_of_sections(solution):
 
 
 def test_each_unit_has_axes_of_its_own(solution):
-    """A torque and forces share no scale: two panels over one time, each named by its own quantities."""
+    """A torque and forces share no scale: two panels over one time, each named by its own
+    quantities.
+    """
     names = ("effort:O", "reaction:guide:fy", "reaction:guide:resultant", "motion:O")
     figure = TimePlot("both", names, "both", note="a note").draw(solution)
     assert [axes.get_ylabel().replace("\n", " ") for axes in figure.axes] == [
@@ -47,7 +51,10 @@ def test_each_unit_has_axes_of_its_own(solution):
         "reaction of the joint, resultant of the joint's reaction [N]",
         "coordinate of the joint [rad]",
     ]
-    lines = [[line.get_ydata() for line in axes.get_lines() if len(line.get_ydata()) > 2] for axes in figure.axes]
+    lines = [
+        [line.get_ydata() for line in axes.get_lines() if len(line.get_ydata()) > 2]
+        for axes in figure.axes
+    ]
     assert [len(panel) for panel in lines] == [1, 2, 1]
     np.testing.assert_array_equal(lines[0][0], solution.effort("O"))
     np.testing.assert_array_equal(lines[1][1], solution.reaction("guide").resultant)
@@ -59,7 +66,9 @@ def test_each_unit_has_axes_of_its_own(solution):
 
 def test_resultants_are_drawn_where_their_reactions_are(solution, slider_crank, tmp_path):
     spec = TimePlot("size", ("reaction:guide:resultant",))
-    assert [path.name for _, path in figures.draw(solution, [spec], tmp_path) if path] == ["size.png"]
+    assert [path.name for _, path in figures.draw(solution, [spec], tmp_path) if path] == [
+        "size.png"
+    ]
     without = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 21))
     assert [path for _, path in figures.draw(without, [spec], tmp_path)] == [None]
 
@@ -84,7 +93,9 @@ def test_maps_mark_the_peaks(solution):
 
 
 def test_maps_of_a_grid_finer_than_the_picture_are_thinned(slider_crank):
-    solution = evaluate(slider_crank.scene, t=(0, 0.08, 4001), xi=(0, 1, 1700), wanted=["section:rod"])
+    solution = evaluate(
+        slider_crank.scene, t=(0, 0.08, 4001), xi=(0, 1, 1700), wanted=["section:rod"]
+    )
     figure = SectionMaps("maps", "rod").draw(solution)
     assert figure.axes[0].collections[0].get_array().shape == (850, 1334)
 
@@ -105,14 +116,19 @@ def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
     figure.draw_without_rendering()
     for axes in figure.axes:
         # A name alone: the extent of an annotation has its line too, all around it.
-        frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]
+        frame, boxes = (
+            axes.get_window_extent(),
+            [Text.get_window_extent(text) for text in axes.texts],
+        )
         told = {name for text in axes.texts for name in text.get_text().split(", ")}
         assert told == {*described["joints"], *described["paths"]}
         for k, box in enumerate(boxes):
             assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
             assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
             assert not [other for other in boxes[:k] if box.overlaps(other)]
-    assert len({handle.get_color() for handle in figure.axes[0].get_legend_handles_labels()[0]}) == 10
+    assert (
+        len({handle.get_color() for handle in figure.axes[0].get_legend_handles_labels()[0]}) == 10
+    )
 
 
 def strong(axes, label):
@@ -120,13 +136,18 @@ def strong(axes, label):
 
 
 def test_postures_of_two_turns_are_drawn_once_and_one_over_the_other():
-    """Two turns of an engine: the second one is the first again. The first posture is strong, the others are faint."""
+    """Two turns of an engine: the second one is the first again.
+
+    The first posture is strong, the others are faint.
+    """
     solution = solved("engine", 81)
     figure = draw_mechanism(solution, 4)
     angles = [np.arctan2(*strong(axes, "crank").get_xydata()[1][::-1]) for axes in figure.axes]
     np.testing.assert_allclose(np.exp(1j * np.array(angles)), [1j, -1, -1j, 1], atol=1e-9)
     (axes,) = draw_mechanism(solution, 8, overlay=True).axes
-    cranks = [line for line in axes.get_lines() if line.get_color() == strong(axes, "crank").get_color()]
+    cranks = [
+        line for line in axes.get_lines() if line.get_color() == strong(axes, "crank").get_color()
+    ]
     assert len(cranks) == 8
     ends = [line.get_xydata()[1] for line in cranks]
     assert min(np.hypot(*(a - b)) for k, a in enumerate(ends) for b in ends[:k]) > 0.02
@@ -136,7 +157,11 @@ def test_postures_of_two_turns_are_drawn_once_and_one_over_the_other():
 
 def test_bodies_with_three_joints_are_plates_and_rotors_are_discs():
     axes = draw_mechanism(solved("excavator"), 1).axes[0]
-    bucket = next(patch for patch in axes.patches if patch.get_facecolor()[:3] == to_rgb(strong(axes, "bucket").get_color()))
+    bucket = next(
+        patch
+        for patch in axes.patches
+        if patch.get_facecolor()[:3] == to_rgb(strong(axes, "bucket").get_color())
+    )
     assert len(bucket.get_xy()) - 1 == 4  # the teeth are a corner too
     cam = draw_mechanism(solved("roller_cam"), 1).axes[0]
     rim = strong(cam, "cam").get_xydata()
@@ -189,7 +214,9 @@ def test_springs_are_whole_on_a_drawing():
     bar = m.link("bar", length=1.0, mass=1.0)
     m.revolute("O", m.ground, bar)
     m.spring("coil", m.ground.at(-4.0, 3.0), bar.tip, stiffness=1.0, length=1.0)
-    figure = draw_mechanism(evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 5)), backend="vm"), 2)
+    figure = draw_mechanism(
+        evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 5)), backend="vm"), 2
+    )
     for axes in figure.axes:
         assert axes.get_xlim()[0] < -4.0
         assert axes.get_ylim()[1] > 3.0
@@ -211,7 +238,15 @@ def test_what_is_not_there_is_not_drawn(slider_crank, tmp_path):
 
 def test_default_figures_cover_the_solution(solution):
     names = {spec.name for spec in figures.default_figures(solution)}
-    assert {"motion_O", "motion_guide", "effort_O", "reaction_guide", "section_rod", "section_crank", "mechanism"} <= names
+    assert {
+        "motion_O",
+        "motion_guide",
+        "effort_O",
+        "reaction_guide",
+        "section_rod",
+        "section_crank",
+        "mechanism",
+    } <= names
 
 
 def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
@@ -227,6 +262,8 @@ def test_what_is_no_spec_is_named(solution, tmp_path):
     with pytest.raises(UnknownNameError, match=r"unknown part in figure 'x' 'Q'; valid: crank"):
         list(figures.draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))
     for specs in ([TimePlot("../x", ("effort:O",))], [TimePlot("x", ("effort:O",))] * 2):
-        with pytest.raises(DeclarationError, match="expected letters, digits, underscores and hyphens"):
+        with pytest.raises(
+            DeclarationError, match="expected letters, digits, underscores and hyphens"
+        ):
             list(figures.draw(solution, specs, tmp_path))
     assert not list(tmp_path.iterdir())

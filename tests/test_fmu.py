@@ -1,4 +1,6 @@
-"""The exported FMU, imported by FMPy: the numbers of the API, told in the words of the results file, and loud where it fails."""
+"""The exported FMU, imported by FMPy: the numbers of the API, told in the words of the results
+file, and loud where it fails.
+"""
 
 import math
 
@@ -18,7 +20,9 @@ from lagrange_casadi.portable.golden import ALLOWED
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")
 validate_fmu = pytest.importorskip("fmpy.validation").validate_fmu
-pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")
+pytestmark = pytest.mark.skipif(
+    find_compiler() is None, reason="there is no C compiler to build an FMU with"
+)
 
 WITHIN = 1e-12
 
@@ -46,14 +50,21 @@ def unit(tmp_path_factory):
         if key not in made:
             folder = tmp_path_factory.mktemp(name) / "out"
             scene = (SCENES | GUIDED)[name]()
-            made[key] = scene, folder / f"{export(scene, folder, name=name, fmu=True, **how).prefix}.fmu"
+            made[key] = (
+                scene,
+                folder / f"{export(scene, folder, name=name, fmu=True, **how).prefix}.fmu",
+            )
         return made[key]
 
     return make
 
 
 def outputs(path):
-    return [v.name for v in fmpy.read_model_description(str(path)).modelVariables if v.causality == "output"]
+    return [
+        v.name
+        for v in fmpy.read_model_description(str(path)).modelVariables
+        if v.causality == "output"
+    ]
 
 
 def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
@@ -62,7 +73,9 @@ def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
         expected = solution.series[name.replace("/", ":")]
         assert found[name].shape == expected.shape
         gap = np.abs(found[name] - expected)[rows].max()
-        assert gap <= within * np.abs(expected).max(), f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
+        assert gap <= within * np.abs(expected).max(), (
+            f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
+        )
 
 
 @pytest.mark.sampled(5)
@@ -82,10 +95,14 @@ def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", SCENES)
 def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
-    """What FMPy reads after a step is of the inputs that it set before: they are given one step early."""
+    """What FMPy reads after a step is of the inputs that it set before: they are given one step
+    early.
+    """
     scene, path = unit(name)
     solution = evaluate(scene)
-    assert_alike(simulated(path, solution, "CoSimulation", ahead=1), solution, outputs(path), slice(1, None))
+    assert_alike(
+        simulated(path, solution, "CoSimulation", ahead=1), solution, outputs(path), slice(1, None)
+    )
 
 
 def test_the_motion_of_what_is_guided_is_an_input(unit):
@@ -105,7 +122,9 @@ def test_the_motion_of_what_is_guided_is_an_input(unit):
 @pytest.mark.sampled(17)
 @pytest.mark.parametrize("name", SPATIAL)
 def test_mechanisms_in_space(unit, name):
-    """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is zero may be rounding."""
+    """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is
+    zero may be rounding.
+    """
     scene, path = unit(name)
     solution = evaluate(scene)
     assert validate_fmu(str(path)) == []
@@ -118,7 +137,11 @@ def test_mechanisms_in_space(unit, name):
             assert gap <= WITHIN * np.abs(expected).max() + ALLOWED * solution.errors[own], told
 
 
-CHANGES = {"slider_crank": {"r": 0.08, "m3": 0.4}, "robot": {"shin": 0.29, "mass": 2.0}, "windy": {"gust": 9.0}}
+CHANGES = {
+    "slider_crank": {"r": 0.08, "m3": 0.4},
+    "robot": {"shin": 0.29, "mass": 2.0},
+    "windy": {"gust": 9.0},
+}
 
 
 @pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
@@ -142,7 +165,12 @@ def test_parameters_change_during_a_run(unit, name):
     found = simulated(path, before, **tuned)
     for solution, rows in ((before, ~late), (after, late)):
         assert_alike(found, solution, outputs(path), rows)
-    assert np.abs(after.series["effort:" + drive(scene)] - before.series["effort:" + drive(scene)]).max() > 0
+    assert (
+        np.abs(
+            after.series["effort:" + drive(scene)] - before.series["effort:" + drive(scene)]
+        ).max()
+        > 0
+    )
 
 
 def drive(scene):
@@ -150,7 +178,10 @@ def drive(scene):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "how", "within"), [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)])
+@pytest.mark.parametrize(
+    ("name", "how", "within"),
+    [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)],
+)
 def test_the_other_rungs(unit, name, how, within):
     scene, path = unit(name, **how)
     solution = evaluate(scene)
@@ -158,13 +189,17 @@ def test_the_other_rungs(unit, name, how, within):
 
 
 def test_single_precision_keeps_phases(unit):
-    """After 10^5 turns a single holds an angle to 0.06 rad: the rest comes from the importer's double."""
+    """After 10^5 turns a single holds an angle to 0.06 rad: the rest comes from the importer's
+    double.
+    """
     scene, path = unit("slider_crank", precision="single")
     solution = evaluate(scene)
     turned = signals(solution)
     turned["motion/O"] += math.tau * 1e5
     step = float(solution.t[1] - solution.t[0])
-    found = fmpy.simulate_fmu(str(path), fmi_type="ModelExchange", stop_time=0.08, output_interval=step, input=turned)
+    found = fmpy.simulate_fmu(
+        str(path), fmi_type="ModelExchange", stop_time=0.08, output_interval=step, input=turned
+    )
     for name in ("effort/O", "reaction/guide/fy", "motion/guide"):
         expected = solution.series[name.replace("/", ":")]
         assert np.abs(found[name] - expected).max() < 2e-5 * np.abs(expected).max(), name
@@ -190,7 +225,9 @@ def test_a_bad_parameter_is_an_error_that_names_it(unit, instances):
         refusing(fmi2.fmi2Error, it.set, r=value)
         status, category, message = it.log.pop()
         assert (status, category) == (fmi2.fmi2Error, "logStatusError")
-        assert message.startswith(f"r = {value:.9g}: a parameter is not finite, or out of its range")
+        assert message.startswith(
+            f"r = {value:.9g}: a parameter is not finite, or out of its range"
+        )
     assert it.get("effort/O", "r") == [effort, 0.1]
     assert not it.log
 
@@ -203,7 +240,10 @@ def test_parameters_that_make_a_part_impossible_are_an_error(unit, instances):
     for _ in range(2):
         refusing(fmi2.fmi2Error, it.get, "effort/O")
     assert [message for _, _, message in it.log] == [
-        "t = 0 s: a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass"
+        (
+            "t = 0 s: a parameter is not finite, or out of its range, or leaves a link without"
+            " length or with a negative mass"
+        )
     ]
     it.set(m2=0.1)
     assert it.get("effort/O") == [effort]
@@ -217,7 +257,13 @@ def test_an_instant_without_a_result_is_discarded_and_says_why(unit, instances):
     it.set(motion__O=1.5)
     for _ in range(2):
         refusing(fmi2.fmi2Discard, it.get, "effort/O")
-    assert it.log == [(fmi2.fmi2Discard, "logStatusDiscard", "t = 0 s: a loop cannot be closed: its links do not reach")]
+    assert it.log == [
+        (
+            fmi2.fmi2Discard,
+            "logStatusDiscard",
+            "t = 0 s: a loop cannot be closed: its links do not reach",
+        )
+    ]
     it.set(motion__O=math.nan)
     refusing(fmi2.fmi2Discard, it.get, "effort/O")
     assert it.log.pop()[2] == "t = 0 s: an input is not finite"
@@ -306,10 +352,17 @@ def test_inputs_that_are_set_after_a_step_count_at_once(unit, instances):
         it.fmu.doStep(float(solution.t[i - 1]), float(solution.t[i] - solution.t[i - 1]))
         table = signals(solution)
         it.set(
-            **{name.replace("/", "__"): float(table[name][i]) for name in ("motion/O", "motion/O_rate", "motion/O_acceleration")}
+            **{
+                name.replace("/", "__"): float(table[name][i])
+                for name in ("motion/O", "motion/O_rate", "motion/O_acceleration")
+            }
         )
-        assert it.get("effort/O", "time") == pytest.approx([solution.series["effort:O"][i], solution.t[i]], abs=WITHIN * peak)
-    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == pytest.approx(solution.t[19], abs=1e-15)
+        assert it.get("effort/O", "time") == pytest.approx(
+            [solution.series["effort:O"][i], solution.t[i]], abs=WITHIN * peak
+        )
+    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == pytest.approx(
+        solution.t[19], abs=1e-15
+    )
 
 
 def test_a_step_without_a_result_is_discarded_and_the_time_stays(unit, instances):
@@ -343,13 +396,20 @@ def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
 
 
 def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
-    """With a logger of its own: FMPy's usual one is that of whichever unit was made last, which may be gone."""
+    """With a logger of its own: FMPy's usual one is that of whichever unit was made last, which may
+    be gone.
+    """
     path = unit("slider_crank")[1]
     callbacks = fmi2.fmi2CallbackFunctions()
     callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(fmi2.printLogMessage)
     callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
     callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
     fmpy.extract(str(path), str(tmp_path))
-    fmu = fmi2.FMU2Model(guid="{other}", unzipDirectory=str(tmp_path), modelIdentifier="slider_crank", instanceName="it")
+    fmu = fmi2.FMU2Model(
+        guid="{other}",
+        unzipDirectory=str(tmp_path),
+        modelIdentifier="slider_crank",
+        instanceName="it",
+    )
     with pytest.raises(Exception, match="instantiate"):
         fmu.instantiate(callbacks=callbacks)

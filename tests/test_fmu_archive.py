@@ -1,4 +1,6 @@
-"""What is in the exported FMU: the description, sources that compile elsewhere, and the same bytes every time."""
+"""What is in the exported FMU: the description, sources that compile elsewhere, and the same bytes
+every time.
+"""
 
 import math
 import shutil
@@ -22,7 +24,9 @@ from lagrange_casadi.errors import CompilerError, LagrangeCasadiError, PathError
 from lagrange_casadi.exports import export, fmu
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
-pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")
+pytestmark = pytest.mark.skipif(
+    find_compiler() is None, reason="there is no C compiler to build an FMU with"
+)
 
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
 
@@ -81,12 +85,33 @@ def test_the_sources_compile_elsewhere(archives, name, compiler, tmp_path):
     listed = {file.get("name") for file in described(archives[name]).iter("File")}
     sources = tmp_path / "sources"
     assert listed == {path.name for path in sources.glob("*.c")}
-    command = [compiler, *PEDANTIC, "-O1", "-fPIC", "-shared", *sorted(listed), "-o", "unit.so", "-lm"]
+    command = [
+        compiler,
+        *PEDANTIC,
+        "-O1",
+        "-fPIC",
+        "-shared",
+        *sorted(listed),
+        "-o",
+        "unit.so",
+        "-lm",
+    ]
     subprocess.run(command, cwd=sources, check=True)
-    prefixed = [compiler, *PEDANTIC, f"-DFMI2_FUNCTION_PREFIX={name}_", "-c", f"{name}_fmi2.c", "-o", "unit.o"]
+    prefixed = [
+        compiler,
+        *PEDANTIC,
+        f"-DFMI2_FUNCTION_PREFIX={name}_",
+        "-c",
+        f"{name}_fmi2.c",
+        "-o",
+        "unit.o",
+    ]
     subprocess.run(prefixed, cwd=sources, check=True)
     assert f"{name}_fmi2GetReal".encode() in (sources / "unit.o").read_bytes()
-    assert "Redistribution and use in source and binary forms" in (sources / "fmi2Functions.h").read_text()
+    assert (
+        "Redistribution and use in source and binary forms"
+        in (sources / "fmi2Functions.h").read_text()
+    )
 
 
 def test_names_units_and_limits(archives):
@@ -98,14 +123,30 @@ def test_names_units_and_limits(archives):
     for name, variable in variables.items():
         if name not in ("gust", "time"):
             assert variable.find("Real").get("unit") == solution.unit(name.replace("/", ":"))
-            assert variable.get("causality") == ("input" if name.startswith("motion/O") else "output")
-    assert variables["gust"].find("Real").attrib == {"unit": "N", "min": "0.0", "max": "100.0", "start": "4.0"}
-    starts = {name: float(variables[f"motion/{name}"].find("Real").get("start")) for name in ("O", "O_rate", "O_acceleration")}
-    assert starts == pytest.approx({name: solution.series[f"motion:{name}"][0] for name in starts}, rel=1e-15)
+            assert variable.get("causality") == (
+                "input" if name.startswith("motion/O") else "output"
+            )
+    assert variables["gust"].find("Real").attrib == {
+        "unit": "N",
+        "min": "0.0",
+        "max": "100.0",
+        "start": "4.0",
+    }
+    starts = {
+        name: float(variables[f"motion/{name}"].find("Real").get("start"))
+        for name in ("O", "O_rate", "O_acceleration")
+    }
+    assert starts == pytest.approx(
+        {name: solution.series[f"motion:{name}"][0] for name in starts}, rel=1e-15
+    )
     units = {unit.get("name"): unit for unit in root.iter("Unit")}
     assert units["N m"].find("BaseUnit").attrib == {"kg": "1", "m": "2", "s": "-2"}
     assert root.get("variableNamingConvention") == "flat"
-    assert root.find("DefaultExperiment").attrib == {"startTime": "0.3", "stopTime": "1.3", "stepSize": "0.01"}
+    assert root.find("DefaultExperiment").attrib == {
+        "startTime": "0.3",
+        "stopTime": "1.3",
+        "stepSize": "0.01",
+    }
 
 
 def test_a_unit_that_nobody_knows(tmp_path):
@@ -115,9 +156,13 @@ def test_a_unit_that_nobody_knows(tmp_path):
     m.force("wind", a.tip, x=m.time)
     export(Scene(m, {"O": polynomial(0, 3)}, ["effort"]), tmp_path / "out", fmu=True)
     root = described(tmp_path / "out" / "odd.fmu")
-    assert {u.get("name"): [*u] for u in root.iter("Unit") if u.get("name") in ("ell", "lb/s m")} == {"ell": [], "lb/s m": []}
+    assert {
+        u.get("name"): [*u] for u in root.iter("Unit") if u.get("name") in ("ell", "lb/s m")
+    } == {"ell": [], "lb/s m": []}
     # A parameter may have the name that the time has elsewhere.
-    assert [v.get("name") for v in root.iter("ScalarVariable") if v.get("causality") == "independent"] == ["simulation/time"]
+    assert [
+        v.get("name") for v in root.iter("ScalarVariable") if v.get("causality") == "independent"
+    ] == ["simulation/time"]
 
 
 @pytest.mark.parametrize("name", ["robot", "windy"])
@@ -126,7 +171,9 @@ def test_nothing_depends_on_more_than_is_said(archives, name, tmp_path):
     it = Instance(archives[name], tmp_path / "unit").begin(0.3)
     variables = it.description.modelVariables
     names = [v.name for v in variables if v.causality == "output"]
-    said = {u.variable.name: {v.name for v in u.dependencies} for u in it.description.initialUnknowns}
+    said = {
+        u.variable.name: {v.name for v in u.dependencies} for u in it.description.initialUnknowns
+    }
     directly = {u.variable.name: {v.name for v in u.dependencies} for u in it.description.outputs}
     felt = {key: set() for key in names}
     before = it.get(*names)
@@ -144,7 +191,9 @@ def test_nothing_depends_on_more_than_is_said(archives, name, tmp_path):
     it.fmu.freeInstance()
     parameters = {v.name for v in variables if v.causality == "parameter"}
     assert all(directly[key] == said[key] - parameters for key in names)
-    assert sum(len(said[key] - {"time"}) for key in names) <= 1.25 * sum(len(felt[key]) for key in names)
+    assert sum(len(said[key] - {"time"}) for key in names) <= 1.25 * sum(
+        len(felt[key]) for key in names
+    )
     if name == "windy":
         assert "time" in directly["effort/O"]
         assert "time" not in directly["pose/b/x"]
@@ -153,7 +202,9 @@ def test_nothing_depends_on_more_than_is_said(archives, name, tmp_path):
 def test_the_page_has_every_name(archives):
     with zipfile.ZipFile(archives["windy"]) as archive:
         page = archive.read("documentation/index.html").decode()
-    ElementTree.fromstring(page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', ""))
+    ElementTree.fromstring(
+        page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', "")
+    )
     assert all(
         f"<code>{v.get('name')}</code>" in page
         for v in described(archives["windy"]).iter("ScalarVariable")
@@ -184,7 +235,10 @@ def test_what_is_missing_is_said_before_anything_is_written(tmp_path, monkeypatc
         patch.setitem(sys.modules, "fmpy", None)
         with pytest.raises(LagrangeCasadiError, match="needs FMPy; install it with"):
             export(slider_crank(), tmp_path / "out", fmu=True)
-        assert main(["export", str(CASES / "slider_crank"), "--out", str(tmp_path / "out"), "--fmu"]) == 2
+        assert (
+            main(["export", str(CASES / "slider_crank"), "--out", str(tmp_path / "out"), "--fmu"])
+            == 2
+        )
         assert capsys.readouterr().err.count("\n") == 1
     monkeypatch.setattr(fmu, "find_compiler", lambda: None)
     with pytest.raises(CompilerError, match="needs a C compiler"):
@@ -205,17 +259,24 @@ def test_a_compiler_that_refuses_is_quoted(tmp_path, monkeypatch):
         export(slider_crank(), tmp_path / "out", fmu=True)
 
 
-BUILDS = 'test "$1" = --version && exit 0; while [ $# -gt 0 ]; do [ "$1" = -o ] && out=$2; shift; done; '
+BUILDS = (
+    'test "$1" = --version && exit 0; while [ $# -gt 0 ]; do [ "$1" = -o ] && out=$2; shift; done; '
+)
 OTHERS = {
     "nothing that loads": "echo nothing > $out",
     "another library": "echo 'int x;' | {cc} -shared -fPIC -xc - -o $out",
-    "another version": "echo 'const char* fmi2GetVersion(void) {{ return \"3.0\"; }}' | {cc} -shared -fPIC -xc - -o $out",
+    "another version": (
+        "echo 'const char* fmi2GetVersion(void) {{ return \"3.0\"; }}' | {cc} -shared -fPIC -xc -"
+        " -o $out"
+    ),
 }
 
 
 @pytest.mark.parametrize("builds", OTHERS.values(), ids=OTHERS)
 def test_a_binary_that_does_not_load_is_not_shipped(here, tmp_path_factory, monkeypatch, builds):
-    fake_compiler(tmp_path_factory.mktemp("fake"), monkeypatch, BUILDS + builds.format(cc=shutil.which("cc")))
+    fake_compiler(
+        tmp_path_factory.mktemp("fake"), monkeypatch, BUILDS + builds.format(cc=shutil.which("cc"))
+    )
     with pytest.raises(CompilerError, match=r"the library built by .*fake-cc does not load: "):
         export(slider_crank(), here / "out", fmu=True, wanted=["effort"])
     assert not list(here.iterdir())

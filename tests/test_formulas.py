@@ -1,7 +1,8 @@
-"""The formulas themselves: the graphs' instructions in 50 digits against Newton-Euler in 50 digits, where no rounding can hide.
+"""The formulas themselves: the graphs' instructions in 50 digits against Newton-Euler in 50 digits,
+where no rounding can hide.
 
-What differs after forty digits differs in kind. Every number of a case is a parameter (:mod:`parametric`), and what constants are
-left in its graphs are taken for what they mean.
+What differs after forty digits differs in kind. Every number of a case is a parameter
+(:mod:`parametric`), and what constants are left in its graphs are taken for what they mean.
 """
 
 import sys
@@ -32,9 +33,12 @@ RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 # Of the engine, where the gas's pressure lies between table entries that are doubles.
 # Of the servo press, where its ram meets no part: what that bears is a table too.
 PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720), "servo_press": (0.0, 0.13, 0.77)}
-# Of the connecting rod the oracle has densities that doubles work out of dimensions, not to forty digits; and for the cam's right
-# angle the package takes the double nearest to it, which the oracle takes as it is, 6e-17 off. So it is with a third of a turn.
-EXACTLY = [name for name in PLANAR if name not in ("connecting_rod", "roller_cam", "planetary_gear")]
+# Of the connecting rod the oracle has densities that doubles work out of dimensions, not to forty
+# digits; and for the cam's right angle the package takes the double nearest to it, which the oracle
+# takes as it is, 6e-17 off. So it is with a third of a turn.
+EXACTLY = [
+    name for name in PLANAR if name not in ("connecting_rod", "roller_cam", "planetary_gear")
+]
 
 
 @pytest.mark.sampled(7)
@@ -50,8 +54,13 @@ def test_formulas_to_forty_digits(name, monkeypatch):
     with MP.workdps(60):
         for moment, row in zip(t, rows, strict=True):
             driven = interpret(graph.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)
-            drives = {joint: tuple(order[k] for order in driven) for k, joint in enumerate(graph.driven)}
-            expected, found = precise(scene, float(moment), drives), dict(zip(graph.names, row, strict=True))
+            drives = {
+                joint: tuple(order[k] for order in driven) for k, joint in enumerate(graph.driven)
+            }
+            expected, found = (
+                precise(scene, float(moment), drives),
+                dict(zip(graph.names, row, strict=True)),
+            )
             assert_equal(expected, found, scene.mechanism)
 
 
@@ -63,7 +72,9 @@ def assert_equal(expected, found, mechanism):
         if name.startswith("section"):
             _, link, force = name.split(":")
             k, matter = FORCES.index(force), matter_of(mechanism, mechanism.values(), link)
-            gaps = [section(found, matter, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS]
+            gaps = [
+                section(found, matter, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS
+            ]
         elif name in found:
             gaps = [found[name] - MP.mpf(value)]
         else:
@@ -75,7 +86,9 @@ def assert_equal(expected, found, mechanism):
         assert max(map(abs, gaps)) < MP.mpf(10) ** -40 * size, name
         compared.add(name.partition(":")[0])
     assert {"effort", "reaction", "pose"} <= compared
-    assert {n for n in found if n.startswith(("effort", "reaction", "pose", "multiplier"))} <= set(expected)
+    assert {n for n in found if n.startswith(("effort", "reaction", "pose", "multiplier"))} <= set(
+        expected
+    )
 
 
 @pytest.mark.parametrize(
@@ -94,14 +107,19 @@ def assert_equal(expected, found, mechanism):
 def test_what_constants_mean(x, value):
     with MP.workdps(50):
         exact = value(MP.mpf(np.pi))
-        assert meant(MP.mpf)(float(x)) == exact or abs(meant(MP.mpf)(float(x)) / exact - 1) < MP.mpf(10) ** -48
+        assert (
+            meant(MP.mpf)(float(x)) == exact
+            or abs(meant(MP.mpf)(float(x)) / exact - 1) < MP.mpf(10) ** -48
+        )
 
 
 def test_a_reference_has_the_digits_that_are_asked_for():
     scene = load_case(CASES / "rrr3").scene
     graph = derive(scene, ["effort"])
     z = np.array(graph.newton.guess)[:, None]
-    rows = {digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)}
+    rows = {
+        digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)
+    }
     for name, few, many in zip(graph.names, rows[25], rows[60], strict=True):
         if name.startswith("_gap:"):  # which is nothing but what the digits leave
             continue
@@ -114,13 +132,21 @@ def test_what_a_reference_refuses(monkeypatch):
     graph = derive(scene)
     far = np.full((len(graph.newton.guess), 1), 1.0)
     monkeypatch.setattr("lagrange_casadi.judge.reference._STEPS", 3)
-    with pytest.raises(AssemblyError, match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s",
+    ):
         reference(graph, [0.5], [0.05], z=far)
     m = Mechanism("arm")
     arm = m.link("arm", length=1, mass=1)
     m.torque("t", arm, doubled(m.coordinate(m.revolute("J", m.ground, arm))))
-    with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
+    with pytest.raises(
+        DeclarationError, match="function 'instant' cannot be followed: it calls another one"
+    ):
         reference(derive(Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 1, 2))), [0.5], [])
     monkeypatch.setitem(sys.modules, "mpmath", None)
-    with pytest.raises(LagrangeCasadiError, match=r"a reference of many digits needs mpmath; install it with: pip install"):
+    with pytest.raises(
+        LagrangeCasadiError,
+        match=r"a reference of many digits needs mpmath; install it with: pip install",
+    ):
         reference(graph, [0.5], [0.05], z=far)

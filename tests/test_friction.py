@@ -1,4 +1,6 @@
-"""Friction that follows reactions: against Newton-Euler with its law iterated, against closed forms, and over cycles."""
+"""Friction that follows reactions: against Newton-Euler with its law iterated, against closed
+forms, and over cycles.
+"""
 
 import math
 
@@ -27,11 +29,15 @@ def uniform(mass):
 
 
 class Twin:
-    """A mechanism with parameters for all its numbers, told to the package once and to the oracle for each draw."""
+    """A mechanism with parameters for all its numbers, told to the package once and to the oracle
+    for each draw.
+    """
 
     def __init__(self, name, ranges):
         self.m, self.ranges = Mechanism(name), dict(ranges)
-        self.p = {key: self.m.parameter(key, (low + high) / 2) for key, (low, high) in self.ranges.items()}
+        self.p = {
+            key: self.m.parameter(key, (low + high) / 2) for key, (low, high) in self.ranges.items()
+        }
 
     def values(self):
         return st.fixed_dictionaries({key: drawn(*bounds) for key, bounds in self.ranges.items()})
@@ -64,7 +70,13 @@ def four_bar():
     }
     m.torque("load", arm, p["load"])
     for k, joint in joints.items():
-        more = {"viscous": p["viscous"]} if k == "B" else {"static": p["static"], "stribeck": p["stribeck"]} if k == "C" else {}
+        more = (
+            {"viscous": p["viscous"]}
+            if k == "B"
+            else {"static": p["static"], "stribeck": p["stribeck"]}
+            if k == "C"
+            else {}
+        )
         m.friction(f"rub_{k}", joint, mu=p[f"mu_{k}"], radius=p[f"r_{k}"], **more)
     law = polynomial(p["angle"], p["speed"], p["spin"] / 2)
     return twin, Scene(m, {"O": law}, t=(0, 0.01, 3), xi=RATIOS, posture={"bar": 0.6, "arm": 1.6})
@@ -75,7 +87,11 @@ FOUR_BAR, FOUR_BAR_SCENE = four_bar()
 
 
 def drives(p, t):
-    return (p["angle"] + p["speed"] * t + p["spin"] / 2 * t * t, p["speed"] + p["spin"] * t, p["spin"])
+    return (
+        p["angle"] + p["speed"] * t + p["spin"] / 2 * t * t,
+        p["speed"] + p["spin"] * t,
+        p["spin"],
+    )
 
 
 def compare(result, solution, i, rubs, links):
@@ -90,7 +106,9 @@ def compare(result, solution, i, rubs, links):
         assert found.fy[i] == pytest.approx(fy, abs=1e-10 * size)
         assert (0.0 if found.mz is None else found.mz[i]) == pytest.approx(mz, abs=1e-10 * size)
     for rub in rubs:
-        assert solution.series[f"friction:rub_{rub.joint.name}:along"][i] == pytest.approx(rub.force, abs=1e-10 * size)
+        assert solution.series[f"friction:rub_{rub.joint.name}:along"][i] == pytest.approx(
+            rub.force, abs=1e-10 * size
+        )
     for link in links:
         section = solution.section(link)
         for k, ratio in enumerate(RATIOS[:2]):
@@ -112,9 +130,15 @@ def test_a_four_bar_whose_pins_rub(p):
     ]
     oracle = Oracle(bodies, joints, loads=[lambda _: [(("arm", 0.0, 0.0), 0.0, 0.0, p["load"])]])
     more = {"B": {"viscous": p["viscous"]}, "C": {"static": p["static"], "stribeck": p["stribeck"]}}
-    rubs = [Rub(joint, p[f"mu_{joint.name}"], p[f"r_{joint.name}"], **more.get(joint.name, {})) for joint in joints]
+    rubs = [
+        Rub(joint, p[f"mu_{joint.name}"], p[f"r_{joint.name}"], **more.get(joint.name, {}))
+        for joint in joints
+    ]
     for i in (0, 2):
-        guess = {name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i]) for name, *_ in BARS}
+        guess = {
+            name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i])
+            for name, *_ in BARS
+        }
         result = solve_rubbing(oracle, rubs, {"O": drives(p, solution.t[i])}, guess)
         place = oracle.places(result)
         assume(min(abs(rub.rate(place)) for rub in rubs) > 1e-6)
@@ -147,7 +171,10 @@ def slider_crank():
     m.revolute("B", rod.tip, block)
     m.prismatic("G", m.ground.at(0.0, p["offset"]), block, axis=(1, 0))
     m.force("gas", block.at(0.0, p["beside"]), x=p["gas"])
-    more = {"B": {"smooth": p["smooth"]}, "G": {"static": p["static"], "stribeck": p["stribeck"], "length": p["length"]}}
+    more = {
+        "B": {"smooth": p["smooth"]},
+        "G": {"static": p["static"], "stribeck": p["stribeck"], "length": p["length"]},
+    }
     for k, joint in m.joints.items():
         radius = {} if k == "G" else {"radius": p[f"r_{k}"]}
         m.friction(f"rub_{k}", joint, mu=p[f"mu_{k}"], **radius, **more.get(k, {}))
@@ -163,7 +190,10 @@ SLIDER_CRANK, SLIDER_CRANK_SCENE = slider_crank()
 def test_a_slider_crank_whose_pins_and_guide_rub(p):
     assume(abs(p["speed"]) > 1.0)
     solution = evaluate(SLIDER_CRANK_SCENE, parameters=p)
-    bodies = [from_density("crank", p["r"], uniform(0.7)), from_density("rod", p["l"], uniform(1.3))]
+    bodies = [
+        from_density("crank", p["r"], uniform(0.7)),
+        from_density("rod", p["l"], uniform(1.3)),
+    ]
     bodies.append(Body("block", 0.8, 0.05, (0.01, 0.02), 0.001))
     joints = [
         Joint("O", "revolute", ("ground", 0.0, 0.0), ("crank", 0.0, 0.0)),
@@ -171,19 +201,29 @@ def test_a_slider_crank_whose_pins_and_guide_rub(p):
         Joint("B", "revolute", ("rod", p["l"], 0.0), ("block", 0.0, 0.0)),
         Joint("G", "prismatic", ("ground", 0.0, p["offset"]), ("block", 0.0, 0.0)),
     ]
-    oracle = Oracle(bodies, joints, loads=[lambda _: [(("block", 0.0, p["beside"]), p["gas"], 0.0, 0.0)]])
-    more = {"B": {"smooth": p["smooth"]}, "G": {"static": p["static"], "stribeck": p["stribeck"], "length": p["length"]}}
+    oracle = Oracle(
+        bodies, joints, loads=[lambda _: [(("block", 0.0, p["beside"]), p["gas"], 0.0, 0.0)]]
+    )
+    more = {
+        "B": {"smooth": p["smooth"]},
+        "G": {"static": p["static"], "stribeck": p["stribeck"], "length": p["length"]},
+    }
     rubs = [Rub(j, p[f"mu_{j.name}"], p.get(f"r_{j.name}"), **more.get(j.name, {})) for j in joints]
     for i in (0, 2):
         names = ("crank", "rod", "block")
-        guess = {name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i]) for name in names}
+        guess = {
+            name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i])
+            for name in names
+        }
         result = solve_rubbing(oracle, rubs, {"O": drives(p, solution.t[i])}, guess)
         assume(min(abs(rub.rate(oracle.places(result))) for rub in rubs) > 1e-6)
         compare(result, solution, i, rubs, ("crank", "rod"))
 
 
 def inverted():
-    """A block on a crank's pin that slides along a rocker; the rocker carries the line, so friction travels along it."""
+    """A block on a crank's pin that slides along a rocker; the rocker carries the line, so friction
+    travels along it.
+    """
     ranges = {
         "r": (0.05, 0.12),
         "depth": (0.2, 0.35),
@@ -207,7 +247,9 @@ def inverted():
     m.friction("rub_S", m.joints["S"], mu=p["mu_S"], length=p["length"])
     m.friction("rub_P", m.joints["P"], mu=p["mu_P"], radius=p["r_P"])
     posture = {"rocker": math.pi / 2, "block": math.pi / 2}
-    return twin, Scene(m, {"O": polynomial(p["angle"], p["speed"])}, t=(0, 0.01, 3), xi=RATIOS, posture=posture)
+    return twin, Scene(
+        m, {"O": polynomial(p["angle"], p["speed"])}, t=(0, 0.01, 3), xi=RATIOS, posture=posture
+    )
 
 
 INVERTED, INVERTED_SCENE = inverted()
@@ -234,15 +276,22 @@ def test_friction_travels_along_a_moving_guide(p):
     rubs = [Rub(joints[3], p["mu_S"], length=p["length"]), Rub(joints[1], p["mu_P"], p["r_P"])]
     for i in (0, 2):
         names = ("crank", "rocker", "block")
-        guess = {name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i]) for name in names}
-        result = solve_rubbing(oracle, rubs, {"O": (p["angle"] + p["speed"] * solution.t[i], p["speed"], 0.0)}, guess)
+        guess = {
+            name: (solution.pose(name).x[i], solution.pose(name).y[i], solution.pose(name).angle[i])
+            for name in names
+        }
+        result = solve_rubbing(
+            oracle, rubs, {"O": (p["angle"] + p["speed"] * solution.t[i], p["speed"], 0.0)}, guess
+        )
         assume(min(abs(rub.rate(oracle.places(result))) for rub in rubs) > 1e-6)
         compare(result, solution, i, rubs, ("crank", "rocker"))
 
 
 def sled(slope, mu, speed):
     m = Mechanism("sled")
-    way = m.prismatic("way", m.ground, m.point_mass("sled", 3.0), axis=(math.cos(slope), math.sin(slope)))
+    way = m.prismatic(
+        "way", m.ground, m.point_mass("sled", 3.0), axis=(math.cos(slope), math.sin(slope))
+    )
     m.friction("rub", way, mu=mu)
     return evaluate(Scene(m, {"way": polynomial(0.0, speed)}, t=(0, 1, 3)))
 
@@ -250,17 +299,24 @@ def sled(slope, mu, speed):
 @pytest.mark.parametrize("slope", [0.0, 0.1, 0.6])
 @pytest.mark.parametrize("mu", [0.0, 0.2, 0.9])
 def test_a_sled_on_a_slope(slope, mu):
-    """Up: m g (sin + mu cos). Down: m g (sin - mu cos), which is a push where the slope holds it by itself (mu > tan)."""
+    """Up: m g (sin + mu cos).
+
+    Down: m g (sin - mu cos), which is a push where the slope holds it by itself (mu > tan).
+    """
     for speed in (0.5, -0.5):
         solution = sled(slope, mu, speed)
         weight = 3.0 * 9.81 * (math.sin(slope) + math.copysign(mu, speed) * math.cos(slope))
         assert solution.effort("way") == pytest.approx(weight, abs=1e-13)
-        assert solution.series["friction:rub:loss"] == pytest.approx(0.5 * mu * 3.0 * 9.81 * math.cos(slope), abs=1e-13)
+        assert solution.series["friction:rub:loss"] == pytest.approx(
+            0.5 * mu * 3.0 * 9.81 * math.cos(slope), abs=1e-13
+        )
         assert solution.certified
 
 
 def test_the_friction_circle_of_a_journal_bearing():
-    """A light arm with a weight: the reaction passes beside the journal's middle, touching a circle of radius mu r."""
+    """A light arm with a weight: the reaction passes beside the journal's middle, touching a circle
+    of radius mu r.
+    """
     m = Mechanism("hoist")
     arm = m.link("arm", length=0.5, mass=0.0)
     O = m.revolute("O", m.ground, arm)
@@ -272,13 +328,17 @@ def test_the_friction_circle_of_a_journal_bearing():
     # The weight's arm about the point where a plumb line touches the circle on the far side.
     weight = 20.0 * 9.81
     assert load == pytest.approx(weight, rel=1e-4)
-    assert solution.effort("O") == pytest.approx(weight * 0.5 * np.cos(angle) + 0.12 * 0.03 * load, rel=1e-12)
+    assert solution.effort("O") == pytest.approx(
+        weight * 0.5 * np.cos(angle) + 0.12 * 0.03 * load, rel=1e-12
+    )
 
 
 def test_over_a_turn_the_drive_gives_what_friction_takes():
-    """A slider-crank at an even speed, with a constant push: over a whole turn nothing else takes or gives work.
+    """A slider-crank at an even speed, with a constant push: over a whole turn nothing else takes
+    or gives work.
 
-    The powers jump where the slide turns back, their sum with the change of energy does not: by trapezia it is exact to rounding.
+    The powers jump where the slide turns back, their sum with the change of energy does not: by
+    trapezia it is exact to rounding.
     """
     p = {name: parameter.default for name, parameter in SLIDER_CRANK.m.parameters.items()} | {
         "speed": 25.0,
@@ -299,12 +359,18 @@ def test_over_a_turn_the_drive_gives_what_friction_takes():
 
 
 def test_what_no_friction_moves_costs_what_it_did():
-    """Frictions that nothing wanted depends on are not solved, and none is where none is declared."""
+    """Frictions that nothing wanted depends on are not solved, and none is
+    where none is declared.
+    """
     scene = SLIDER_CRANK_SCENE
     assert derive(scene, ["motion", "load:gas"]).checks("rest") == {}
     assert len(derive(scene, ["effort"]).checks("rest")) == 3  # the smoothed one is never at rest
     graph = derive(scene, ["load:rub_O"])
-    assert {str(output) for output in graph.outputs} >= {"load:rub_O:mz", "friction:rub_O:along", "friction:rub_O:loss"}
+    assert {str(output) for output in graph.outputs} >= {
+        "load:rub_O:mz",
+        "friction:rub_O:along",
+        "friction:rub_O:loss",
+    }
 
 
 def declared(**told):
@@ -325,7 +391,10 @@ def declared(**told):
     ("told", "words"),
     [
         ({"joint": "pin", "mu": 0.1}, "joint 'pin' turns; expected radius"),
-        ({"joint": "pin", "mu": 0.1, "radius": 0.01, "length": 0.1}, "turns and has no length of guidance; valid: radius"),
+        (
+            {"joint": "pin", "mu": 0.1, "radius": 0.01, "length": 0.1},
+            "turns and has no length of guidance; valid: radius",
+        ),
         ({"joint": "pin", "mu": -0.1, "radius": 0.01}, "mu must be at least 0, got -0.1"),
         ({"joint": "pin", "mu": 0.1, "radius": 0.0}, "radius must be positive, got 0"),
         ({"joint": "pin"}, "expected mu, a friction coefficient, or viscous"),
@@ -333,14 +402,25 @@ def declared(**told):
         ({"joint": "pin", "mu": 0.1, "radius": 0.01, "static": 0.2}, "static needs stribeck"),
         ({"joint": "pin", "mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck goes with static"),
         ({"joint": "guide", "mu": 0.1}, "bears a moment; expected length"),
-        ({"joint": "guide", "mu": 0.1, "radius": 0.1, "length": 0.1}, "slides and has no radius; valid: length"),
+        (
+            {"joint": "guide", "mu": 0.1, "radius": 0.1, "length": 0.1},
+            "slides and has no radius; valid: length",
+        ),
         ({"joint": "slot", "mu": 0.1, "length": 0.1}, "bears no moment, and needs no length"),
-        ({"joint": "ball_pin", "mu": 0.1, "radius": 0.01}, "'ball' is a point mass and has no direction"),
-        ({"joint": "weld", "mu": 0.1}, "joint 'weld' is weld; in a plane these may rub: revolute, prismatic, slot"),
+        (
+            {"joint": "ball_pin", "mu": 0.1, "radius": 0.01},
+            "'ball' is a point mass and has no direction",
+        ),
+        (
+            {"joint": "weld", "mu": 0.1},
+            "joint 'weld' is weld; in a plane these may rub: revolute, prismatic, slot",
+        ),
     ],
 )
 def test_mistakes_are_told(told, words):
-    with pytest.raises(DeclarationError, match=f"friction 'rub': .*{words}|friction 'rub': {words}"):
+    with pytest.raises(
+        DeclarationError, match=f"friction 'rub': .*{words}|friction 'rub': {words}"
+    ):
         declared(**told)
 
 
@@ -353,6 +433,9 @@ def test_its_name_is_one_of_a_load():
 
 
 def test_numbers_that_parameters_make_impossible_are_told():
-    for name, value, words in (("r_O", 0.0, "radius must be positive, got 0"), ("mu_A", -0.1, "mu must be at least 0, got -0.1")):
+    for name, value, words in (
+        ("r_O", 0.0, "radius must be positive, got 0"),
+        ("mu_A", -0.1, "mu must be at least 0, got -0.1"),
+    ):
         with pytest.raises(ParameterError, match=f"friction 'rub_{name[-1]}': {words}"):
             evaluate(SLIDER_CRANK_SCENE, parameters={name: value})

@@ -16,10 +16,14 @@ MASS, G, RADIUS = 50.0, 9.81, 0.012
 
 
 def jack(lead, mu, **more):
-    """A spindle that turns upright, and a guided nut that it lifts; thread and thrust bearing rub."""
+    """A spindle that turns upright, and a guided nut that it lifts;
+    thread and thrust bearing rub.
+    """
     m = SpatialMechanism("jack")
     p = {"lead": m.parameter("lead", lead, "m"), "mu": m.parameter("mu", mu)}
-    spindle = m.link("spindle", length=0.3, mass=1.0, centre=(0.15, 0, 0), inertia=(1e-3, 1e-2, 1e-2))
+    spindle = m.link(
+        "spindle", length=0.3, mass=1.0, centre=(0.15, 0, 0), inertia=(1e-3, 1e-2, 1e-2)
+    )
     nut = m.link("nut", length=0.1, mass=MASS, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1))
     m.revolute("O", m.ground, spindle, axis=(0, 0, 1), turned=[("y", "-90 deg")])
     m.prismatic("guide", m.ground, nut, axis=(0, 0, 1))
@@ -32,7 +36,9 @@ def jack(lead, mu, **more):
 @pytest.mark.parametrize("lead", [0.004, 0.02, -0.004, -0.02])
 @pytest.mark.parametrize("mu", [0.0, 0.08, 0.3])
 def test_the_torque_of_a_lifting_screw(lead, mu):
-    """W r tan(angle + phi) to lift, W r tan(phi - angle) to lower (Shigley): where phi > angle the screw locks itself."""
+    """W r tan(angle + phi) to lift, W r tan(phi - angle) to lower (Shigley): where phi > angle the
+    screw locks itself.
+    """
     scene = Scene(jack(lead, mu), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
     angle, phi, weight = math.atan(abs(lead) / math.tau / RADIUS), math.atan(mu), MASS * G
     for speed in (3.0, -3.0):
@@ -48,7 +54,9 @@ def test_the_torque_of_a_lifting_screw(lead, mu):
         if lifts:
             given, gained = solution.effort("O") * speed, weight * solution.motion("guide").rate
             assert gained / given == pytest.approx(efficiency, rel=1e-11)
-            assert solution.series["friction:flanks:loss"] == pytest.approx(given - gained, rel=1e-9, abs=1e-9)
+            assert solution.series["friction:flanks:loss"] == pytest.approx(
+                given - gained, rel=1e-9, abs=1e-9
+            )
         else:
             assert (driven[0] > 0.0) == (phi > angle)
 
@@ -56,14 +64,19 @@ def test_the_torque_of_a_lifting_screw(lead, mu):
 def test_a_collar_bears_the_thrust():
     m = SpatialMechanism("upright")
     disc = m.link("disc", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1))
-    m.friction("collar", m.revolute("O", m.ground, disc, axis=(0, 0, 1)), mu=0.2, radius=0.02, length=0.1)
+    m.friction(
+        "collar", m.revolute("O", m.ground, disc, axis=(0, 0, 1)), mu=0.2, radius=0.02, length=0.1
+    )
     solution = evaluate(Scene(m, {"O": polynomial(0, 3.0)}, t=(0, 1, 3)))
     assert solution.certified
     assert solution.effort("O") == pytest.approx(0.2 * 0.02 * 7.0 * G, rel=1e-12)
 
 
 def test_where_equilibrium_leaves_bearings_open_so_is_their_friction():
-    """The spindle and the guided nut hold each other across the thread: nothing tells how hard. The thread's own force is told."""
+    """The spindle and the guided nut hold each other across the thread: nothing tells how hard.
+
+    The thread's own force is told.
+    """
     m = jack(0.004, 0.1)
     m.friction("bearings", m.joints["O"], mu=0.2, radius=0.02, length=0.1)
     solution = evaluate(Scene(m, {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0}))
@@ -90,10 +103,19 @@ def test_two_bearings_of_a_shaft_that_carries_a_wheel_beside_them(arm):
 
 
 def test_a_plane_in_space_rubs_as_in_the_plane():
-    """A pendulum that is driven about a level axis, its weight in the middle between two bearings."""
+    """A pendulum that is driven about a level axis, its weight in
+    the middle between two bearings.
+    """
     m = SpatialMechanism("level")
     arm = m.link("arm", length=0.5, mass=2.0)
-    m.friction("rub", m.revolute("O", m.ground, arm, axis=(0, 1, 0)), mu=0.1, radius=0.02, length=0.2, viscous=0.3)
+    m.friction(
+        "rub",
+        m.revolute("O", m.ground, arm, axis=(0, 1, 0)),
+        mu=0.1,
+        radius=0.02,
+        length=0.2,
+        viscous=0.3,
+    )
     solution = evaluate(Scene(m, {"O": polynomial(0.2, 3.0, 5.0)}, t=(0, 0.5, 11)))
     assert solution.certified
     reaction, rate = solution.reaction("O"), solution.motion("O").rate
@@ -108,13 +130,19 @@ def test_a_file_holds_it(tmp_path):
     save(solution, tmp_path / "jack.h5")
     again = load(tmp_path / "jack.h5")
     assert again.certified
-    assert again.series["friction:flanks:along"].tolist() == solution.series["friction:flanks:along"].tolist()
+    assert (
+        again.series["friction:flanks:along"].tolist()
+        == solution.series["friction:flanks:along"].tolist()
+    )
     assert again.description == solution.description
 
 
 def test_what_no_couple_drives_is_refused():
     scene = Scene(jack(0.02, 0.1), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
-    with pytest.raises(ParameterError, match="friction 'flanks': mu times the lead of a radian must be less than radius"):
+    with pytest.raises(
+        ParameterError,
+        match="friction 'flanks': mu times the lead of a radian must be less than radius",
+    ):
         evaluate(scene, parameters={"mu": 4.0})
 
 
@@ -124,7 +152,10 @@ def test_mistakes_in_space_are_told():
     m = jack(0.01, 0.1)
     for joint, words in (
         ("O", "bears a moment; expected length, from one bearing"),
-        ("guide", "friction 'more': joint 'guide' bears a moment; expected length, that of its guidance"),
+        (
+            "guide",
+            "friction 'more': joint 'guide' bears a moment; expected length, that of its guidance",
+        ),
     ):
         found: Joint = m.joints[joint]
         with pytest.raises(DeclarationError, match=words):

@@ -1,4 +1,6 @@
-"""Where friction has no result, or no one result: jams, rest, reversals; the same for values, designs and exported C."""
+"""Where friction has no result, or no one result: jams, rest, reversals; the same for values,
+designs and exported C.
+"""
 
 import math
 
@@ -22,7 +24,9 @@ every = pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
 
 
 def pushed_beside():
-    """A block on a guide, pushed along it at an arm: it locks where the guide is shorter than 2 mu times the arm."""
+    """A block on a guide, pushed along it at an arm: it locks where the guide is shorter than 2 mu
+    times the arm.
+    """
     m = Mechanism("drawer")
     mu, length = m.parameter("mu", 0.2), m.parameter("length", 0.1, "m")
     block = m.link("block", length=0.3, mass=2.0)
@@ -45,10 +49,16 @@ def test_a_drawer_pushed_beside_its_guide(backend):
         assert solution.certified
         force = WEIGHT / (1 - 2 * mu * ARM / length)
         assert solution.effort("O") == pytest.approx(force, rel=1e-12 / (1 - 2 * mu * ARM / length))
-        assert solution.series["friction:rub:along"] == pytest.approx(WEIGHT - force, rel=1e-10, abs=1e-12)
-        assert solution.series["friction:rub:loss"] == pytest.approx(0.5 * (force - WEIGHT), rel=1e-10, abs=1e-12)
+        assert solution.series["friction:rub:along"] == pytest.approx(
+            WEIGHT - force, rel=1e-10, abs=1e-12
+        )
+        assert solution.series["friction:rub:loss"] == pytest.approx(
+            0.5 * (force - WEIGHT), rel=1e-10, abs=1e-12
+        )
     for length in (0.08, 0.0799999, 0.05):
-        with pytest.raises(AssemblyError, match=r"friction 'rub': the mechanism jams at t = 0 s, where O = 0 m: "):
+        with pytest.raises(
+            AssemblyError, match=r"friction 'rub': the mechanism jams at t = 0 s, where O = 0 m: "
+        ):
             evaluate(scene, parameters={"length": length}, backend=backend)
 
 
@@ -100,9 +110,13 @@ TURN = 2 * math.pi / 30.0
 
 @every
 def test_at_a_dead_centre_the_sign_is_that_of_the_instants_right_after(backend):
-    """The end of a stroke is an instant among others: it has the values right after, on either side of the stroke."""
+    """The end of a stroke is an instant among others: it has the values right after, on either side
+    of the stroke.
+    """
     scene = reciprocating(polynomial(0.0, 30.0), t=(0, TURN, 9))
-    solution, after = (evaluate(scene, backend=backend, t=t) for t in ((0, TURN, 9), (1e-11, TURN + 1e-11, 9)))
+    solution, after = (
+        evaluate(scene, backend=backend, t=t) for t in ((0, TURN, 9), (1e-11, TURN + 1e-11, 9))
+    )
     assert solution.certified
     assert not solution.resting.any()
     assert solution.motion("bore").rate[[0, 4, 8]] == pytest.approx(0.0, abs=1e-12)
@@ -116,10 +130,15 @@ def test_at_a_dead_centre_the_sign_is_that_of_the_instants_right_after(backend):
 @every
 def test_where_the_drive_itself_turns_back_too(backend):
     """Its rate there is what rounding leaves of a cosine, of any sign."""
-    law, t = harmonic(0.4, 0.3, 5.0, 0.1), [(math.pi * (0.5 + k) - 0.1) / (2 * math.pi * 5.0) for k in range(8)]
+    law, t = (
+        harmonic(0.4, 0.3, 5.0, 0.1),
+        [(math.pi * (0.5 + k) - 0.1) / (2 * math.pi * 5.0) for k in range(8)],
+    )
     for at in t:
         scene = reciprocating(law, t=(at, at + 1.0, 2))
-        solution, after = (evaluate(scene, backend=backend, t=(one, one + 1.0, 2)) for one in (at, at + 1e-9))
+        solution, after = (
+            evaluate(scene, backend=backend, t=(one, one + 1.0, 2)) for one in (at, at + 1e-9)
+        )
         assert abs(solution.motion("O").rate[0]) < 1e-12
         for name in ("friction:ring:along", "friction:pin:along", "effort:O"):
             assert solution.array(name)[0] == pytest.approx(after.array(name)[0], rel=1e-6)
@@ -132,7 +151,9 @@ def start_and_stop(t):
 
 
 @pytest.mark.sampled(4)
-@pytest.mark.parametrize("options", [{"backend": "lanes"}, {"backend": "c"}, {"backend": "vm"}, {"precision": "single"}])
+@pytest.mark.parametrize(
+    "options", [{"backend": "lanes"}, {"backend": "c"}, {"backend": "vm"}, {"precision": "single"}]
+)
 def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     scene = reciprocating(expression(start_and_stop), t=(0, 1, 41))
     solution = evaluate(scene, **options)
@@ -140,7 +161,13 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     resting[0] = True
     assert solution.resting.tolist() == resting.tolist()
     assert solution.certified
-    for name in ("effort:O", "friction:ring:along", "friction:pin:loss", "reaction:bore:fy", "load:pin:mz"):
+    for name in (
+        "effort:O",
+        "friction:ring:along",
+        "friction:pin:loss",
+        "reaction:bore:fy",
+        "load:pin:mz",
+    ):
         assert np.isnan(solution.array(name)[resting]).all(), name
         assert np.isfinite(solution.array(name)[~resting]).all(), name
         assert np.isfinite(solution.peak(name).value), name
@@ -161,8 +188,12 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
 
 @pytest.mark.parametrize("backend", ["lanes", "vm", pytest.param("c", marks=pytest.mark.long)])
 def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend):
-    """As a run tells them, between the instants too; what is at rest throughout has none, and what does not rub has all."""
-    scene = reciprocating(expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion", "section:rod"])
+    """As a run tells them, between the instants too; what is at rest throughout has none, and what
+    does not rub has all.
+    """
+    scene = reciprocating(
+        expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion", "section:rod"]
+    )
     designs = DesignEngine.of(scene, rung=Rung(backend))
     found = designs.evaluate(np.array([[0.1]]))
     assert found.status.tolist() == [Status.OK]
@@ -170,7 +201,9 @@ def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend
     names = [name for name in designs.quantities if not name.startswith("section")]
     for peak in refine(scene, alone, [*names, "section:rod:axial"]):
         k = designs.quantities.index(peak.name)
-        assert abs(found.value[0, k]) == pytest.approx(abs(peak.value), rel=1e-9, abs=1e-12), peak.name
+        assert abs(found.value[0, k]) == pytest.approx(abs(peak.value), rel=1e-9, abs=1e-12), (
+            peak.name
+        )
         assert abs(peak.value) >= abs(alone.peak(peak.name).value) * (1 - 1e-12), peak.name
     effort = alone.statistics("effort:O")
     moving = alone.effort("O")[~alone.resting]
@@ -178,7 +211,9 @@ def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend
     assert effort.mean == pytest.approx(np.trapezoid(moving) / (moving.size - 1), rel=1e-12)
     assert found.mean[0, 0] == pytest.approx(effort.mean, rel=1e-9)
     assert found.rms[0, 0] == pytest.approx(effort.rms, rel=1e-9)
-    designs_at_rest = DesignEngine.of(scene, t=(0.6, 0.9, 21), rung=Rung(backend)).evaluate(np.array([[0.1]]))
+    designs_at_rest = DesignEngine.of(scene, t=(0.6, 0.9, 21), rung=Rung(backend)).evaluate(
+        np.array([[0.1]])
+    )
     assert designs_at_rest.status.tolist() == [Status.OK]
     assert np.isnan(designs_at_rest.value[0, designs.quantities.index("effort:O")])
     assert np.isfinite(designs_at_rest.value[0, designs.quantities.index("motion:O")])
@@ -190,10 +225,15 @@ def test_peaks_and_means_of_a_design_are_those_of_the_instants_that_move(backend
 def test_prepared_scenes_and_designs_tell_the_series_of_what_comes_to_rest(backend):
     """As a single evaluation does: numbers where it moves, none where it rests."""
     scene = reciprocating(expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion"])
-    alone, ready = evaluate(scene, parameters={"mu": 0.1}, backend=backend), prepare(scene, backend=backend)
+    alone, ready = (
+        evaluate(scene, parameters={"mu": 0.1}, backend=backend),
+        prepare(scene, backend=backend),
+    )
     series = ready(mu=0.1)
     for name in ("effort:O", "motion:bore"):
-        assert series[name].tolist() == pytest.approx(alone.array(name).tolist(), rel=1e-12, abs=1e-12, nan_ok=True)
+        assert series[name].tolist() == pytest.approx(
+            alone.array(name).tolist(), rel=1e-12, abs=1e-12, nan_ok=True
+        )
     assert np.isnan(series["effort:O"]).tolist() == alone.resting.tolist()
     found = ready.designs(np.array([[0.1], [0.2]]), histories=True)
     assert found.status.tolist() == [Status.OK, Status.OK]
@@ -204,8 +244,17 @@ def test_prepared_scenes_and_designs_tell_the_series_of_what_comes_to_rest(backe
 
 
 def test_a_sweep_keeps_the_histories_of_what_comes_to_rest(tmp_path):
-    scene = reciprocating(expression(start_and_stop), t=(0, 1, 21), wanted=["effort", "section:rod"])
-    found = sweep(scene, {"mu": [0.1, 0.2]}, keep="histories", xi=(0, 1, 2), out=tmp_path / "rest.h5", backend="vm")
+    scene = reciprocating(
+        expression(start_and_stop), t=(0, 1, 21), wanted=["effort", "section:rod"]
+    )
+    found = sweep(
+        scene,
+        {"mu": [0.1, 0.2]},
+        keep="histories",
+        xi=(0, 1, 2),
+        out=tmp_path / "rest.h5",
+        backend="vm",
+    )
     assert check_sweep(tmp_path / "rest.h5") == []
     assert found["status"].tolist() == [Status.OK] * 2
     for name in ("effort:O", "section:rod:axial"):
@@ -220,7 +269,11 @@ def test_a_sweep_keeps_the_histories_of_what_comes_to_rest(tmp_path):
 def test_a_jam_is_told_before_rest(backend):
     """Whichever comes first: at rest a design has a series, and in a jam it has none."""
     scene = pushed_beside()
-    scene = Scene(scene.mechanism, {"O": expression(lambda t: 0.1 * ca.fmax(t - 0.05, 0.0) ** 3)}, t=(0, 0.1, 9))
+    scene = Scene(
+        scene.mechanism,
+        {"O": expression(lambda t: 0.1 * ca.fmax(t - 0.05, 0.0) ** 3)},
+        t=(0, 0.1, 9),
+    )
     designs = DesignEngine.of(scene, rung=Rung(backend))
     found = designs.evaluate(np.array([[0.2, 0.1], [0.2, 0.05]]), histories=True)
     assert found.status.tolist() == [Status.OK, Status.JAMS]
@@ -229,7 +282,9 @@ def test_a_jam_is_told_before_rest(backend):
 
 
 def test_what_never_moves_is_open_and_what_bears_nothing_does_not_rub():
-    """A bar held by two guides beside a crank that turns; and a weightless tongue that follows it in a slot."""
+    """A bar held by two guides beside a crank that turns; and a weightless tongue that follows it
+    in a slot.
+    """
     m = Mechanism("held")
     crank, bar, block = (
         m.link("crank", length=0.1, mass=1.0),
@@ -239,11 +294,15 @@ def test_what_never_moves_is_open_and_what_bears_nothing_does_not_rub():
     m.friction("drive", m.revolute("O", m.ground, crank), mu=0.1, radius=0.01)
     m.prismatic("one", m.ground.at(0.5, 0.0), bar, axis=(1, 0))
     m.friction("pin", m.revolute("P", bar.tip, block), mu=0.1, radius=0.01)
-    m.friction("held", m.prismatic("two", m.ground.at(0.9, 0.0), block, axis=(0, 1)), mu=0.1, length=0.05)
+    m.friction(
+        "held", m.prismatic("two", m.ground.at(0.9, 0.0), block, axis=(0, 1)), mu=0.1, length=0.05
+    )
     tongue = m.link("tongue", length=0.5, mass=0.0)
     m.revolute("Q", crank.tip, tongue)
     m.friction("tip", m.slot("S", m.ground.at(0.0, -0.2), tongue.at(0.4), axis=(1, 0)), mu=0.1)
-    solution = evaluate(Scene(m, {"O": polynomial(0.2, 3.0)}, t=(0, 0.2, 5), posture={"tongue": -1.0}), backend="vm")
+    solution = evaluate(
+        Scene(m, {"O": polynomial(0.2, 3.0)}, t=(0, 0.2, 5), posture={"tongue": -1.0}), backend="vm"
+    )
     assert solution.certified
     assert np.isnan(solution.series["friction:pin:along"]).all()
     assert np.isnan(solution.series["friction:held:along"]).all()
@@ -278,15 +337,25 @@ def test_smoothed_friction_passes_through_rest():
     assert solution.certified
     rate = solution.motion("O").rate
     size = 0.1 * 0.02 * np.hypot(solution.reaction("O").fx, solution.reaction("O").fy)
-    assert solution.series["friction:rub:along"] == pytest.approx(-np.tanh(rate / 0.5) * size, abs=1e-15)
+    assert solution.series["friction:rub:along"] == pytest.approx(
+        -np.tanh(rate / 0.5) * size, abs=1e-15
+    )
 
 
 def test_peaks_beside_a_reversal_are_found():
-    """The largest effort of a cycle is just before the friction turns round, between two instants."""
+    """The largest effort of a cycle is just before the friction turns
+    round, between two instants.
+    """
     scene = reciprocating(polynomial(0.05, 30.0), t=(0, TURN, 62))
     solution = evaluate(scene, backend="vm")
     dense = evaluate(scene, t=(0, TURN, 20001), certificate=False)
-    names = ["effort:O", "friction:ring:along", "friction:ring:loss", "section:rod:axial", "reaction:bore:resultant"]
+    names = [
+        "effort:O",
+        "friction:ring:along",
+        "friction:ring:loss",
+        "section:rod:axial",
+        "reaction:bore:resultant",
+    ]
     found = refine(scene, solution, names)
     designs = DesignEngine.of(scene, rung=Rung("c"))
     row = designs.evaluate(np.array([[0.15]])).value[0]
@@ -305,7 +374,9 @@ def test_where_the_drive_itself_turns_back_the_sign_is_that_of_its_acceleration(
     m.friction("rub", m.revolute("O", m.ground, arm), mu=0.1, radius=0.02)
     m.force("pull", arm.base, x=100.0)
     top = 0.25 - 0.4 / math.tau
-    solution = evaluate(Scene(m, {"O": harmonic(0.3, 1.0, 1.0, 0.4)}, t=(top, top + 8.0, 17)), backend="vm")
+    solution = evaluate(
+        Scene(m, {"O": harmonic(0.3, 1.0, 1.0, 0.4)}, t=(top, top + 8.0, 17)), backend="vm"
+    )
     assert solution.certified
     assert np.abs(solution.motion("O").rate).max() < 1e-12
     found = solution.series["friction:rub:along"]

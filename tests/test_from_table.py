@@ -1,4 +1,6 @@
-"""The table rung as a user has it: the graph's numbers within what it claims, in both precisions, after many turns."""
+"""The table rung as a user has it: the graph's numbers within what it claims, in both precisions,
+after many turns.
+"""
 
 from pathlib import Path
 
@@ -16,12 +18,22 @@ CLAIM = 3.0  # what a table claims is what it was seen to miss halfway between i
 def gaps(exact, read):
     """By quantity: how far it is off, and the peak."""
     for name in exact.names():
-        yield name, np.max(np.abs(exact.array(name) - read.array(name))), np.max(np.abs(exact.array(name)))
+        yield (
+            name,
+            np.max(np.abs(exact.array(name) - read.array(name))),
+            np.max(np.abs(exact.array(name))),
+        )
 
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize(
-    "rung", [{"table": 1e-9}, {"table": 64}, {"table": 1e-6, "backend": "vm"}, {"table": 64, "precision": "single"}]
+    "rung",
+    [
+        {"table": 1e-9},
+        {"table": 64},
+        {"table": 1e-6, "backend": "vm"},
+        {"table": 64, "precision": "single"},
+    ],
 )
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "andrews_squeezer"])
 def test_a_table_is_right_within_what_it_claims(name, rung):
@@ -29,7 +41,10 @@ def test_a_table_is_right_within_what_it_claims(name, rung):
     exact, read = evaluate(scene), evaluate(scene, **rung)
     for quantity, gap, _ in gaps(exact, read):
         assert gap <= CLAIM * read.errors[quantity] + exact.errors[quantity], quantity
-    assert max(residuals.max() for name, residuals in read.certificate.items() if name != "condition") < 1e-5
+    assert (
+        max(residuals.max() for name, residuals in read.certificate.items() if name != "condition")
+        < 1e-5
+    )
 
 
 def test_an_accuracy_is_kept():
@@ -38,7 +53,12 @@ def test_an_accuracy_is_kept():
     for accuracy in (1e-4, 1e-8, 1e-11):
         read = evaluate(scene, table=accuracy)
         assert (
-            max(gap / peak for name, gap, peak in gaps(exact, read) if peak and name.startswith(("eff", "rea", "sec"))) < accuracy
+            max(
+                gap / peak
+                for name, gap, peak in gaps(exact, read)
+                if peak and name.startswith(("eff", "rea", "sec"))
+            )
+            < accuracy
         )
 
 
@@ -64,19 +84,32 @@ def test_angles_count_turns():
 
 
 def test_the_bytes_do_not_depend_on_the_threads():
-    one, two = (evaluate(slider_crank(["effort"]), t=(0, 0.08, 70_001), table=64, threads=threads) for threads in (1, 3))
+    one, two = (
+        evaluate(slider_crank(["effort"]), t=(0, 0.08, 70_001), table=64, threads=threads)
+        for threads in (1, 3)
+    )
     assert one.effort("O").tobytes() == two.effort("O").tobytes()
 
 
 def test_what_cannot_be_tabulated_is_refused_with_the_reason():
     arm, shaper = (load_case(CASES / name).scene for name in ("arm", "quick_return"))
     with pytest.raises(
-        DeclarationError, match="table: expected one driven joint, whose angle decides all, got 'shoulder', 'elbow', 'wrist'"
+        DeclarationError,
+        match=(
+            "table: expected one driven joint, whose angle decides all, got 'shoulder', 'elbow',"
+            " 'wrist'"
+        ),
     ):
         evaluate(arm, table=64)
-    with pytest.raises(DeclarationError, match=r"table: expected columns quadratic in the rate of joint 'O', but .* 'load:cut:fx'"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"table: expected columns quadratic in the rate of joint 'O', but .* 'load:cut:fx'",
+    ):
         evaluate(shaper, table=64)
-    with pytest.raises(DeclarationError, match=r"table: an accuracy of 1e-09 is not reached; the best is 0\.000.*, with 16384"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"table: an accuracy of 1e-09 is not reached; the best is 0\.000.*, with 16384",
+    ):
         evaluate(load_case(CASES / "engine").scene, table=1e-9)
 
 

@@ -1,4 +1,6 @@
-"""Gears that mesh in a plane: closed forms, trains against vector equilibrium, and what is refused."""
+"""Gears that mesh in a plane: closed forms, trains against vector equilibrium,
+and what is refused.
+"""
 
 import math
 import random
@@ -27,7 +29,9 @@ def pair(inside=False, turn=0.7, **told):
     first = wheel(m, "first", radius=r1, mass=0.8)
     second = wheel(m, "second", radius=r2, mass=2.0)
     m.revolute("A", m.ground.at(0.1, -0.05), first)
-    m.revolute("B", m.ground.at(0.1 + apart * math.cos(turn), -0.05 + apart * math.sin(turn)), second)
+    m.revolute(
+        "B", m.ground.at(0.1 + apart * math.cos(turn), -0.05 + apart * math.sin(turn)), second
+    )
     mesh = gears(m, "mesh", first, second, teeth=(20, z), module=0.003, **told)
     m.torque("load", second, load_)
     return m, mesh
@@ -37,8 +41,9 @@ def pair(inside=False, turn=0.7, **told):
 @pytest.mark.parametrize("moment", [60.0, -25.0])
 @pytest.mark.parametrize("teeth", [40.0, 51.0])
 def test_a_pair_bears_the_force_of_its_teeth(inside, moment, teeth):
-    """Shigley, equation 13-35: the tangential force is the torque over the radius, the radial one its size times tan(20 deg), for
-    either flank. The load torque is held at rest, in both directions."""
+    """Shigley, equation 13-35: the tangential force is the torque over the radius, the radial one
+    its size times tan(20 deg), for either flank. The load torque is held at rest, in both
+    directions."""
     m, _ = pair(inside)
     scene = Scene(m, {"A": polynomial(0.2)}, t=(0, 1, 2))
     solution = evaluate(scene, parameters={"load": moment, "z": teeth})
@@ -50,18 +55,26 @@ def test_a_pair_bears_the_force_of_its_teeth(inside, moment, teeth):
     push = outward * abs(tangential) * math.tan(math.radians(20.0)) * (1.0 if inside else -1.0)
     on_second = force + push
     reaction = solution.reaction("B")
-    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(-on_second, abs=1e-12 * abs(tangential))
+    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(
+        -on_second, abs=1e-12 * abs(tangential)
+    )
     reaction = solution.reaction("A")
-    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(on_second, abs=1e-12 * abs(tangential))
+    assert reaction.fx[0] + 1j * reaction.fy[0] == pytest.approx(
+        on_second, abs=1e-12 * abs(tangential)
+    )
     assert abs(solution.effort("A")[0]) == pytest.approx(abs(moment) * 0.03 / r2, rel=1e-13)
-    assert solution.output("mesh_radial")[0] == pytest.approx(abs(tangential) * math.tan(math.radians(20.0)), rel=1e-13)
+    assert solution.output("mesh_radial")[0] == pytest.approx(
+        abs(tangential) * math.tan(math.radians(20.0)), rel=1e-13
+    )
     assert abs(solution.multiplier("mesh")[0]) == pytest.approx(abs(tangential), rel=1e-13)
 
 
 def train(draw):
-    """A train on an arm that turns: a sun on the arm's axis, and gears on the arm, each of which meshes with the one before it.
+    """A train on an arm that turns: a sun on the arm's axis, and gears on the arm, each of which
+    meshes with the one before it.
 
-    Bodies have their masses beside their axes, and bear forces. Numbers are drawn by ``draw(low, high)``.
+    Bodies have their masses beside their axes, and bear forces. Numbers are drawn by ``draw(low,
+    high)``.
     """
     m = Mechanism("train")
     m.set_gravity(draw(-5, 5), -9.81)
@@ -74,11 +87,16 @@ def train(draw):
         heading += draw(-1.2, 1.2)
         apart = radii[k + 1] - radii[k] if inside and k == count - 1 else radii[k] + radii[k + 1]
         centres.append(centres[-1] + apart * np.exp(1j * heading))
-    matter = [(draw(0.2, 2.0), draw(-0.01, 0.01) + 1j * draw(-0.01, 0.01), draw(1e-4, 1e-3)) for _ in range(count + 2)]
+    matter = [
+        (draw(0.2, 2.0), draw(-0.01, 0.01) + 1j * draw(-0.01, 0.01), draw(1e-4, 1e-3))
+        for _ in range(count + 2)
+    ]
 
     def body(name, k):
         mass, centre, inertia = matter[k]
-        return m.link(name, length=0.05, mass=mass, centre=(centre.real, centre.imag), inertia=inertia)
+        return m.link(
+            name, length=0.05, mass=mass, centre=(centre.real, centre.imag), inertia=inertia
+        )
 
     arm, wheels = body("arm", count + 1), [body(f"gear{k}", k) for k in range(count + 1)]
     laws = {
@@ -91,18 +109,36 @@ def train(draw):
         m.revolute(f"pin{k}", arm.at(centres[k].real, centres[k].imag), wheels[k])
     angle = draw(5, 30)
     for k in range(count):
-        gears(m, f"mesh{k}", wheels[k], wheels[k + 1], radii=radii[k : k + 2], pressure_angle=f"{angle} deg")
-    forces = [(draw(-0.02, 0.02) + 1j * draw(-0.02, 0.02), draw(-90, 90) + 1j * draw(-90, 90)) for _ in wheels]
+        gears(
+            m,
+            f"mesh{k}",
+            wheels[k],
+            wheels[k + 1],
+            radii=radii[k : k + 2],
+            pressure_angle=f"{angle} deg",
+        )
+    forces = [
+        (draw(-0.02, 0.02) + 1j * draw(-0.02, 0.02), draw(-90, 90) + 1j * draw(-90, 90))
+        for _ in wheels
+    ]
     for k, (at, force) in enumerate(forces):
         m.force(f"push{k}", wheels[k].at(at.real, at.imag), x=force.real, y=force.imag)
-    return Scene(m, laws, t=(0, 0.4, 7)), (radii, centres, matter, forces, math.radians(angle), inside)
+    return Scene(m, laws, t=(0, 0.4, 7)), (
+        radii,
+        centres,
+        matter,
+        forces,
+        math.radians(angle),
+        inside,
+    )
 
 
 def by_vectors(solution, told, i):
-    """Forces at an instant by Newton and Euler on free bodies, with the teeth as forces at pitch points.
+    """Forces at an instant by Newton and Euler on free bodies, with the teeth as forces at pitch
+    points.
 
-    Only the motion of the arm and the sun is taken from the solution; the others' follows from velocities at pitch points. Which
-    flank touches is tried.
+    Only the motion of the arm and the sun is taken from the solution; the others' follows from
+    velocities at pitch points. Which flank touches is tried.
     """
     radii, centres, matter, forces, alpha, inside = told
     count = len(radii) - 1
@@ -112,7 +148,9 @@ def by_vectors(solution, told, i):
     pitches = []
     for k in range(count):
         inner = inside and k == count - 1
-        way = (centres[k + 1] - centres[k]) / abs(centres[k + 1] - centres[k]) * (-1 if inner else 1)
+        way = (
+            (centres[k + 1] - centres[k]) / abs(centres[k + 1] - centres[k]) * (-1 if inner else 1)
+        )
         pitches.append(centres[k] + radii[k] * way)
         arm1, arm2 = pitches[k] - centres[k], pitches[k] - centres[k + 1]
         # Both have one velocity at the pitch point, as seen from the arm.
@@ -182,12 +220,18 @@ def test_random_trains_on_an_arm_that_turns(seed):
         for k in range(count):
             assert solution.multiplier(f"mesh{k}")[i] == pytest.approx(teeth[k], abs=1e-12 * size)
         reaction = solution.reaction("swing")
-        assert reaction.fx[i] + 1j * reaction.fy[i] == pytest.approx(pins[count + 1], abs=1e-12 * size)
-        assert (solution.effort("swing")[i], solution.effort("pin0")[i]) == pytest.approx(tuple(drives), abs=1e-12 * size)
+        assert reaction.fx[i] + 1j * reaction.fy[i] == pytest.approx(
+            pins[count + 1], abs=1e-12 * size
+        )
+        assert (solution.effort("swing")[i], solution.effort("pin0")[i]) == pytest.approx(
+            tuple(drives), abs=1e-12 * size
+        )
 
 
 def geared_five_bar(order, rubs=False):
-    """A five-bar with gears over its coupler, whose pin at B closes the loop in some orders of declaration."""
+    """A five-bar with gears over its coupler, whose pin at B closes the loop in some orders of
+    declaration.
+    """
     m = Mechanism("five")
     first, coupler = m.link("first", length=0.1, mass=1.0), m.link("coupler", length=0.25, mass=0.6)
     third, fourth = m.link("third", length=0.2, mass=0.8), m.link("fourth", length=0.22, mass=0.8)
@@ -210,11 +254,15 @@ def geared_five_bar(order, rubs=False):
 
 @pytest.mark.parametrize("rubs", [False, True])
 def test_pins_that_close_loops_bear_teeth_too(rubs):
-    """Balance, power, and the sections of the carrier at its base hold; and no order of declaration changes anything."""
+    """Balance, power, and the sections of the carrier at its base hold; and no order of declaration
+    changes anything.
+    """
     found = [evaluate(geared_five_bar(order, rubs)) for order in ("OABCD", "DCBAO")]
     for solution in found:
         assert solution.certified
-        assert max(solution.certificate[name].max() for name in ("balance", "power", "ends")) < 1e-13
+        assert (
+            max(solution.certificate[name].max() for name in ("balance", "power", "ends")) < 1e-13
+        )
     for name in "OABCD":
         one, other = (solution.reaction(name).fx for solution in found)
         assert one == pytest.approx(other, abs=1e-11 * np.abs(one).max())
@@ -225,14 +273,19 @@ def test_the_carrier_bears_what_presses_apart():
     m = Mechanism("arm")
     m.set_gravity(0, 0)
     arm = m.link("arm", length=0.1, mass=1.0)
-    first, second = wheel(m, "first", radius=0.04, mass=1.0), wheel(m, "second", radius=0.06, mass=1.0)
+    first, second = (
+        wheel(m, "first", radius=0.04, mass=1.0),
+        wheel(m, "second", radius=0.06, mass=1.0),
+    )
     m.revolute("O", m.ground, arm)
     m.revolute("A", arm, first)
     m.revolute("B", arm.tip, second)
     gears(m, "mesh", first, second, radii=(0.04, 0.06))
     m.torque("load", second, 30.0)
     solution = evaluate(Scene(m, {"O": polynomial(0.4), "A": polynomial(0.0)}, t=(0, 1, 2)))
-    assert solution.section("arm").axial[0] == pytest.approx(500.0 * math.tan(math.radians(20)), rel=1e-12)
+    assert solution.section("arm").axial[0] == pytest.approx(
+        500.0 * math.tan(math.radians(20)), rel=1e-12
+    )
     assert np.abs(solution.section("arm").shear[0]) == pytest.approx(500.0, rel=1e-12)
 
 
@@ -249,7 +302,9 @@ def test_a_rack_is_pushed_where_its_gear_is():
     solution = evaluate(Scene(m, {"turn": harmonic(0.0, 1.5, 1.0)}, t=(0, 1, 9)))
     assert solution.certified
     assert mesh.kind == "rack"
-    assert solution.motion("slide").value == pytest.approx(0.05 * solution.motion("turn").value, abs=1e-15)
+    assert solution.motion("slide").value == pytest.approx(
+        0.05 * solution.motion("turn").value, abs=1e-15
+    )
     assert solution.multiplier("mesh") == pytest.approx(np.full(9, -100.0), rel=1e-12)
     # Beyond the pinion nothing bends the bar; the load is along it.
     place = 0.3 - solution.motion("slide").value
@@ -267,7 +322,9 @@ def test_every_way_to_evaluate_gives_the_same():
         again = evaluate(scene, backend=backend)
         assert again.certified
         for output, values in exact.outputs.items():
-            assert again.outputs[output] == pytest.approx(values, rel=0, abs=1e-10 * (1e-3 + np.abs(values).max()))
+            assert again.outputs[output] == pytest.approx(
+                values, rel=0, abs=1e-10 * (1e-3 + np.abs(values).max())
+            )
     assert evaluate(scene, precision="single").certified
     assert prepare(scene, wanted=["multiplier"])().keys() == {"multiplier:mesh"}
 
@@ -293,7 +350,9 @@ def test_bad_gears_are_refused_by_name():
     refused("gears in a plane have no helix", helix_angle="20 deg")
     refused("hand must be 'right' or 'left'", hand="both")
     m = Mechanism("bad")
-    first, second, third = (m.link(name, length=0.1, mass=1.0, centre=(0, 0), inertia=1e-3) for name in ("a", "b", "c"))
+    first, second, third = (
+        m.link(name, length=0.1, mass=1.0, centre=(0, 0), inertia=1e-3) for name in ("a", "b", "c")
+    )
     m.revolute("A", m.ground, first)
     m.revolute("B", m.ground.at(0.1, 0), second)
     m.revolute("C", second.tip, third)
@@ -306,10 +365,21 @@ def test_bad_gears_are_refused_by_name():
         assert "\n" not in str(error.value)
 
     both = (first, second)
-    one_line("centres are 0.1 m apart; expected 0.11 m by the radii, or 0.01 m for a gear in a ring", *both, radii=(0.05, 0.06))
+    one_line(
+        "centres are 0.1 m apart; expected 0.11 m by the radii, or 0.01 m for a gear in a ring",
+        *both,
+        radii=(0.05, 0.06),
+    )
     one_line("centres are 0.1 m apart; expected 0.09 m", *both, teeth=(20, 40), module=0.003)
-    one_line("numbers of teeth must be whole, and 1 or more, got 20.5", *both, teeth=(20.5, 40), module=0.003)
-    one_line("numbers of teeth must be whole, and 1 or more, got 0", *both, teeth=(0, 40), module=0.003)
+    one_line(
+        "numbers of teeth must be whole, and 1 or more, got 20.5",
+        *both,
+        teeth=(20.5, 40),
+        module=0.003,
+    )
+    one_line(
+        "numbers of teeth must be whole, and 1 or more, got 0", *both, teeth=(0, 40), module=0.003
+    )
     one_line("radii must be positive, got -0.1 m", *both, radii=(-0.1, 0.2))
     one_line("module must be positive", *both, teeth=(20, 40), module=0.0)
     one_line("give module and teeth, or radii", *both, module=0.003)
@@ -323,7 +393,10 @@ def test_bad_gears_are_refused_by_name():
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("values", "told"),
-    [({"z": 40.5}, "numbers of teeth must be whole, and 1 or more, got 40.5"), ({"r": 0.07}, "its centres are 0.09 m apart")],
+    [
+        ({"z": 40.5}, "numbers of teeth must be whole, and 1 or more, got 40.5"),
+        ({"r": 0.07}, "its centres are 0.09 m apart"),
+    ],
 )
 def test_values_that_do_not_fit_are_refused(values, told):
     m = Mechanism("swept")
@@ -348,7 +421,13 @@ def test_wheels_are_discs():
     assert disc.mass.inertia == pytest.approx(mass * (0.1**2 + 0.04**2) / 2)
     assert len(disc.outline) == 4 * 30 + 48 + 2
     solid = wheel(s, "disc", radius=0.1, mass=2.0, width=None)
-    assert [float(solid.mass.inertia[k][k]) for k in range(3)] == pytest.approx([0.01, 0.005, 0.005])
-    for told in ({"radius": 0.1}, {"radius": 0.1, "bore": 0.2, "mass": 1.0}, {"radius": 0.1, "mass": 1.0, "teeth": 2.5}):
+    assert [float(solid.mass.inertia[k][k]) for k in range(3)] == pytest.approx(
+        [0.01, 0.005, 0.005]
+    )
+    for told in (
+        {"radius": 0.1},
+        {"radius": 0.1, "bore": 0.2, "mass": 1.0},
+        {"radius": 0.1, "mass": 1.0, "teeth": 2.5},
+    ):
         with pytest.raises(DeclarationError, match="wheel 'other'"):
             wheel(m, "other", **told)

@@ -1,4 +1,6 @@
-"""Gears in space: helical, bevel, worm and rack against the forces of textbooks, on the bearings and sections of their shafts."""
+"""Gears in space: helical, bevel, worm and rack against the forces of textbooks, on the bearings
+and sections of their shafts.
+"""
 
 import math
 
@@ -23,10 +25,16 @@ def frame(seed):
 
 def shaft(m, name, place, axis, beside, slender=False):
     """A shaft along an axis through a place of the ground, its joint at its base."""
-    known = {"mass": 2.0} if slender else {"mass": 2.0, "centre": (0.1, 0, 0), "inertia": (1e-3, 1e-2, 1e-2)}
+    known = (
+        {"mass": 2.0}
+        if slender
+        else {"mass": 2.0, "centre": (0.1, 0, 0), "inertia": (1e-3, 1e-2, 1e-2)}
+    )
     link = m.link(name, length=0.5, **known)
     turned = (tuple(map(float, axis)), tuple(map(float, beside)))
-    m.revolute(f"{name}_bearing", m.ground.at(*map(float, place)), link, axis=turned[0], turned=turned)
+    m.revolute(
+        f"{name}_bearing", m.ground.at(*map(float, place)), link, axis=turned[0], turned=turned
+    )
     return link
 
 
@@ -50,7 +58,9 @@ def borne(solution, name):
 
 
 def holds(solution, name, base, axis, point, force):
-    """The bearing holds a force that acts at a point on its shaft, but for the moment about the axis."""
+    """The bearing holds a force that acts at a point on its shaft, but for the moment about the
+    axis.
+    """
     push, moment = borne(solution, name)
     size = np.linalg.norm(force)
     assert push == pytest.approx(-force, abs=1e-12 * size)
@@ -63,12 +73,16 @@ def holds(solution, name, base, axis, point, force):
 @pytest.mark.parametrize("moment", [50.0, -50.0])
 @pytest.mark.parametrize("helix", [20.0, -35.0])
 def test_helical_gears(seed, moment, helix):
-    """Shigley, equations 13-38: radial W tan(phi_n)/cos(psi) and axial W tan(psi), of the tangential force W."""
+    """Shigley, equations 13-38: radial W tan(phi_n)/cos(psi) and axial W tan(psi), of the
+    tangential force W.
+    """
     u, e, t = frame(seed)
     r1, r2, base = 0.05, 0.12, np.array([0.1, -0.2, 0.3])
     m, load = space(moment, "second", u)
     first, second = shaft(m, "first", base, u, e), shaft(m, "second", base + (r1 + r2) * e, u, e)
-    mesh = gears(m, "mesh", first.at(0.15), second.at(0.15), radii=(r1, r2), helix_angle=f"{helix} deg")
+    mesh = gears(
+        m, "mesh", first.at(0.15), second.at(0.15), radii=(r1, r2), helix_angle=f"{helix} deg"
+    )
     load(second)
     solution = evaluate(Scene(m, {"first_bearing": polynomial(0.3)}, t=(0, 1, 2)))
     assert solution.certified
@@ -91,28 +105,43 @@ def test_helical_gears(seed, moment, helix):
 @pytest.mark.parametrize("angle", [90.0, 60.0, 110.0])
 @pytest.mark.parametrize("moment", [50.0, -50.0])
 def test_bevel_gears(seed, angle, moment):
-    """Shigley, equations 13-36 and 13-37: radial W tan(phi) cos(gamma), axial W tan(phi) sin(gamma) off the apex."""
+    """Shigley, equations 13-36 and 13-37: radial W tan(phi) cos(gamma), axial W tan(phi) sin(gamma)
+    off the apex.
+    """
     x, y, _ = frame(seed + 10)
     sigma, z = math.radians(angle), (20, 33)
     apex, v = np.array([0.3, 0.1, -0.2]), math.cos(sigma) * x + math.sin(sigma) * y
-    gamma = math.atan2(math.sin(sigma), z[1] / z[0] + math.cos(sigma)), math.atan2(math.sin(sigma), z[0] / z[1] + math.cos(sigma))
+    gamma = (
+        math.atan2(math.sin(sigma), z[1] / z[0] + math.cos(sigma)),
+        math.atan2(math.sin(sigma), z[0] / z[1] + math.cos(sigma)),
+    )
     assert sum(gamma) == pytest.approx(sigma)
     radii = [0.002 * count for count in z]
     heights = [r / math.tan(one) for r, one in zip(radii, gamma, strict=True)]
     m, load = space(moment, "second", v)
-    first, second = shaft(m, "first", apex, x, y), shaft(m, "second", apex, v, np.cross(v, np.cross(x, y)))
+    first, second = (
+        shaft(m, "first", apex, x, y),
+        shaft(m, "second", apex, v, np.cross(v, np.cross(x, y))),
+    )
     mesh = gears(m, "mesh", first.at(heights[0]), second.at(heights[1]), teeth=z, module=0.004)
     load(second)
-    solution = evaluate(Scene(m, {"first_bearing": polynomial(0.3, 2.0)}, t=(0, 1, 2)), wanted=["all"])
+    solution = evaluate(
+        Scene(m, {"first_bearing": polynomial(0.3, 2.0)}, t=(0, 1, 2)), wanted=["all"]
+    )
     assert solution.certified
     assert mesh.kind == "bevel"
-    assert abs(solution.motion("second_bearing").rate[0]) == pytest.approx(2.0 * z[0] / z[1], rel=1e-13)
+    assert abs(solution.motion("second_bearing").rate[0]) == pytest.approx(
+        2.0 * z[0] / z[1], rel=1e-13
+    )
     point = apex + heights[0] * x + radii[0] * y
     across = np.cross(v, point - apex) / radii[1]  # the way of the second gear at the pitch point
     on_second = -moment / radii[1] * across
     size, toward = abs(moment) / radii[1] * TAN, -(point - apex - heights[1] * v) / radii[1]
     on_second = on_second + size * (math.cos(gamma[1]) * toward + math.sin(gamma[1]) * v)
-    on_first = abs(moment) / radii[1] * TAN * (-math.cos(gamma[0]) * y + math.sin(gamma[0]) * x) + moment / radii[1] * across
+    on_first = (
+        abs(moment) / radii[1] * TAN * (-math.cos(gamma[0]) * y + math.sin(gamma[0]) * x)
+        + moment / radii[1] * across
+    )
     assert on_first == pytest.approx(-on_second, abs=1e-11 * size)
     # Gyroscopic moments of rotors that are round about their axes are none.
     holds(solution, "first", apex, x, point, on_first)
@@ -122,25 +151,35 @@ def test_bevel_gears(seed, angle, moment):
 @pytest.mark.parametrize("hand", ["right", "left"])
 @pytest.mark.parametrize("moment", [50.0, -50.0])
 def test_a_worm_and_its_wheel(hand, moment):
-    """Shigley, equations 13-39 to 13-41 without friction: W cos(phi) sin(lead), W sin(phi), W cos(phi) cos(lead)."""
+    """Shigley, equations 13-39 to 13-41 without friction: W cos(phi) sin(lead), W sin(phi), W
+    cos(phi) cos(lead).
+    """
     u, e, v = frame(5)
     r1, r2, base = 0.02, 0.08, np.array([0.0, 0.1, 0.2])
     m, load = space(moment, "wheel", v)
-    worm, turned = shaft(m, "worm", base, u, e), shaft(m, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, e)
+    worm, turned = (
+        shaft(m, "worm", base, u, e),
+        shaft(m, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, e),
+    )
     mesh = gears(m, "mesh", worm.at(0.1), turned.at(0.2), radii=(r1, r2), teeth=(2, 40), hand=hand)
     load(turned)
     solution = evaluate(Scene(m, {"worm_bearing": polynomial(0.3, 1.0)}, t=(0, 1, 2)))
     assert solution.certified
     assert mesh.kind == "crossed"
     lead = math.atan(2 * 2 * math.pi * r2 / 40 / (2 * math.pi * r1))
-    tangential, radial, axial = (solution.output(f"mesh_{name}")[0] for name in ("tangential", "radial", "axial"))
+    tangential, radial, axial = (
+        solution.output(f"mesh_{name}")[0] for name in ("tangential", "radial", "axial")
+    )
     assert abs(axial) == pytest.approx(50.0 / r2, rel=1e-12)
     assert abs(tangential) == pytest.approx(50.0 / r2 * math.tan(lead), rel=1e-12)
     assert radial == pytest.approx(50.0 / r2 * TAN / math.cos(lead), rel=1e-12)
-    # A right-handed worm that turns forward moves its thread backward along its axis as seen at a fixed place, and the wheel there.
+    # A right-handed worm that turns forward moves its thread backward along its axis as seen at a
+    # fixed place, and the wheel there.
     rate = solution.motion("wheel_bearing").rate[0]
     there = rate * np.dot(np.cross(v, -r2 * e), u)
-    assert there == pytest.approx((-1 if hand == "right" else 1) * 2 * 2 * math.pi * r2 / 40 / (2 * math.pi), rel=1e-12)
+    assert there == pytest.approx(
+        (-1 if hand == "right" else 1) * 2 * 2 * math.pi * r2 / 40 / (2 * math.pi), rel=1e-12
+    )
     point = base + 0.1 * u + r1 * e
     on_worm = tangential * np.cross(u, e) - radial * e + axial * u
     holds(solution, "worm", base, u, point, on_worm)
@@ -149,7 +188,9 @@ def test_a_worm_and_its_wheel(hand, moment):
 
 
 def test_sections_of_a_shaft_feel_the_teeth_where_they_are():
-    """A slender shaft between the gear and its bearing: torsion up to the gear, bending by its force's arm."""
+    """A slender shaft between the gear and its bearing: torsion up to the gear, bending by its
+    force's arm.
+    """
     m = SpatialMechanism("shaft")
     m.set_gravity(0, 0, 0)
     driver, driven = (
@@ -172,7 +213,9 @@ def test_sections_of_a_shaft_feel_the_teeth_where_they_are():
 
 
 def test_a_planet_on_a_tilted_arm():
-    """A differential of bevel gears: side gears on one axis, a planet on a carrier that turns about it; its rate is their mean."""
+    """A differential of bevel gears: side gears on one axis, a planet on a carrier that turns about
+    it; its rate is their mean.
+    """
     m = SpatialMechanism("differential")
     m.set_gravity(0, 0, 0)
     r = 0.05
@@ -192,31 +235,44 @@ def test_a_planet_on_a_tilted_arm():
     assert solution.certified
     rates = [solution.motion(name).rate for name in ("left_axle", "right_axle", "cage_bearing")]
     assert rates[0] + rates[1] == pytest.approx(2 * rates[2], abs=1e-12)
-    # Nothing turns at the ends of the swing but by inertia, which is small: half of the cage's torque on each side.
+    # Nothing turns at the ends of the swing but by inertia, which is small: half of the cage's
+    # torque on each side.
     gain = solution.motion("pin").acceleration * 0.5 * r**2 / 2
     teeth = solution.multiplier("one"), solution.multiplier("other")
-    assert np.abs(np.abs(teeth[0] * r) - np.abs(teeth[1] * r)) == pytest.approx(np.abs(gain), abs=1e-9)
+    assert np.abs(np.abs(teeth[0] * r) - np.abs(teeth[1] * r)) == pytest.approx(
+        np.abs(gain), abs=1e-9
+    )
 
 
 def test_a_belt_in_space_is_that_of_the_plane():
     m = SpatialMechanism("belt")
     m.set_gravity(0, 0, 0)
-    first, second = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)), shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0))
+    first, second = (
+        shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0)),
+    )
     belt(m, "belt", first.at(0.1), second.at(0.1), radii=(0.05, 0.1), preload=500.0)
     m.torque("load", second, x=20.0)
     solution = evaluate(Scene(m, {"first_bearing": polynomial(0.0)}, t=(0, 1, 2)))
     assert solution.certified
-    assert (solution.output("belt_tight")[0], solution.output("belt_slack")[0]) == pytest.approx((600.0, 400.0))
+    assert (solution.output("belt_tight")[0], solution.output("belt_slack")[0]) == pytest.approx(
+        (600.0, 400.0)
+    )
     lean = math.asin(0.05 / 0.5)
     push = borne(solution, "first")[0]
-    assert np.linalg.norm(push) == pytest.approx(math.hypot(1000.0 * math.cos(lean), 200.0 * math.sin(lean)), rel=1e-12)
+    assert np.linalg.norm(push) == pytest.approx(
+        math.hypot(1000.0 * math.cos(lean), 200.0 * math.sin(lean)), rel=1e-12
+    )
     assert push[0] == pytest.approx(0.0, abs=1e-10)
 
 
 @pytest.mark.quick
 def test_bad_gears_in_space_are_refused_by_name():
     m = SpatialMechanism("bad")
-    first, second = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)), shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1))
+    first, second = (
+        shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1)),
+    )
     third = shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0))
     worm = shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1))
 
@@ -234,6 +290,18 @@ def test_bad_gears_in_space_are_refused_by_name():
     )
     one_line("0.1 m beside each other along the axis", first.at(0.1), third, radii=(0.04, 0.06))
     one_line("crossed axes need both numbers of teeth and radii", first, worm, radii=(0.04, 0.06))
-    one_line("0.02 m beside the line at right angles", first, worm.at(0.02), radii=(0.04, 0.06), teeth=(1, 40))
-    one_line("helix_angle must be from -75 to 75 deg, got 80 deg", first, third, radii=(0.04, 0.06), helix_angle="80 deg")
+    one_line(
+        "0.02 m beside the line at right angles",
+        first,
+        worm.at(0.02),
+        radii=(0.04, 0.06),
+        teeth=(1, 40),
+    )
+    one_line(
+        "helix_angle must be from -75 to 75 deg, got 80 deg",
+        first,
+        third,
+        radii=(0.04, 0.06),
+        helix_angle="80 deg",
+    )
     one_line("parallel axes", first, second, of=belt, radii=(0.04, 0.06))

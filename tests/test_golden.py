@@ -1,4 +1,6 @@
-"""The text of a small export, word for word; ``pytest tests/test_golden.py --update`` takes over a change that you have read."""
+"""The text of a small export, word for word; ``pytest tests/test_golden.py --update`` takes over a
+change that you have read.
+"""
 
 import difflib
 import re
@@ -14,7 +16,9 @@ pytestmark = pytest.mark.quick
 
 GOLDEN = Path(__file__).parent / "golden"
 FILES = ("press.h", "press.c", "CMakeLists.txt", "example.c", "README.md")
-_CASADI = re.compile(r"(/\* ---- Written by CasADi ).*?(/\* ---- Written by lagrange_casadi)", re.DOTALL)
+_CASADI = re.compile(
+    r"(/\* ---- Written by CasADi ).*?(/\* ---- Written by lagrange_casadi)", re.DOTALL
+)
 
 
 def _series():
@@ -23,9 +27,13 @@ def _series():
 
 
 def plainly(text):
-    """Without what every release changes: versions, and the hash that CasADi's own writing of expressions goes into."""
+    """Without what every release changes: versions, and the hash that CasADi's own writing of
+    expressions goes into.
+    """
     text = text.replace(__version__, "<version>").replace(ca.CasadiMeta.version(), "<casadi>")
-    return re.sub(r"\b[0-9a-f]{32}\b", "<scene>", re.sub(r"SEAL 0x[0-9a-f]{8}u", "SEAL <seal>", text))
+    return re.sub(
+        r"\b[0-9a-f]{32}\b", "<scene>", re.sub(r"SEAL 0x[0-9a-f]{8}u", "SEAL <seal>", text)
+    )
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -41,9 +49,13 @@ def test_the_text_is_as_it_was(file, tmp_path, request):
     if (GOLDEN / "casadi.txt").read_text() != _series():
         # Another CasADi may write the same expressions otherwise; what is around them is ours.
         found, wanted = (_CASADI.sub(r"\1\2", text) for text in (found, wanted))
-    lines = difflib.unified_diff(wanted.splitlines(), found.splitlines(), f"golden/{file}", file, lineterm="")
+    lines = difflib.unified_diff(
+        wanted.splitlines(), found.splitlines(), f"golden/{file}", file, lineterm=""
+    )
     changed = "\n".join(lines)
-    assert not changed, f"the exported text has changed; if it should, run with --update:\n{changed}"
+    assert not changed, (
+        f"the exported text has changed; if it should, run with --update:\n{changed}"
+    )
 
 
 def test_the_diff_can_be_read(tmp_path, monkeypatch, request):

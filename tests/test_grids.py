@@ -19,14 +19,25 @@ random = np.random.default_rng(4)
 
 
 def loaded_law(n):
-    """A link with a load at its tip, one at a station, and one that travels from before the base to beyond the tip."""
-    coefficients = {name: random.normal(size=n) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
+    """A link with a load at its tip, one at a station, and one that travels from before the base to
+    beyond the tip.
+    """
+    coefficients = {
+        name: random.normal(size=n) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+    }
     stations = (np.ones(n), np.full(n, 0.4), np.linspace(-0.1, 1.1, n))
-    loads = tuple(StationLoad(f"load{i}", station, *random.normal(size=(3, n))) for i, station in enumerate(stations))
-    return SectionLaw(0.7, NumericDensity((0.0, 0.3, 1.0), ((1.3, 0.2), (0.5,))), coefficients, loads)
+    loads = tuple(
+        StationLoad(f"load{i}", station, *random.normal(size=(3, n)))
+        for i, station in enumerate(stations)
+    )
+    return SectionLaw(
+        0.7, NumericDensity((0.0, 0.3, 1.0), ((1.3, 0.2), (0.5,))), coefficients, loads
+    )
 
 
-@pytest.mark.parametrize(("n", "k"), [(1, 1), (1, 4097), (700, 7), (3, 5000), (911, 201), (2, 100_001), (140_000, 1)])
+@pytest.mark.parametrize(
+    ("n", "k"), [(1, 1), (1, 4097), (700, 7), (3, 5000), (911, 201), (2, 100_001), (140_000, 1)]
+)
 def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
     law, xi = loaded_law(n), np.linspace(0, 1, k)
     for force in FORCES:
@@ -46,12 +57,20 @@ def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
 @pytest.mark.parametrize("planes", [1, 2])
 @pytest.mark.parametrize("terms", [1, 2, 3, 4, 5, 9])
 def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypatch):
-    """A link with loads along it has more terms than others: a resultant of five once lost its last one in compiled code."""
+    """A link with loads along it has more terms than others: a resultant of five once lost its last
+    one in compiled code.
+    """
     n, k = 97, 37
     columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(terms, k))
     loads = [tuple(random.uniform(0, 1, size=(3, n))) for _ in range(planes * many)]
     u, found = np.linspace(0, 1, k), []
-    for worth, share, streaming in ((10**12, 1, 0), (0, 10**9, 10**12), (0, 1000, 10**12), (0, 10**9, 0), (0, 1000, 0)):
+    for worth, share, streaming in (
+        (10**12, 1, 0),
+        (0, 10**9, 10**12),
+        (0, 1000, 10**12),
+        (0, 10**9, 0),
+        (0, 1000, 0),
+    ):
         monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
         monkeypatch.setattr(grids, "_SHARE", share)
         monkeypatch.setattr(grids, "_STREAMING", streaming)
@@ -64,7 +83,11 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
         for m in range(plane * terms, (plane + 1) * terms):
             sums[plane] += columns[m][:, None] * rows[m - plane * terms]
         for station, constant, slope in loads[plane * many : (plane + 1) * many]:
-            sums[plane] += np.where(u < station[:, None], constant[:, None] + slope[:, None] * (station[:, None] - u), 0.0)
+            sums[plane] += np.where(
+                u < station[:, None],
+                constant[:, None] + slope[:, None] * (station[:, None] - u),
+                0.0,
+            )
     expected = np.hypot(*sums) if planes == 2 else sums[0]
     np.testing.assert_allclose(found[0][:n], expected, rtol=0, atol=1e-13)
 
@@ -72,16 +95,28 @@ def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypat
 def test_a_grid_is_what_the_law_gives_at_each_point():
     law, xi = loaded_law(50), np.linspace(0, 1, 41)
     for force in FORCES:
-        np.testing.assert_allclose(law.on_grid(force, xi), law.at(force, np.tile(xi, (50, 1))), rtol=0, atol=1e-14)
+        np.testing.assert_allclose(
+            law.on_grid(force, xi), law.at(force, np.tile(xi, (50, 1))), rtol=0, atol=1e-14
+        )
 
 
-@pytest.mark.parametrize(("designs", "n", "k"), [(1, 1, 1), (5, 40, 7), (3, 200, 2100), (2, 1, 4097)])
+@pytest.mark.parametrize(
+    ("designs", "n", "k"), [(1, 1, 1), (5, 40, 7), (3, 200, 2100), (2, 1, 4097)]
+)
 @pytest.mark.parametrize("worth", [0, 10**12])
-def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(designs, n, k, worth, monkeypatch):
+def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(
+    designs, n, k, worth, monkeypatch
+):
     laws, xi = [loaded_law(n) for _ in range(designs)], np.linspace(0, 1, k)
     scale = np.linspace(0.5, 2.0, designs)[:, None]
     stations = [
-        StationLoad("", *(np.stack([getattr(law.loads[i], name) for law in laws]) for name in ("station", "n", "f", "m")))
+        StationLoad(
+            "",
+            *(
+                np.stack([getattr(law.loads[i], name) for law in laws])
+                for name in ("station", "n", "f", "m")
+            ),
+        )
         for i in range(3)
     ]
     together = SectionLaw(
@@ -94,7 +129,9 @@ def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(designs
     for force in FORCES:
         found = together.largest(force, together.basis(xi))
         for row, law, (factor,) in zip(found, laws, scale, strict=True):
-            density = NumericDensity((0.0, 0.3, 1.0), ((1.3 * factor, 0.2 * factor), (0.5 * factor,)))
+            density = NumericDensity(
+                (0.0, 0.3, 1.0), ((1.3 * factor, 0.2 * factor), (0.5 * factor,))
+            )
             grid = replace(law, length=0.7 * factor, density=density).on_grid(force, xi)
             best = grid[np.argmax(np.abs(grid), axis=0), np.arange(k)]
             assert row.tobytes() == best.tobytes()
@@ -103,9 +140,19 @@ def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(designs
 @pytest.mark.parametrize("worth", [0, 10**12])
 def test_what_is_largest_of_two_as_large_and_of_nothing(worth, monkeypatch):
     monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
-    rows = [[-2.0, 2.0, 1.0], [np.nan] * 3, [1.0, -3.0, 0.0], [np.nan, 2.0, 1.0], [1.0, np.inf, 1.0]]
-    found = grids.largest([np.array(rows), *np.zeros((2, 5, 3))], np.ones((3, 5, 4)), [], np.linspace(0, 1, 4))
-    np.testing.assert_array_equal(found, np.repeat([[2.0], [np.nan], [-3.0], [np.nan], [np.nan]], 4, axis=1))
+    rows = [
+        [-2.0, 2.0, 1.0],
+        [np.nan] * 3,
+        [1.0, -3.0, 0.0],
+        [np.nan, 2.0, 1.0],
+        [1.0, np.inf, 1.0],
+    ]
+    found = grids.largest(
+        [np.array(rows), *np.zeros((2, 5, 3))], np.ones((3, 5, 4)), [], np.linspace(0, 1, 4)
+    )
+    np.testing.assert_array_equal(
+        found, np.repeat([[2.0], [np.nan], [-3.0], [np.nan], [np.nan]], 4, axis=1)
+    )
 
 
 def test_without_a_compiler_numpy_fills(monkeypatch):
@@ -126,12 +173,18 @@ def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
         save(solution, tmp_path / "x.h5")
         again = load(tmp_path / "x.h5")
         for force in FORCES:
-            assert np.array_equal(again.array(f"section:rod:{force}"), solution.array(f"section:rod:{force}"))
+            assert np.array_equal(
+                again.array(f"section:rod:{force}"), solution.array(f"section:rod:{force}")
+            )
 
 
 def test_what_does_not_fit_into_memory_is_one_line_with_its_size():
     with pytest.raises(
-        SizeError, match=r"no room for a grid of axial: 11 x 1 000 000 000 000 values are 8\.8e\+04 GB, and this machine has"
+        SizeError,
+        match=(
+            r"no room for a grid of axial: 11 x 1 000 000 000 000 values are 8\.8e\+04 GB, and this"
+            r" machine has"
+        ),
     ):
         grids.empty("a grid of axial", (11, 10**12))
 
@@ -146,5 +199,7 @@ def test_an_array_of_another_layout_is_filled_too(monkeypatch):
     assert np.all(wide[:, 1::2] == -1.0)
     assert np.array_equal(law.on_grid("bending", xi, np.zeros((60, 41), order="F")), plain)
     np.testing.assert_allclose(law.on_grid("bending", xi.astype(np.float32)), plain, atol=1e-5)
-    with pytest.raises(DeclarationError, match=r"out: expected an array of shape \(60, 41\), got \(59, 41\)"):
+    with pytest.raises(
+        DeclarationError, match=r"out: expected an array of shape \(60, 41\), got \(59, 41\)"
+    ):
         law.on_grid("bending", xi, np.zeros((59, 41)))

@@ -1,4 +1,6 @@
-"""Motions of points and of poses: what guides them bears nothing, and what drives them is elsewhere."""
+"""Motions of points and of poses: what guides them bears nothing, and what drives them is
+elsewhere.
+"""
 
 import numpy as np
 import pytest
@@ -18,26 +20,38 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 CIRCLE = (motion.harmonic(0.05, 0.1, 1.0), motion.harmonic(0.6, 0.05, 1.0, 1.0))
 ROUGH = {"a": 2.0, "b": 1.0, "c": 2.0, "d": 1.0}
-POSE = (motion.harmonic(0.0, 0.03, 1.0), motion.harmonic(0.0, 0.02, 1.0, 0.5), motion.harmonic(0.1, 0.1, 1.0))
+POSE = (
+    motion.harmonic(0.0, 0.03, 1.0),
+    motion.harmonic(0.0, 0.02, 1.0, 0.5),
+    motion.harmonic(0.1, 0.1, 1.0),
+)
 
 
 def guided(drives=("O", "C"), laws=CIRCLE, **keywords):
     """A five-bar whose tool goes round."""
     made = five_bar(path=True).mechanism
-    return Scene(made, {"tool": laws}, **({"posture": ROUGH, "t": (0, 1, 101), "drives": drives} | keywords))
+    return Scene(
+        made, {"tool": laws}, **({"posture": ROUGH, "t": (0, 1, 101), "drives": drives} | keywords)
+    )
 
 
 def platform(**keywords):
     """3-RRR: a plate on three legs of two links."""
     m = Mechanism("platform")
     plate = m.link("plate", length=0.2, mass=2.0, centre=(0.1, 0.05), inertia=0.02)
-    for i, (x, y, px, py) in enumerate(((-0.4, -0.3, 0, 0), (0.6, -0.3, 0.2, 0), (0.1, 0.6, 0.1, 0.17))):
+    for i, (x, y, px, py) in enumerate(
+        ((-0.4, -0.3, 0, 0), (0.6, -0.3, 0.2, 0), (0.1, 0.6, 0.1, 0.17))
+    ):
         upper, lower = m.link(f"u{i}", length=0.35, mass=0.5), m.link(f"l{i}", length=0.4, mass=0.4)
         m.revolute(f"M{i}", m.ground.at(x, y), upper)
         m.revolute(f"K{i}", upper.tip, lower)
         m.revolute(f"E{i}", lower.tip, plate.at(px, py))
     posture = {"u0": 1.5, "u1": 2.5, "u2": -2.0}
-    return Scene(m, {"plate": POSE}, **({"t": (0, 1, 41), "posture": posture, "drives": ["M0", "M1", "M2"]} | keywords))
+    return Scene(
+        m,
+        {"plate": POSE},
+        **({"t": (0, 1, 41), "posture": posture, "drives": ["M0", "M1", "M2"]} | keywords),
+    )
 
 
 def the_same(scene, k, motors):
@@ -46,19 +60,30 @@ def the_same(scene, k, motors):
     laws = {}
     for joint in motors:
         m = found.motion(joint)
-        laws[joint] = motion.polynomial(float(m.value[k]), float(m.rate[k]), float(m.acceleration[k]) / 2)
-    posture = {body.name: float(found.pose(body.name).angle[k]) for body in scene.mechanism.moving if body.oriented}
+        laws[joint] = motion.polynomial(
+            float(m.value[k]), float(m.rate[k]), float(m.acceleration[k]) / 2
+        )
+    posture = {
+        body.name: float(found.pose(body.name).angle[k])
+        for body in scene.mechanism.moving
+        if body.oriented
+    }
     return found, Scene(scene.mechanism, laws, posture=posture, t=(0, 0, 1))
 
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("scene", "motors", "loads"),
-    [(guided, ["O", "C"], [lambda place: [(("c", 0.5, 0), -20.0, 5.0, 0.0)]]), (platform, ["M0", "M1", "M2"], [])],
+    [
+        (guided, ["O", "C"], [lambda place: [(("c", 0.5, 0), -20.0, 5.0, 0.0)]]),
+        (platform, ["M0", "M1", "M2"], []),
+    ],
     ids=["tool", "plate"],
 )
 def test_it_is_the_motion_of_the_motors(scene, motors, loads):
-    """A tool on its path, and a plate in its pose, in closed form; the same forces where the motors' motion is given."""
+    """A tool on its path, and a plate in its pose, in closed form; the same forces where the
+    motors' motion is given.
+    """
     scene = scene()
     program = derive(scene)
     assert program.newton is None
@@ -72,7 +97,9 @@ def test_it_is_the_motion_of_the_motors(scene, motors, loads):
         for output, values in one.outputs.items():
             if output.group in ("effort", "reaction", "pose", "law"):
                 unit = output.unit(kinds)
-                size = max(np.abs(v).max() for o, v in found.outputs.items() if o.unit(kinds) == unit)
+                size = max(
+                    np.abs(v).max() for o, v in found.outputs.items() if o.unit(kinds) == unit
+                )
                 assert abs(values[0] - found.outputs[output][k]) < 1e-12 * size, output
 
 
@@ -82,7 +109,10 @@ def test_the_point_is_where_its_laws_say():
     assert np.abs(found.output("tool_x") - x).max() < 1e-15
     assert np.abs(found.output("tool_y") - y).max() < 1e-15
     assert np.abs(found.output("tool_vx") - 0.2 * np.pi * np.cos(2 * np.pi * found.t)).max() < 1e-13
-    assert np.abs(found.output("tool_ay") + 0.2 * np.pi**2 * np.sin(2 * np.pi * found.t + 1.0)).max() < 1e-12
+    assert (
+        np.abs(found.output("tool_ay") + 0.2 * np.pi**2 * np.sin(2 * np.pi * found.t + 1.0)).max()
+        < 1e-12
+    )
     pose = evaluate(platform()).pose("plate")
     assert np.abs(pose.angle - 0.1 - 0.1 * np.sin(2 * np.pi * np.linspace(0, 1, 41))).max() < 1e-15
 
@@ -101,12 +131,23 @@ def test_a_point_mass_may_be_guided():
     m.revolute("swing", m.ground, arm)
     m.prismatic("reach", arm, load, axis=(1, 0))
     line = (motion.polynomial(0.8), motion.polynomial(-0.5, 1.0))
-    found = evaluate(Scene(m, {"load": line}, t=(0, 1, 21), posture={"arm": 0.0, "reach": 0.9}, drives=["swing", "reach"]))
+    found = evaluate(
+        Scene(
+            m,
+            {"load": line},
+            t=(0, 1, 21),
+            posture={"arm": 0.0, "reach": 0.9},
+            drives=["swing", "reach"],
+        )
+    )
     assert found.certified
     angle = np.arctan2(-0.5 + found.t, 0.8)
     assert np.abs(found.motion("swing").value - angle).max() < 1e-14
     assert np.abs(found.effort("reach") - (5.0 * 9.81 * np.sin(angle))).max() < 1e-12
-    weight = 9.81 * (5.0 * 0.8 + 2.0 * 0.5 * np.cos(angle)) + 2.0 / 3.0 * found.motion("swing").acceleration
+    weight = (
+        9.81 * (5.0 * 0.8 + 2.0 * 0.5 * np.cos(angle))
+        + 2.0 / 3.0 * found.motion("swing").acceleration
+    )
     assert np.abs(found.effort("swing") - weight).max() < 1e-12
 
 
@@ -119,13 +160,21 @@ def test_sweeps_and_exported_c_have_it(tmp_path):
         assert_refined(scene, designs, outcome, row, p[row])
     made, told = exported(scene, tmp_path)
     solution = solve(scene, "double")
-    compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, "double")),
+        expected(scene, told, solution),
+        told,
+        made,
+        solution,
+    )
 
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=["lanes", "single"])
 def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
-    """The power of a tool that goes to and fro is rounding at each of the instants of the witness."""
+    """The power of a tool that goes to and fro is rounding at each of
+    the instants of the witness.
+    """
     made = five_bar(path=True, power=True).mechanism
     line = {"tool": (motion.harmonic(0.05, 0.1, 1.0), motion.polynomial(0.6))}
     scene = Scene(made, line, ["output:still"], t=(0, 1, 101), posture=ROUGH, drives=["O", "C"])
@@ -147,19 +196,42 @@ def test_a_file_of_it_is_checked(tmp_path):
 
 def test_where_links_do_not_reach_the_path_is_named():
     laws = (motion.polynomial(0.0, 1.0), motion.polynomial(0.6))
-    with pytest.raises(AssemblyError, match=r"the loop closed by .* cannot be closed at t = 0\.\d+ s, where tool\.x = 0\.\d+ m"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"the loop closed by .* cannot be closed at t = 0\.\d+ s, where tool\.x = 0\.\d+ m",
+    ):
         evaluate(guided(laws=laws))
 
 
 @pytest.mark.parametrize(
     ("laws", "error", "told"),
     [
-        ({"tool": CIRCLE[0]}, DeclarationError, "motion of path 'tool': expected two laws, of x and y, got 1"),
-        ({"tool": POSE}, DeclarationError, "motion of path 'tool': expected two laws, of x and y, got 3"),
-        ({"a": CIRCLE}, DeclarationError, "motion of body 'a': expected three laws, of x, y and the angle, got 2"),
+        (
+            {"tool": CIRCLE[0]},
+            DeclarationError,
+            "motion of path 'tool': expected two laws, of x and y, got 1",
+        ),
+        (
+            {"tool": POSE},
+            DeclarationError,
+            "motion of path 'tool': expected two laws, of x and y, got 3",
+        ),
+        (
+            {"a": CIRCLE},
+            DeclarationError,
+            "motion of body 'a': expected three laws, of x, y and the angle, got 2",
+        ),
         ({"O": CIRCLE}, DeclarationError, "motion of joint 'O': expected one law, got 2"),
-        ({"tool": (CIRCLE[0], 3.0)}, DeclarationError, "motion of path 'tool': expected a law of lagrange_casadi.motion, got 3.0"),
-        ({"tol": CIRCLE}, UnknownNameError, "unknown joint, path or body in motion 'tol' .*valid: O, C, A, D, P, tool, a, b"),
+        (
+            {"tool": (CIRCLE[0], 3.0)},
+            DeclarationError,
+            "motion of path 'tool': expected a law of lagrange_casadi.motion, got 3.0",
+        ),
+        (
+            {"tol": CIRCLE},
+            UnknownNameError,
+            "unknown joint, path or body in motion 'tol' .*valid: O, C, A, D, P, tool, a, b",
+        ),
         ({"ground": POSE}, UnknownNameError, "unknown joint, path or body in motion 'ground'"),
     ],
 )
@@ -169,10 +241,14 @@ def test_misuse_is_told(laws, error, told):
 
 
 def test_who_drives_must_be_said():
-    with pytest.raises(DeclarationError, match=r"motion of 'tool': no effort is along it; name the joints that make it by drives"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"motion of 'tool': no effort is along it; name the joints that make it by drives",
+    ):
         guided(drives=None)
     with pytest.raises(
-        DeclarationError, match=r"drives: 1 cannot make 2 independent motions; .* for the motion of tool\.x, tool\.y"
+        DeclarationError,
+        match=r"drives: 1 cannot make 2 independent motions; .* for the motion of tool\.x, tool\.y",
     ):
         guided(drives=["O"])
 
@@ -206,6 +282,13 @@ def test_a_plate_is_drawn_to_a_point_beside_the_axis():
     link = m.link("link", length=1.0, mass=1.0)
     m.revolute("O", m.ground, link)
     m.path("nose", link.at(0.5, 0.3))
-    place = figures.MechanismDrawing(count=1).draw(evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}, t=(0, 1, 5)))).axes[0]
+    place = (
+        figures.MechanismDrawing(count=1)
+        .draw(evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}, t=(0, 1, 5))))
+        .axes[0]
+    )
     plate = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.3], [0.0, 0.0]])
-    assert any(line.get_xydata().shape == plate.shape and np.allclose(line.get_xydata(), plate) for line in place.get_lines())
+    assert any(
+        line.get_xydata().shape == plate.shape and np.allclose(line.get_xydata(), plate)
+        for line in place.get_lines()
+    )

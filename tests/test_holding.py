@@ -1,4 +1,6 @@
-"""The efforts that hold a mechanism at rest, beside frictions drawn within their limits around vector Newton-Euler."""
+"""The efforts that hold a mechanism at rest, beside frictions drawn within their limits around
+vector Newton-Euler.
+"""
 
 from dataclasses import replace
 
@@ -10,7 +12,17 @@ from click.testing import CliRunner
 from packer import CASE
 from packer import scene as packer
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, check, derive, evaluate, holding, load, save
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    check,
+    derive,
+    evaluate,
+    holding,
+    load,
+    save,
+)
 from lagrange_casadi.actuators import duty_of
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError
@@ -38,15 +50,24 @@ def drawn_scene(seed, kind):
         pins.append(m.revolute("C", m.ground.at(0.3, 0.0), last))
     for pin in pins:
         m.friction(f"rub_{pin.name}", pin, mu=rng.uniform(0.1, 0.3), radius=rng.uniform(0.01, 0.04))
-    m.force("push", last.at(rng.uniform(0.0, 0.2), 0.0), x=rng.uniform(-300, 300), y=rng.uniform(-300, 300))
+    m.force(
+        "push",
+        last.at(rng.uniform(0.0, 0.2), 0.0),
+        x=rng.uniform(-300, 300),
+        y=rng.uniform(-300, 300),
+    )
     m.torque("twist", rod, rng.uniform(-10, 10))
     law = moves([dwell(0.1), move(0.2, time=0.3)], start=rng.uniform(0.3, 2.5))
     law = polynomial(rng.uniform(0.3, 2.5)) if seed % 2 else law
-    return Scene(m, {"O": law}, ["effort", "motion", "friction"], t=(0, 0.05, 2), posture={"rod": 0.5})
+    return Scene(
+        m, {"O": law}, ["effort", "motion", "friction"], t=(0, 0.05, 2), posture={"rod": 0.5}
+    )
 
 
 def by_drawing(scene, rng):
-    """The efforts of the first instant with all frictions at limits, and with frictions that are drawn within them."""
+    """The efforts of the first instant with all frictions at limits, and with frictions that are
+    drawn within them.
+    """
     m = scene.mechanism
     found, drives = columns_at(derive(scene), 0.0, m.values())
     drives, _ = apart(m, drives, m.values())
@@ -64,7 +85,9 @@ def by_drawing(scene, rng):
         for rub, force in zip(rubs, forces, strict=True):
             rub.force = force
         result = rubbed.solve(drives, guess)
-        return np.array([result.efforts["O"], *(x for rub in rubs for x in result.reactions[rub.joint.name])])
+        return np.array(
+            [result.efforts["O"], *(x for rub in rubs for x in result.reactions[rub.joint.name])]
+        )
 
     alone = balanced(np.zeros(len(rubs)))
     slopes = np.stack([balanced(unit) - alone for unit in np.eye(len(rubs))], axis=-1)
@@ -75,7 +98,9 @@ def by_drawing(scene, rng):
     s = np.zeros_like(shares)
     for _ in range(200):
         borne = (alone[:, None] + slopes @ s)[1:].reshape(len(rubs), 3, -1)
-        s = shares * np.array([limit(rub, *reaction) for rub, reaction in zip(rubs, borne, strict=True)])
+        s = shares * np.array(
+            [limit(rub, *reaction) for rub, reaction in zip(rubs, borne, strict=True)]
+        )
     efforts = (alone[:, None] + slopes @ s)[0]
     return efforts[: corners.shape[1]], efforts[corners.shape[1] :]
 
@@ -87,7 +112,9 @@ def limit(rub, fx, fy, mz):
 
 
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])
-@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 4))])
+@pytest.mark.parametrize(
+    "seed", [*range(2), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 4))]
+)
 def test_no_friction_within_its_limits_asks_for_more(seed, kind):
     scene = drawn_scene(seed, kind)
     held = holding(scene, evaluate(scene))["O"]
@@ -96,12 +123,16 @@ def test_no_friction_within_its_limits_asks_for_more(seed, kind):
     size = np.abs(corners).max()
     assert held.least[0] == pytest.approx(corners.min(), abs=1e-9 * size)
     assert held.largest[0] == pytest.approx(corners.max(), abs=1e-9 * size)
-    assert held.least[0] - 1e-9 * size <= within.min() <= within.max() <= held.largest[0] + 1e-9 * size
+    assert (
+        held.least[0] - 1e-9 * size <= within.min() <= within.max() <= held.largest[0] + 1e-9 * size
+    )
     assert within.max() - within.min() > 0.3 * (corners.max() - corners.min())
 
 
 def test_a_slide_on_a_table_that_goes_on():
-    """Its weight of 19.62 N, and mu times what its two edges bear of 40 N and of the moments; the table feels none of it."""
+    """Its weight of 19.62 N, and mu times what its two edges bear of 40 N and of the moments; the
+    table feels none of it.
+    """
     m = Mechanism("two")
     table = m.link("table", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=0.01)
     slide = m.link("slide", length=0.2, mass=2.0, centre=(0.05, 0.0), inertia=0.01)
@@ -112,7 +143,11 @@ def test_a_slide_on_a_table_that_goes_on():
     scene = Scene(m, laws, ["effort", "motion", "friction"], t=(0.25, 0.35, 3))
     solution = evaluate(scene)
     ranges = holding(scene, solution)
-    assert ranges["X"].least.tolist() == ranges["X"].largest.tolist() == pytest.approx(solution.effort("X"), nan_ok=True)
+    assert (
+        ranges["X"].least.tolist()
+        == ranges["X"].largest.tolist()
+        == pytest.approx(solution.effort("X"), nan_ok=True)
+    )
     tilt = 2 * 9.81 * 0.05 / 0.1
     share = 0.2 * (abs(40 / 2 + tilt) + abs(40 / 2 - tilt))
     assert ranges["Y"].least == pytest.approx(19.62 - share, rel=1e-12)
@@ -121,7 +156,9 @@ def test_a_slide_on_a_table_that_goes_on():
 
 
 def carried_along():
-    """A carriage that goes on, and a link that it carries along without turning: its pin rests, its feet and the ways slide."""
+    """A carriage that goes on, and a link that it carries along without turning: its pin rests, its
+    feet and the ways slide.
+    """
     m = Mechanism("carried")
     carriage = m.link("carriage", length=0.2, mass=3.0, centre=(0.0, 0.0), inertia=0.01)
     link = m.link("link", length=0.2, mass=2.0)
@@ -150,8 +187,16 @@ def in_space(kind):
     ("scene", "joint", "why"),
     [
         (carried_along(), "X", "friction 'ways' slides, and changes with those at rest"),
-        (in_space("bush"), "C:slide", "friction 'rub_slide' may hold its joint in more than one direction"),
-        (in_space("ball"), "C:turn_1", "friction 'rub_ball' may hold its joint in more than one direction"),
+        (
+            in_space("bush"),
+            "C:slide",
+            "friction 'rub_slide' may hold its joint in more than one direction",
+        ),
+        (
+            in_space("ball"),
+            "C:turn_1",
+            "friction 'rub_ball' may hold its joint in more than one direction",
+        ),
     ],
 )
 def test_what_is_not_exact_is_not_told(scene, joint, why):
@@ -174,25 +219,43 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     duty = duty_of(solution, "O", efficiency=0.8, held=held)
     rests = np.isnan(solution.effort("O"))
     assert duty.torque[rests] == pytest.approx(held.worst[rests] / 0.8, rel=1e-12)
-    assert duty.torque[~rests] == pytest.approx(duty_of(solution.during(~rests), "O", efficiency=0.8).torque)
+    assert duty.torque[~rests] == pytest.approx(
+        duty_of(solution.during(~rests), "O", efficiency=0.8).torque
+    )
     assert duty_of(solution, "O", efficiency=0.8).torque.tolist() == duty.torque.tolist()
     with pytest.raises(DeclarationError, match=r"give what holding\(\) tells"):
         duty_of(replace(solution, held={}), "O")
-    told = f"held at rest: effort:O may be anything from {held.least[rests].min():.5g} to {held.largest[rests].max():.5g} N m"
+    told = (
+        f"held at rest: effort:O may be anything from {held.least[rests].min():.5g} to"
+        f" {held.largest[rests].max():.5g} N m"
+    )
     out = ["--no-figures", "--out", str(tmp_path / "packer.h5")]
     for command in (["drive"], ["run", *out]):
         found = CliRunner().invoke(program, [command[0], str(tmp_path / "packer.py"), *command[1:]])
         assert found.exit_code == 0, found.output
         assert told in found.output
-    out = ["--grid", "r=0.06,0.08", "--want", "effort", "--quiet", "--out", str(tmp_path / "sweep.h5")]
+    out = [
+        "--grid",
+        "r=0.06,0.08",
+        "--want",
+        "effort",
+        "--quiet",
+        "--out",
+        str(tmp_path / "sweep.h5"),
+    ]
     found = CliRunner().invoke(program, ["sweep", str(tmp_path / "packer.py"), *out])
     assert found.exit_code == 0, found.output
-    line = f"note: in design 0 a joint that rubs is at rest at {np.count_nonzero(rests)} of {rests.size} instants"
+    line = (
+        f"note: in design 0 a joint that rubs is at rest at {np.count_nonzero(rests)} of"
+        f" {rests.size} instants"
+    )
     assert found.output.count(line) == 1
 
 
 @pytest.mark.parametrize(
-    "scene", [packer(), carried_along(), in_space("bush"), drawn_scene(0, "four-bar")], ids=lambda s: s.mechanism.name
+    "scene",
+    [packer(), carried_along(), in_space("bush"), drawn_scene(0, "four-bar")],
+    ids=lambda s: s.mechanism.name,
 )
 def test_ranges_are_in_the_file_and_on_the_page(scene, tmp_path):
     solution = evaluate(scene)
@@ -211,9 +274,9 @@ def test_ranges_are_in_the_file_and_on_the_page(scene, tmp_path):
             np.testing.assert_array_equal(getattr(shown.held[name], end), getattr(held, end)[1:])
     for found in (solution, read):
         page = contents(found)
-        assert {f"holding:{name}:{end}" for name in solution.held for end in ("least", "largest")} <= {
-            one["name"] for one in page["series"]
-        }
+        assert {
+            f"holding:{name}:{end}" for name in solution.held for end in ("least", "largest")
+        } <= {one["name"] for one in page["series"]}
         assert set(solution.notes) <= set(page["notes"])
 
 

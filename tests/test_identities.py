@@ -1,4 +1,6 @@
-"""What must hold whatever the numbers: power, equilibrium, the equilibrium of an element, ends, scaling."""
+"""What must hold whatever the numbers: power, equilibrium, the equilibrium of an element, ends,
+scaling.
+"""
 
 import numpy as np
 import pytest
@@ -18,7 +20,9 @@ def cycle(values):
 
 
 def test_power_balance(solution):
-    """Effort times rate is the change of kinetic and potential energy, from the accelerations and velocities of the parts."""
+    """Effort times rate is the change of kinetic and potential energy, from the accelerations and
+    velocities of the parts.
+    """
     mass, r, l = 0.1, 0.1, 0.2
     crank, rod, slider = (solution.motion(j) for j in ("O", "A", "guide"))
     angle, rate, acc = crank.value, crank.rate, crank.acceleration
@@ -50,7 +54,10 @@ def test_whole_mechanism_is_in_equilibrium(solution):
     by = 2 * ay + l / 2 * (turn * np.cos(pose.angle) - spin**2 * np.sin(pose.angle))
     o, guide = solution.reaction("O"), solution.reaction("guide")
     scale = cycle(o.fx)
-    assert cycle(o.fx + guide.fx - mass * (ax + bx + solution.motion("guide").acceleration)) < 1e-13 * scale
+    assert (
+        cycle(o.fx + guide.fx - mass * (ax + bx + solution.motion("guide").acceleration))
+        < 1e-13 * scale
+    )
     assert cycle(o.fy + guide.fy - 3 * mass * G - mass * (ay + by)) < 1e-13 * scale
 
 
@@ -72,16 +79,23 @@ def slider_crank_fine(slider_crank):
 
 @pytest.mark.parametrize(("link", "base", "tip"), [("crank", "O", "A"), ("rod", "A", "B")])
 def test_end_sections_are_the_joint_reactions(solution, link, base, tip):
-    """At xi = 0 the outboard side is the whole link, which gives the reaction back; at xi = l the next link acts."""
+    """At xi = 0 the outboard side is the whole link, which gives the reaction back; at xi = l the
+    next link acts.
+    """
     pose, section = solution.pose(link), solution.section(link)
     e = np.array([np.cos(pose.angle), np.sin(pose.angle)])
     n = np.array([-np.sin(pose.angle), np.cos(pose.angle)])
     for joint, column in ((base, 0), (tip, -1)):
-        # A reaction acts on the joint's child: on this link at its base, on the next link at its tip; in both the section feels
-        # the opposite, at the base because the outboard side is what the reaction holds.
+        # A reaction acts on the joint's child: on this link at its base, on the next link at its
+        # tip; in both the section feels the opposite, at the base because the outboard side is what
+        # the reaction holds.
         force = -np.array([solution.reaction(joint).fx, solution.reaction(joint).fy])
-        assert cycle(section.axial[:, column] - np.sum(e * force, axis=0)) < 1e-13 * cycle(section.axial)
-        assert cycle(section.shear[:, column] - np.sum(n * force, axis=0)) < 1e-13 * cycle(section.axial)
+        assert cycle(section.axial[:, column] - np.sum(e * force, axis=0)) < 1e-13 * cycle(
+            section.axial
+        )
+        assert cycle(section.shear[:, column] - np.sum(n * force, axis=0)) < 1e-13 * cycle(
+            section.axial
+        )
 
 
 def test_no_moment_at_pins(solution):
@@ -96,7 +110,9 @@ def test_no_moment_at_pins(solution):
 def test_forces_scale_with_masses(slider_crank):
     """All masses doubled: every force and moment doubled, to the bit, for doubling is exact."""
     one = evaluate(slider_crank.scene, t=(0, 0.08, 41))
-    two = evaluate(slider_crank.scene, t=(0, 0.08, 41), parameters={"m1": 0.2, "m2": 0.2, "m3": 0.2})
+    two = evaluate(
+        slider_crank.scene, t=(0, 0.08, 41), parameters={"m1": 0.2, "m2": 0.2, "m3": 0.2}
+    )
     for name in one.names():
         factor = 1.0 if name.startswith(("motion", "pose")) else 2.0
         np.testing.assert_array_equal(two.array(name), factor * one.array(name), err_msg=name)
@@ -107,8 +123,14 @@ def test_forces_scale_with_speed():
     graph = derive(slider_crank())
     p = [0.1, 0.2, 0.1, 0.1, 0.1]
     for angle in np.linspace(0.0, 6.0, 13):
-        still, slow, fast = (graph.instant(0.0, angle, rate, 0.0, [], p).full().ravel() for rate in (0.0, 5.0, 10.0))
-        forces = [k for k, name in enumerate(graph.names) if name.startswith(("effort", "reaction", "section"))]
+        still, slow, fast = (
+            graph.instant(0.0, angle, rate, 0.0, [], p).full().ravel() for rate in (0.0, 5.0, 10.0)
+        )
+        forces = [
+            k
+            for k, name in enumerate(graph.names)
+            if name.startswith(("effort", "reaction", "section"))
+        ]
         gap = (fast - still - 4 * (slow - still))[forces]
         assert cycle(gap) < 1e-13 * cycle(fast[forces])
 

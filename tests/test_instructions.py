@@ -59,10 +59,19 @@ def told():
     """Of each case in the tables of docs/speed.md: everything, efforts, and a step."""
     for line in (CASES.parent / "docs" / "speed.md").read_text().splitlines():
         name, *cells = (cell.strip().replace("*", "") for cell in line.strip("|").split("|"))
-        if name in INSTANT and len(cells) in (3, 4) and cells[0][:1].isdigit() and "." not in "".join(cells):
+        if (
+            name in INSTANT
+            and len(cells) in (3, 4)
+            and cells[0][:1].isdigit()
+            and "." not in "".join(cells)
+        ):
             everything, efforts = (cells[1], cells[3]) if len(cells) == 4 else cells[:2]
-            step = everything.partition("+")[2].removesuffix("a step") if len(cells) == 4 else cells[2]
-            yield pytest.param(name, int(everything.split()[0]), int(efforts.split()[0]), int(step or 0), id=name)
+            step = (
+                everything.partition("+")[2].removesuffix("a step") if len(cells) == 4 else cells[2]
+            )
+            yield pytest.param(
+                name, int(everything.split()[0]), int(efforts.split()[0]), int(step or 0), id=name
+            )
 
 
 @pytest.mark.sampled(6)
@@ -84,13 +93,17 @@ def chain(links):
     end, laws = m.ground, {}
     for k in range(links):
         link = m.link(f"link{k}", length=0.3, mass=1.0)
-        m.revolute(f"J{k}", end, link, axis=((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))[k % 3])
+        m.revolute(
+            f"J{k}", end, link, axis=((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))[k % 3]
+        )
         end, laws[f"J{k}"] = link.tip, harmonic(0.1 * k, 0.5, 1.0)
     return Scene(m, laws, t=(0.0, 1.0, 11))
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("wanted", [["effort"], ["effort", "section"]], ids=["efforts", "sections too"])
+@pytest.mark.parametrize(
+    "wanted", [["effort"], ["effort", "section"]], ids=["efforts", "sections too"]
+)
 def test_instructions_grow_with_the_links_of_an_open_chain(wanted):
     """Three more links take as many instructions more, however many there are."""
     counts = [derive(chain(links), wanted).instructions["instant"] for links in (6, 9, 12, 15)]

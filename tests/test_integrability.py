@@ -1,4 +1,6 @@
-"""Velocities that an energy may be written in, and those that may not: rates of places, and rates of nothing."""
+"""Velocities that an energy may be written in, and those that may not: rates of places, and rates
+of nothing.
+"""
 
 import casadi as ca
 import numpy as np
@@ -19,7 +21,10 @@ def symbols(n):
 
 def course(q, qd, qdd, time=None, tangent=None, drift=None):
     n = qd.numel()
-    tangent, drift = ca.SX.eye(n) if tangent is None else tangent, ca.SX(q.numel(), 1) if drift is None else drift
+    tangent, drift = (
+        ca.SX.eye(n) if tangent is None else tangent,
+        ca.SX(q.numel(), 1) if drift is None else drift,
+    )
     return Course(q, qd, qdd, ca.SX(0, 1) if time is None else time, tangent, drift)
 
 
@@ -28,11 +33,15 @@ def wrong(graphs, *args, **more):
 
 
 def axes_of(q):
-    """The axes of a body turned about z, then about its x, then about its z, as the columns of a matrix."""
+    """The axes of a body turned about z, then about its x, then about its z, as the columns of a
+    matrix.
+    """
 
     def about(axis, angle):
         c, s = ca.cos(angle), ca.sin(angle)
-        rows = {"x": [[1, 0, 0], [0, c, -s], [0, s, c]], "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]]}[axis]
+        rows = {"x": [[1, 0, 0], [0, c, -s], [0, s, c]], "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]]}[
+            axis
+        ]
         return ca.vertcat(*(ca.horzcat(*row) for row in rows))
 
     return about("z", q[0]) @ about("x", q[1]) @ about("z", q[2])
@@ -47,7 +56,9 @@ def turning(q, qd):
 
 
 def test_what_is_nothing_but_rounding_is_not_taken_for_a_rate():
-    """Across its own axis a body that turns about that does not move: what is left of two products is one rounding."""
+    """Across its own axis a body that turns about that does not move: what is left of two products
+    is one rounding.
+    """
     q, qd, qdd = symbols(2)
     c, s, a = ca.cos(q[0]), ca.sin(q[0]), ca.cos(q[1])
     nothing = qd[1] * c * (s * a + (1 - a) * s) - qd[1] * s * (c * a + (1 - a) * c)
@@ -77,7 +88,11 @@ def test_what_time_itself_moves_must_be_told_so():
     graphs = ca.jtimes(place, ca.vertcat(q, t), ca.vertcat(qd, 1))
     assert wrong(graphs, q, qd, qdd, time=t) == []
     assert wrong(graphs, q, qd, qdd) == [0, 1, 2]
-    assert wrong(ca.jtimes(place, q, qd), q, qd, qdd, time=t) == [0, 1, 2]  # what time adds is forgotten
+    assert wrong(ca.jtimes(place, q, qd), q, qd, qdd, time=t) == [
+        0,
+        1,
+        2,
+    ]  # what time adds is forgotten
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
@@ -121,7 +136,9 @@ def test_along_a_mobility_only_what_depends_on_it_can_be_told():
 
 
 def free_body(velocities):
-    """A body that turns in space about its centre, by three angles; its energy over what ``velocities`` makes of them."""
+    """A body that turns in space about its centre, by three angles; its energy over what
+    ``velocities`` makes of them.
+    """
     q, qd, qdd = symbols(3)
     about, change = turning(q, qd)
     w = ca.SX.sym("w", 3 if velocities == "rates" else 9)
@@ -145,14 +162,17 @@ def free_body(velocities):
 def test_the_angular_velocity_of_a_body_in_space_is_refused():
     fields, _ = free_body("rates")
     with pytest.raises(
-        DeclarationError, match=r"velocity_graphs: velocities 0, 1, 2 \(counted from 0\) are no rate of a place"
+        DeclarationError,
+        match=r"velocity_graphs: velocities 0, 1, 2 \(counted from 0\) are no rate of a place",
     ) as told:
         LagrangeSystem(**fields)
     assert "take the velocities of points or axes" in str(told.value)
 
 
 def test_the_rates_of_a_body_s_axes_give_euler_s_equations():
-    """I w' + w x I w about the body's axes, and what of it works along each angle: no energy in it."""
+    """I w' + w x I w about the body's axes, and what of it works along
+    each angle: no energy in it.
+    """
     fields, (q, qd, qdd, about) = free_body("axes")
     (along, _) = LagrangeSystem(**fields).terms()
     change = ca.jtimes(about, ca.vertcat(q, qd), ca.vertcat(qd, qdd))
@@ -181,11 +201,15 @@ def test_only_velocities_that_bear_energy_must_be_rates():
 
 
 def test_rates_of_turning_in_space_are_no_rates_of_coordinates():
-    """Angles by their kinematic equations, q' for the body's rates: Lagrange's equations do not hold for these."""
+    """Angles by their kinematic equations, q' for the body's rates: Lagrange's equations do not
+    hold for these.
+    """
     q, w, wd = symbols(3)
     about, _ = turning(q, w)
     tangent = ca.inv(ca.jacobian(about, w))
-    with pytest.raises(DeclarationError, match=r"tangent: coordinates 0, 1, 2 \(counted from 0\) are no function"):
+    with pytest.raises(
+        DeclarationError, match=r"tangent: coordinates 0, 1, 2 \(counted from 0\) are no function"
+    ):
         LagrangeSystem(ca.dot(INERTIA, w**2) / 2, ca.SX(0), q, w, wd, tangent=tangent)
 
 
@@ -193,5 +217,7 @@ def test_a_drift_that_belongs_to_no_motion_is_refused():
     p, qd, qdd, t = ca.SX.sym("p", 2), ca.SX.sym("qd"), ca.SX.sym("qdd"), ca.SX.sym("t")
     tangent = ca.vertcat(-p[1], p[0])
     LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.cos(t) * tangent, time=t)
-    with pytest.raises(DeclarationError, match=r"tangent and drift: coordinate 1 \(counted from 0\) is no function"):
+    with pytest.raises(
+        DeclarationError, match=r"tangent and drift: coordinate 1 \(counted from 0\) is no function"
+    ):
         LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.vertcat(1, 0), time=t)

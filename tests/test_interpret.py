@@ -1,4 +1,6 @@
-"""Functions followed instruction by instruction: the virtual machine's bits, and what cannot be followed."""
+"""Functions followed instruction by instruction: the virtual machine's bits, and what cannot be
+followed.
+"""
 
 import math
 from dataclasses import replace
@@ -13,7 +15,14 @@ from hypothesis import strategies as st
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.arithmetic.interpret import ROUNDINGS, Step, followable, interpret, numpy_arithmetic, steps
+from lagrange_casadi.arithmetic.interpret import (
+    ROUNDINGS,
+    Step,
+    followable,
+    interpret,
+    numpy_arithmetic,
+    steps,
+)
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError
 
@@ -81,16 +90,24 @@ def test_what_cannot_be_followed():
     called = ca.Function("called", [X], [ca.sin(X)], {"never_inline": True})
     function = ca.Function("outer", [X], [called(X)])
     assert not followable(function)
-    with pytest.raises(DeclarationError, match="function 'outer' cannot be followed: it calls another one"):
+    with pytest.raises(
+        DeclarationError, match="function 'outer' cannot be followed: it calls another one"
+    ):
         interpret(function, [[1.0]], numpy_arithmetic())
     m = ca.MX.sym("m")
     function = ca.Function("matrices", [m], [m + 1])
     assert not followable(function)
-    with pytest.raises(DeclarationError, match=r"function 'matrices' cannot be followed: it is not written in scalars"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"function 'matrices' cannot be followed: it is not written in scalars",
+    ):
         interpret(function, [[1.0]], numpy_arithmetic())
     function = ca.Function("rare", [X], [ca.erfinv(X)])
     assert not followable(function)
-    with pytest.raises(DeclarationError, match="function 'rare' cannot be followed: it takes OP_ERFINV, unknown here"):
+    with pytest.raises(
+        DeclarationError,
+        match="function 'rare' cannot be followed: it takes OP_ERFINV, unknown here",
+    ):
         interpret(function, [[0.5]], numpy_arithmetic())
 
 

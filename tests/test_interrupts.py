@@ -1,4 +1,6 @@
-"""Signals, real ones to real processes: one line and status 130 at any moment, and what is ignored stays so."""
+"""Signals, real ones to real processes: one line and status 130 at any moment, and what is ignored
+stays so.
+"""
 
 import errno
 import fcntl
@@ -24,7 +26,9 @@ RUN = ["run", str(CASE), "--t", "0:0.08:9", "--no-figures"]
 SWEEP = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
 SHORT = ["--grid", "l=0.11:0.4:25", "--grid", "r=0.05:0.1:6"]
 LONG = ["--grid", "l=0.11:0.4:4000", "--grid", "r=0.05:0.1:250"]
-KEPT = r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n"
+KEPT = (
+    r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n"
+)
 
 
 def program(*arguments, **keywords):
@@ -47,8 +51,14 @@ def ignoring(*numbers):
 
 
 @pytest.mark.sampled(7)
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
-@pytest.mark.parametrize("arguments", [["--help"], RUN, [*SWEEP, *SHORT, "--force"]], ids=lambda arguments: arguments[0].strip("-"))
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name
+)
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], RUN, [*SWEEP, *SHORT, "--force"]],
+    ids=lambda arguments: arguments[0].strip("-"),
+)
 def test_an_interrupt_at_any_moment_is_one_line(here, arguments, number):
     for delay in (0.0, 0.03, 0.1, 0.2, 0.4):
         with program(*arguments) as stopped:
@@ -56,7 +66,8 @@ def test_an_interrupt_at_any_moment_is_one_line(here, arguments, number):
             time.sleep(delay)
             stopped.send_signal(number)
             out, err = stopped.communicate(timeout=60)
-        # Python ends itself by SIGINT, which is 130 for shells too, if that came while a text was executed, as dataclasses do.
+        # Python ends itself by SIGINT, which is 130 for shells too, if that came while a text was
+        # executed, as dataclasses do.
         executed = stopped.returncode == -signal.SIGINT and err
         if stopped.returncode == 130 or executed:
             assert err == LINE or re.fullmatch(r"error: stopped; [^\n]*\n", err)
@@ -66,12 +77,17 @@ def test_an_interrupt_at_any_moment_is_one_line(here, arguments, number):
             assert out
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
-@pytest.mark.parametrize("command", [[shutil.which("lagrange-casadi")], [sys.executable, "-m", "lagrange_casadi"]])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name
+)
+@pytest.mark.parametrize(
+    "command", [[shutil.which("lagrange-casadi")], [sys.executable, "-m", "lagrange_casadi"]]
+)
 def test_an_interrupt_while_modules_are_imported_is_one_line(here, command, number):
     """Here of one that takes its time, and would not let an exception through."""
     (here / "numpy.py").write_text(
-        "import time\nprint('ready', flush=True)\ntry:\n    time.sleep(60)\nexcept BaseException:\n    raise ImportError('no')\n"
+        "import time\nprint('ready', flush=True)\ntry:\n    time.sleep(60)\nexcept BaseException:\n"
+        "    raise ImportError('no')\n"
     )
     path = os.pathsep.join([str(here), *sys.path])
     with sweeps.process(*command, *RUN, env={**os.environ, "PYTHONPATH": path}) as stopped:
@@ -85,7 +101,9 @@ READY = "print('ready', flush=True); time.sleep(60)"
 WAITS = {
     "import": f"{READY}\n",
     "scene": f"def scene():\n    {READY}\n",
-    "another-error": f"def scene():\n    try:\n        {READY}\n    finally:\n        raise ValueError\n",
+    "another-error": (
+        f"def scene():\n    try:\n        {READY}\n    finally:\n        raise ValueError\n"
+    ),
     "swallowed": f"try:\n    {READY}\nexcept BaseException:\n    time.sleep(60)\n",
     "pool": (
         "import multiprocessing\n"
@@ -111,7 +129,8 @@ def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number
         try:
             said = stopped.communicate(timeout=5)
         except subprocess.TimeoutExpired:
-            # Of a case with threads of its own, as a pool has, the system may give one the signal, which wakes no other: once more.
+            # Of a case with threads of its own, as a pool has, the system may give one the signal,
+            # which wakes no other: once more.
             assert "Pool" in text
             os.killpg(stopped.pid, number)
             said = stopped.communicate(timeout=15)
@@ -122,8 +141,8 @@ def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number
 
 def test_other_programs_keep_their_signals():
     text = (
-        "import signal, sys; sys.argv[0] = '-m'; before = [signal.getsignal(n) for n in (2, 15)]; import lagrange_casadi; "
-        "assert before == [signal.getsignal(n) for n in (2, 15)]"
+        "import signal, sys; sys.argv[0] = '-m'; before = [signal.getsignal(n) for n in (2, 15)];"
+        " import lagrange_casadi; assert before == [signal.getsignal(n) for n in (2, 15)]"
     )
     subprocess.run([sys.executable, "-c", text], check=True)
 
@@ -154,12 +173,20 @@ def test_a_sweep_keeps_its_blocks(here, number):
 def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
     """It takes minutes; the blocks that were committed before stay."""
     with program(*SWEEP, "--grid", "l=0.11:0.4:200000000", "--out", "x.h5") as stopped:
-        sweeps.wait_for(lambda: [path for path in here.glob("x.h5.parts/joined.h5") if path.stat().st_size > 1_000_000])
+        sweeps.wait_for(
+            lambda: [
+                path
+                for path in here.glob("x.h5.parts/joined.h5")
+                if path.stat().st_size > 1_000_000
+            ]
+        )
         stopped.send_signal(number)
         out, err = stopped.communicate(timeout=60)
     assert (stopped.returncode, out) == (130, "")
     note, error = err.splitlines(keepends=True)[-2:]
-    assert re.fullmatch(r"note: 200 000 000 designs take about .* of a core and a file of up to \S+ GB\n", note)
+    assert re.fullmatch(
+        r"note: 200 000 000 designs take about .* of a core and a file of up to \S+ GB\n", note
+    )
     assert re.fullmatch(KEPT.replace("1 000 000", "200 000 000"), error)
     assert sorted(path.suffix for path in here.glob("x.h5.parts/*"))[-1] == ".part"
     assert not list(here.glob("x.h5.parts/joined.h5"))
@@ -169,13 +196,37 @@ ITERATED, NEWTON = str(CASE.parent / "beam_pump"), ["--newton", "1000", "--no-fi
 STEPPING = {
     "compiled": ["run", ITERATED, *NEWTON, "--t", "0:6:10000001"],
     "interpreted": ["run", ITERATED, *NEWTON, "--t", "0:6:1000001", "--backend", "vm"],
-    "swept": ["sweep", ITERATED, "--newton", "1000", "--want", "effort", "--t", "0:6:2000001", "--grid", "r=0.9:1:50"],
-    "swept-interpreted": ["sweep", ITERATED, "--newton", "1000", "--t", "0:6:20001", "--grid", "r=0.9:1:50", "--backend", "vm"],
+    "swept": [
+        "sweep",
+        ITERATED,
+        "--newton",
+        "1000",
+        "--want",
+        "effort",
+        "--t",
+        "0:6:2000001",
+        "--grid",
+        "r=0.9:1:50",
+    ],
+    "swept-interpreted": [
+        "sweep",
+        ITERATED,
+        "--newton",
+        "1000",
+        "--t",
+        "0:6:20001",
+        "--grid",
+        "r=0.9:1:50",
+        "--backend",
+        "vm",
+    ],
 }
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
+@pytest.mark.parametrize(
+    ("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True)
+)
 def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""
     with program(*STEPPING[name]) as stopped:
@@ -184,7 +235,9 @@ def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
         stopped.send_signal(number)
         out, err = stopped.communicate(timeout=20)
     assert (stopped.returncode, out) == (130, "")
-    assert re.search(r"error: (interrupted; nothing was left half-written|stopped; nothing was done yet)\n$", err)
+    assert re.search(
+        r"error: (interrupted; nothing was left half-written|stopped; nothing was done yet)\n$", err
+    )
     assert not list(here.iterdir())
 
 

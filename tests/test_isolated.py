@@ -1,4 +1,6 @@
-"""Expressions that are at a single place other than on both sides of it: no instant there is a result."""
+"""Expressions that are at a single place other than on both sides of it: no instant there is a
+result.
+"""
 
 import itertools
 
@@ -19,7 +21,9 @@ from lagrange_casadi.studies.designs.engine import DesignEngine
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 TOUCHING = T * ca.sin(T)
-"""Zero at zero alone, to the last bit; CasADi does not simplify its size, as it does that of a square."""
+"""Zero at zero alone, to the last bit; CasADi does not simplify its size, as it does that of a
+square.
+"""
 
 INNER = [
     *(a + b * TOUCHING for a, b in itertools.product((0.0, 1.0, -1.0, 0.5, 1.5), (1.0, -1.0))),
@@ -48,20 +52,33 @@ def compare(some):
         smooth = Smooth.of(graph, T, ca.SX(0, 1))
         found = [None] * 3
         if smooth is not None:
-            found = [smooth.isolated(HIT, ()), smooth.isolated(BESIDE, (), between=True), smooth.isolated(BESIDE, ())]
+            found = [
+                smooth.isolated(HIT, ()),
+                smooth.isolated(BESIDE, (), between=True),
+                smooth.isolated(BESIDE, ()),
+            ]
             kink = smooth.kink(HIT, ())
             # What limits say of zero, they say of zero alone.
-            assert kink is None or (abs(kink.at["t"]) > 0.1 and shown(graph, 0.0, kink.at["t"], -1.0)), f"{name}: {graph}: {kink}"
+            assert kink is None or (
+                abs(kink.at["t"]) > 0.1 and shown(graph, 0.0, kink.at["t"], -1.0)
+            ), f"{name}: {graph}: {kink}"
         alone = told == "isolated"
-        assert [one is not None for one in found] == [alone, alone, False], f"{name}: {graph}: {told}, {found}"
+        assert [one is not None for one in found] == [alone, alone, False], (
+            f"{name}: {graph}: {told}, {found}"
+        )
         assert not alone or abs(found[0].at["t"]) < 1e-6
         many.setdefault(told, set()).add(name)
     return many
 
 
-@pytest.mark.parametrize("graph", [ca.fmin(ca.sin(T), T), ca.fmax(1 + ca.sin(T), 1 + T), ca.if_else(ca.tan(T) > T, ca.sin(T), T)])
+@pytest.mark.parametrize(
+    "graph",
+    [ca.fmin(ca.sin(T), T), ca.fmax(1 + ca.sin(T), 1 + T), ca.if_else(ca.tan(T) > T, ca.sin(T), T)],
+)
 def test_curves_that_touch_in_a_third_power_are_no_place_alone(graph):
-    """They are the same number for some 1e-5 around, at whose ends no curvature is that of either side to the last bit."""
+    """They are the same number for some 1e-5 around, at whose ends no curvature is that of either
+    side to the last bit.
+    """
     smooth = Smooth.of(graph, T, ca.SX(0, 1))
     for path in (HIT, BESIDE, 1e-3 * HIT, 30 * BESIDE):
         assert smooth.isolated(path, (), between=True) is None
@@ -93,12 +110,18 @@ def slide(law, count=21):
     m = Mechanism("slide")
     body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
     m.prismatic("way", m.ground, body, axis=(1, 0))
-    return Scene(m, {"way": expression(lambda t: 0.1 * law(t - k))}, t=(-1.0, 1.0, count), wanted=("effort",))
+    return Scene(
+        m, {"way": expression(lambda t: 0.1 * law(t - k))}, t=(-1.0, 1.0, count), wanted=("effort",)
+    )
 
 
 def constraint(law, count=21):
     m = Mechanism("constraint")
-    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    crank, body, k = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.point_mass("body", 2.0),
+        m.parameter("k", 0.0),
+    )
     turn = m.revolute("turn", m.ground, crank)
     way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
     m.constraint("profile", m.coordinate(way) - 0.1 * law(m.coordinate(turn) - k))
@@ -107,14 +130,30 @@ def constraint(law, count=21):
 
 def cam(law, count=21):
     m = Mechanism("cam")
-    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", 0.0)
+    wheel, rod, k = (
+        m.link("wheel", length=0.1, mass=1.0),
+        m.link("rod", length=0.1, mass=1.0),
+        m.parameter("k", 0.0),
+    )
     main = m.revolute("turn", m.ground, wheel)
     lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
-    disc_cam(m, "profile", main, lead, lambda x: 0.01 * law(ca.sin(x - 0.5 - k)), base_radius=0.1, roller=0.01)
+    disc_cam(
+        m,
+        "profile",
+        main,
+        lead,
+        lambda x: 0.01 * law(ca.sin(x - 0.5 - k)),
+        base_radius=0.1,
+        roller=0.01,
+    )
     return Scene(m, {"turn": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, count), wanted=("effort",))
 
 
-NAMED = {slide: "the motion of joint 'way'", constraint: "constraint 'profile'", cam: "cam 'profile': its lift"}
+NAMED = {
+    slide: "the motion of joint 'way'",
+    constraint: "constraint 'profile'",
+    cam: "cam 'profile': its lift",
+}
 SCENES = pytest.mark.parametrize("scene", NAMED, ids=[one.__name__ for one in NAMED])
 
 
@@ -122,7 +161,9 @@ SCENES = pytest.mark.parametrize("scene", NAMED, ids=[one.__name__ for one in NA
 @pytest.mark.parametrize("name", LAWS)
 def test_an_instant_that_hits_it_is_refused_by_name(scene, name):
     made = scene(LAWS[name])
-    with pytest.raises(DeclarationError, match=f"{NAMED[scene]}: its .* = 0(.5)? is not that on either side"):
+    with pytest.raises(
+        DeclarationError, match=f"{NAMED[scene]}: its .* = 0(.5)? is not that on either side"
+    ):
         evaluate(made, certificate=False)
     # Nobody is there.
     evaluate(made, parameters={"k": 0.03}, certificate=False)
@@ -133,7 +174,10 @@ def test_an_instant_that_hits_it_is_refused_by_name(scene, name):
 @pytest.mark.parametrize("count", [21, 20])
 def test_designs_are_sought_between_instants_and_refused_there_too(scene, count):
     made = scene(LAWS["if_else"], count)
-    assert DesignEngine.of(made, ["effort"]).evaluate([[0.0], [1.2]]).status.tolist() == [Status.CORNER, Status.OK]
+    assert DesignEngine.of(made, ["effort"]).evaluate([[0.0], [1.2]]).status.tolist() == [
+        Status.CORNER,
+        Status.OK,
+    ]
     f = prepare(made, wanted=["effort"])
     with pytest.raises((DeclarationError, AssemblyError)):
         f.peaks(k=0.0)
@@ -142,12 +186,16 @@ def test_designs_are_sought_between_instants_and_refused_there_too(scene, count)
 
 @SCENES
 def test_peaks_between_instants_are_not_those_of_a_place_alone(scene):
-    """-2 x^2 of a lift has its curvature at zero too; an instant there has none, and so has more weight left."""
+    """-2 x^2 of a lift has its curvature at zero too; an instant there has none, and so has more
+    weight left.
+    """
     made = scene(lambda x: -2 * ca.if_else(x == 0, 0, x**2 + 0.3 * x**4), 20)
     solution = evaluate(made, certificate=False)
     with pytest.raises(DeclarationError, match="is not that on either side"):
         refine(made, solution)
-    assert np.isfinite(refine(made, evaluate(made, parameters={"k": 1.2}, certificate=False))[0].value)
+    assert np.isfinite(
+        refine(made, evaluate(made, parameters={"k": 1.2}, certificate=False))[0].value
+    )
 
 
 @pytest.mark.parametrize("t", [(0.0, 0.0, 1), (0.0, 1.0, 11), (-1.0, 0.0, 11)])
@@ -157,7 +205,11 @@ def test_the_first_instant_the_last_and_a_single_one_are_looked_at(t):
 
 
 def test_what_lies_between_both_sides_of_a_jump_of_acceleration_stays():
-    for law in (lambda x: ca.fmax(x, 0) ** 2, lambda x: x * ca.fabs(x), lambda x: ca.if_else(x < 0, 0, x**2)):
+    for law in (
+        lambda x: ca.fmax(x, 0) ** 2,
+        lambda x: x * ca.fabs(x),
+        lambda x: ca.if_else(x < 0, 0, x**2),
+    ):
         evaluate(slide(law), certificate=False)
 
 
@@ -172,6 +224,10 @@ def test_loads_act_at_an_instant_as_they_are_declared(name):
     body = m.point_mass("body", 2.0)
     m.prismatic("way", m.ground, body, axis=(1, 0))
     m.force("push", body, x=LAWS[name](m.time))
-    solution = evaluate(Scene(m, {"way": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, 21), wanted=("effort",)))
+    solution = evaluate(
+        Scene(m, {"way": polynomial(0.0, 1.0)}, t=(-1.0, 1.0, 21), wanted=("effort",))
+    )
     declared = ca.Function("law", [T], [ca.SX(LAWS[name](T))])
-    np.testing.assert_allclose(solution.effort("way"), -declared(solution.t[None]).full().ravel(), atol=1e-15)
+    np.testing.assert_allclose(
+        solution.effort("way"), -declared(solution.t[None]).full().ravel(), atol=1e-15
+    )

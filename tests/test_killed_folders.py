@@ -1,4 +1,6 @@
-"""A kill, or a full disk, at each moment at which a folder changes: the next run of the same command goes on."""
+"""A kill, or a full disk, at each moment at which a folder changes: the next run of the same
+command goes on.
+"""
 
 import os
 import random
@@ -19,7 +21,11 @@ pytestmark = [
 
 def contents(folder):
     """All files by name, drafts and those of folders too."""
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 def drawn(chance):
@@ -41,7 +47,10 @@ def begin(before, folder):
 
 
 def refused(number, action):
-    """Fill the disk at a change by its number; whether it got there. What is raised is one line of ours."""
+    """Fill the disk at a change by its number; whether it got there.
+
+    What is raised is one line of ours.
+    """
     with pytest.MonkeyPatch.context() as patch:
         meet(patch, number, full)
         try:
@@ -51,7 +60,9 @@ def refused(number, action):
     return False
 
 
-@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 20))])
+@pytest.mark.parametrize(
+    "seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 20))]
+)
 @pytest.mark.parametrize("manifest", [FIGURES, EXPORT], ids=["figures", "export"])
 @pytest.mark.parametrize("ends", ["kill", "full disk"])
 def test_a_folder_that_is_half_filled_is_filled_by_the_next(tmp_path, manifest, ends, seed):

@@ -36,7 +36,9 @@ def test_every_dyad_has_a_closed_form(name):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("scene", [four_bar(), block(), cross_slide(), PATTERNS["inverted_block_carries"]()], ids=str)
+@pytest.mark.parametrize(
+    "scene", [four_bar(), block(), cross_slide(), PATTERNS["inverted_block_carries"]()], ids=str
+)
 def test_rates_are_the_derivatives_of_positions(scene):
     """Against differences in time that use positions alone."""
     h = 1e-4
@@ -45,9 +47,18 @@ def test_rates_are_the_derivatives_of_positions(scene):
     columns = dict(zip(graph.names, np.unwrap(np.array(rows), axis=0).T, strict=True))
     for name, values in columns.items():
         if name.startswith("motion:") and f"{name}_rate" in columns:
-            first = (-values[0] + 9 * values[1] - 45 * values[2] + 45 * values[4] - 9 * values[5] + values[6]) / (60 * h)
+            first = (
+                -values[0]
+                + 9 * values[1]
+                - 45 * values[2]
+                + 45 * values[4]
+                - 9 * values[5]
+                + values[6]
+            ) / (60 * h)
             rate = columns[f"{name}_rate"]
-            second = (-rate[0] + 9 * rate[1] - 45 * rate[2] + 45 * rate[4] - 9 * rate[5] + rate[6]) / (60 * h)
+            second = (
+                -rate[0] + 9 * rate[1] - 45 * rate[2] + 45 * rate[4] - 9 * rate[5] + rate[6]
+            ) / (60 * h)
             assert first == pytest.approx(rate[3], abs=1e-9, rel=1e-9)
             assert second == pytest.approx(columns[f"{name}_acceleration"][3], abs=1e-8, rel=1e-8)
 
@@ -55,7 +66,10 @@ def test_rates_are_the_derivatives_of_positions(scene):
 def test_an_undriven_angle_starts_within_half_a_turn():
     """However far the drive has turned before."""
     mechanism = slider_crank().mechanism
-    scenes = (Scene(mechanism, {"O": polynomial(start, 9.0)}, posture={"rod": 0.0}) for start in (0.5, 0.5 + 20 * math.pi))
+    scenes = (
+        Scene(mechanism, {"O": polynomial(start, 9.0)}, posture={"rod": 0.0})
+        for start in (0.5, 0.5 + 20 * math.pi)
+    )
     near, far = (evaluate(scene, wanted=["motion"]).motion("A").value for scene in scenes)
     assert -math.pi < far[0] <= math.pi
     np.testing.assert_allclose(far, near, rtol=0, atol=1e-13)
@@ -70,7 +84,10 @@ def test_the_posture_chooses_the_branch():
 
 def test_the_branch_is_asked_for_where_it_is_open():
     scene = slider_crank(posture={})
-    says = r"joint 'guide' can be assembled in two ways.*rod = .*\(0 deg\).* or rod = .*180 deg.*posture=\{'rod'"
+    says = (
+        r"joint 'guide' can be assembled in two ways.*rod = .*\(0 deg\).* or rod = .*180"
+        r" deg.*posture=\{'rod'"
+    )
     with pytest.raises(DeclarationError, match=says):
         derive(scene)
 
@@ -83,34 +100,51 @@ def test_a_posture_between_the_branches_is_no_answer():
 @pytest.mark.quick
 def test_a_loop_that_cannot_close_at_the_start_is_named():
     with pytest.raises(
-        AssemblyError, match=r"closed by joint 'B' cannot be closed at the start of the motion, where O = 1\.46 rad"
+        AssemblyError,
+        match=(
+            r"closed by joint 'B' cannot be closed at the start of the motion, where O = 1\.46 rad"
+        ),
     ):
         derive(four_bar(lengths=(0.1, 0.1, 0.1), frame=(1.0, 0.0)))
 
 
 def test_a_loop_that_opens_on_the_way_is_named_with_its_angle():
     scene = slider_crank(posture={"rod": 0.0})
-    with pytest.raises(AssemblyError, match=r"closed by joint 'guide' cannot be closed at t = 0\.01 s, where O = 0\.785.*\(45\."):
+    with pytest.raises(
+        AssemblyError,
+        match=r"closed by joint 'guide' cannot be closed at t = 0\.01 s, where O = 0\.785.*\(45\.",
+    ):
         evaluate(scene, parameters={"r": 0.3})
 
 
 @pytest.mark.quick
 def test_a_dead_centre_is_named():
-    """r = l and the crank exactly at 90 deg: the rod stands on the guide's normal, and no force is determined."""
+    """r = l and the crank exactly at 90 deg: the rod stands on the guide's normal, and no force is
+    determined.
+    """
     m = Mechanism("dead")
-    a, b, p = m.link("a", length=1.0, mass=1.0), m.link("b", length=1.0, mass=1.0), m.point_mass("p", 1.0)
+    a, b, p = (
+        m.link("a", length=1.0, mass=1.0),
+        m.link("b", length=1.0, mass=1.0),
+        m.point_mass("p", 1.0),
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, p)
     m.prismatic("guide", m.ground, p, axis=(1, 0))
     scene = Scene(m, {"O": polynomial(0.0, math.pi / 2)}, t=(0, 1, 3), posture={"b": 0.0})
-    with pytest.raises(AssemblyError, match=r"joint 'guide' is at a dead centre at t = 1 s, where O = 1\.5708 rad \(90 deg\)"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"joint 'guide' is at a dead centre at t = 1 s, where O = 1\.5708 rad \(90 deg\)",
+    ):
         evaluate(scene)
 
 
 @pytest.mark.parametrize(("precision", "steps"), [("double", 24), ("single", 12)])
 def test_a_dead_centre_that_is_iterated_is_named(precision, steps):
-    """A ram draws a crank and its rod straight: Newton's method comes as near as rounding lets it, in either precision."""
+    """A ram draws a crank and its rod straight: Newton's method comes as near as rounding lets it,
+    in either precision.
+    """
     m = Mechanism("straightened")
     crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
     ram = m.point_mass("ram", 0.6)
@@ -118,12 +152,19 @@ def test_a_dead_centre_that_is_iterated_is_named(precision, steps):
     m.revolute("A", crank.tip, rod)
     pinned(m, "B", rod.tip, ram)
     m.prismatic("P", m.ground, ram, axis=(1, 0))
-    scene = Scene(m, {"P": polynomial(0.4, 0.05)}, posture={"crank": 1.0, "rod": -0.3}, t=(0, 1, 41))
-    with pytest.raises(AssemblyError, match=r"constraint 'B_y' is at a dead centre at t = 1 s, where P = 0\.45 m, within"):
+    scene = Scene(
+        m, {"P": polynomial(0.4, 0.05)}, posture={"crank": 1.0, "rod": -0.3}, t=(0, 1, 41)
+    )
+    with pytest.raises(
+        AssemblyError,
+        match=r"constraint 'B_y' is at a dead centre at t = 1 s, where P = 0\.45 m, within",
+    ):
         evaluate(scene, precision=precision, newton=steps)
 
 
-@pytest.mark.parametrize(("drives", "says"), [((), "1 degree.* and 0 drive"), (("O", "A"), "1 degree.* and 2 drive")])
+@pytest.mark.parametrize(
+    ("drives", "says"), [((), "1 degree.* and 0 drive"), (("O", "A"), "1 degree.* and 2 drive")]
+)
 def test_drives_must_match_the_freedom(drives, says):
     base = four_bar()
     with pytest.raises(MobilityError, match=says):
@@ -139,13 +180,17 @@ def test_drives_that_do_not_fit_are_refused():
     m.prismatic("P", m.ground.at(0, 1), b, axis=(1, 0))
     m.revolute("Q", m.ground.at(3, 0), c)
     m.revolute("R", c.tip, d)
-    with pytest.raises(MobilityError, match=r"and 2 drive\(s\); but these over-determine some loops"):
+    with pytest.raises(
+        MobilityError, match=r"and 2 drive\(s\); but these over-determine some loops"
+    ):
         derive(Scene(m, {"O": polynomial(0.5), "P": polynomial(0.1)}, posture={"b": 0.0}))
 
 
 def test_a_loop_without_closed_form_needs_a_posture():
     base = truss_platform()
-    with pytest.raises(DeclarationError, match=r"have no closed form; give a rough posture of .*leg0"):
+    with pytest.raises(
+        DeclarationError, match=r"have no closed form; give a rough posture of .*leg0"
+    ):
         derive(Scene(base.mechanism, base.motion, posture={"bar0": 0.0}))
 
 
@@ -161,20 +206,29 @@ def test_iteration_follows_the_motion():
         np.testing.assert_allclose(leg.y + length * np.sin(leg.angle), bar.y, atol=1e-15)
     machine = evaluate(scene, backend="vm")
     for name in solution.names():
-        np.testing.assert_allclose(solution.array(name), machine.array(name), rtol=1e-12, atol=1e-12, err_msg=name)
+        np.testing.assert_allclose(
+            solution.array(name), machine.array(name), rtol=1e-12, atol=1e-12, err_msg=name
+        )
 
 
 @pytest.mark.parametrize("backend", ["c", "vm"])
 def test_a_loop_that_does_not_converge_is_named(backend):
     """A shaft of 5 m carries the first leg's foot out of reach."""
-    with pytest.raises(AssemblyError, match=r"did not converge at t = 0 s, where O = 0 rad \(0 deg\)"):
+    with pytest.raises(
+        AssemblyError, match=r"did not converge at t = 0 s, where O = 0 rad \(0 deg\)"
+    ):
         evaluate(truss_platform(), backend=backend, parameters={"shaft": 5.0})
 
 
 def test_a_change_point_between_instants_is_named():
-    """A parallelogram lies flat at 180 deg, where it may go on as one or turn over: neither is guessed."""
+    """A parallelogram lies flat at 180 deg, where it may go on as one or turn over: neither is
+    guessed.
+    """
     evaluate(flat_parallelogram(), t=(0, 0.6, 61))
-    with pytest.raises(AssemblyError, match=r"joint 'B' passes a dead centre after t = 0\.6\d* s, where O = 3\.1\d* rad"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"joint 'B' passes a dead centre after t = 0\.6\d* s, where O = 3\.1\d* rad",
+    ):
         evaluate(flat_parallelogram())
     with pytest.raises(AssemblyError, match=r"joint 'guide' passes a dead centre after t = 0\.01"):
         evaluate(slider_crank(), parameters={"l": 0.1}, t=(0, 0.08, 802))
@@ -187,15 +241,22 @@ def test_a_near_dead_centre_is_none():
 @pytest.mark.parametrize("backend", ["c", "vm"])
 def test_a_jump_of_branch_is_named(backend):
     assert evaluate(double_crank(1.0), backend=backend).pose("c").angle[-1] > 2.0
-    with pytest.raises(AssemblyError, match=r"closed by joint 'B' has jumped to another branch at t = 2\.3 s, where O = 2\.5 rad"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"closed by joint 'B' has jumped to another branch at t = 2\.3 s, where O = 2\.5 rad",
+    ):
         evaluate(double_crank(2.3), backend=backend)
 
 
 @pytest.mark.sampled(5)
-@pytest.mark.parametrize("keywords", [{"backend": "c"}, {"backend": "vm"}, {"backend": "vm", "newton": 4}])
+@pytest.mark.parametrize(
+    "keywords", [{"backend": "c"}, {"backend": "vm"}, {"backend": "vm", "newton": 4}]
+)
 @pytest.mark.parametrize("begin", [2.4, 3.5])
 def test_a_part_of_the_motion_is_on_the_branch_of_the_whole(begin, keywords):
-    """Instants that begin far from the scene's own are led there, whatever lies nearer to its posture."""
+    """Instants that begin far from the scene's own are led there, whatever lies nearer to its
+    posture.
+    """
     scene = double_crank(0.2)
     whole = evaluate(scene, **keywords, t=(0, begin + 0.4, 401))
     part = evaluate(scene, **keywords, t=(begin, begin + 0.4, 5))
@@ -209,14 +270,23 @@ def test_a_part_of_the_motion_is_on_the_branch_of_the_whole(begin, keywords):
     [
         1,
         pytest.param(
-            2, marks=pytest.mark.xfail(reason="of one unknown and more equations the volume is one, however steep they are")
+            2,
+            marks=pytest.mark.xfail(
+                reason="of one unknown and more equations the volume is one, however steep they are"
+            ),
         ),
     ],
 )
 def test_a_dead_centre_is_passed_in_no_silence_however_often_a_guide_is_declared(guides):
-    """Scott and Russell's bar upright: its foot may go on to the other side, or stay at the crank's pivot."""
+    """Scott and Russell's bar upright: its foot may go on to the other side, or stay at the crank's
+    pivot.
+    """
     m = Mechanism("scott_russell")
-    crank, bar, foot = m.link("crank", length=0.2, mass=1.0), m.link("bar", length=0.4, mass=1.0), m.point_mass("foot", 0.1)
+    crank, bar, foot = (
+        m.link("crank", length=0.2, mass=1.0),
+        m.link("bar", length=0.4, mass=1.0),
+        m.point_mass("foot", 0.1),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, bar.at(0.2))
     m.revolute("B", bar, foot)
@@ -238,7 +308,9 @@ def test_instants_too_far_apart_are_a_cause_that_is_told():
     posture = {"bar": 0.0, "crank1": 1.0, "crank2": 1.0}
     scene = Scene(m, {"O0": polynomial(1.0, 4.0)}, posture=posture, t=(0, 1.5, 201))
     assert evaluate(scene, backend="vm").certified
-    with pytest.raises(AssemblyError, match=r"did not converge at t = 1 s.*, or the instant before is too far off"):
+    with pytest.raises(
+        AssemblyError, match=r"did not converge at t = 1 s.*, or the instant before is too far off"
+    ):
         evaluate(scene, t=(0, 1.5, 4), backend="vm")
 
 
@@ -248,14 +320,27 @@ def test_linear_systems(n):
     matrix, right = rng.normal(size=(n, n)), rng.normal(size=n)
     symbols = ca.SX.sym("a", n, n)
     system = LinearSystem.of(symbols)
-    f = ca.Function("f", [symbols], [system.solve(ca.SX(right)), system.solve_transposed(ca.SX(right), ca.SX(0, 1)), system.volume])
+    f = ca.Function(
+        "f",
+        [symbols],
+        [
+            system.solve(ca.SX(right)),
+            system.solve_transposed(ca.SX(right), ca.SX(0, 1)),
+            system.volume,
+        ],
+    )
     one, two, volume = (x.full().ravel() for x in f(matrix))
-    assert volume[0] == pytest.approx(np.linalg.det(matrix) / np.prod(np.linalg.norm(matrix, axis=0)), rel=1e-11)
+    assert volume[0] == pytest.approx(
+        np.linalg.det(matrix) / np.prod(np.linalg.norm(matrix, axis=0)), rel=1e-11
+    )
     np.testing.assert_allclose(one, np.linalg.solve(matrix, right), rtol=1e-11)
     np.testing.assert_allclose(two, np.linalg.solve(matrix.T, right), rtol=1e-11)
 
 
-@pytest.mark.parametrize("given", [{"ratio": -2, "offset": 7.0}, {"ratio": -2, "start": 20.0}, {"ratio": 10, "count": 11}])
+@pytest.mark.parametrize(
+    "given",
+    [{"ratio": -2, "offset": 7.0}, {"ratio": -2, "start": 20.0}, {"ratio": 10, "count": 11}],
+)
 def test_a_gear_counts_turns_however_coarse_the_instants(given):
     m = Mechanism("gear")
     a, b = m.link("a", length=0.1, mass=1), m.link("b", length=0.2, mass=1)
@@ -269,10 +354,16 @@ def test_a_gear_counts_turns_however_coarse_the_instants(given):
 
 
 def test_what_a_drive_turns_is_counted_and_what_a_loop_turns_unwrapped():
-    """A drive of many turns between two instants: the pin between it and a rod that only swings turns as the drive does."""
+    """A drive of many turns between two instants: the pin between it and a rod that only swings
+    turns as the drive does.
+    """
     solution = evaluate(slider_crank(), t=(0, 1, 40))
     assert np.abs(solution.pose("rod").angle).max() < 0.6
-    np.testing.assert_allclose(solution.motion("A").value, solution.pose("rod").angle - solution.motion("O").value, atol=1e-12)
+    np.testing.assert_allclose(
+        solution.motion("A").value,
+        solution.pose("rod").angle - solution.motion("O").value,
+        atol=1e-12,
+    )
 
 
 @pytest.mark.parametrize("kind", ["weld", "prismatic"])
@@ -294,14 +385,19 @@ def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
 def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
     """A drag link: the follower goes all the way round, and a gear with it."""
     m = Mechanism("drag_link")
-    a, b, c = (m.link(name, length=length, mass=1) for name, length in (("a", 0.3), ("b", 0.25), ("c", 0.3)))
+    a, b, c = (
+        m.link(name, length=length, mass=1)
+        for name, length in (("a", 0.3), ("b", 0.25), ("c", 0.3))
+    )
     wheel = m.link("wheel", length=0.1, mass=1)
     m.revolute("A", m.ground, a)
     m.revolute("B", a.tip, b)
     m.revolute("C", b.tip, c.tip)
     follower = m.revolute("D", m.ground.at(0.1, 0), c)
     m.gear("mesh", follower, m.revolute("E", m.ground.at(1, 0), wheel), ratio=-2.0)
-    solution = evaluate(Scene(m, {"A": polynomial(0.5, 7.0)}, t=(0, 2, 401), posture={"b": 2.5, "c": 1.7}))
+    solution = evaluate(
+        Scene(m, {"A": polynomial(0.5, 7.0)}, t=(0, 2, 401), posture={"b": 2.5, "c": 1.7})
+    )
     turned, driven = solution.motion("D").value, solution.motion("E").value
     assert np.ptp(turned) > 4 * math.pi
     np.testing.assert_allclose(np.diff(driven), -2.0 * np.diff(turned), atol=1e-12)
@@ -311,11 +407,17 @@ def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
 @pytest.mark.parametrize("size", [1e-9, 1e-6, 1.0, 1e6])
 def test_a_rough_place_tells_the_branch_at_any_size(size):
     m = Mechanism("small")
-    crank, rod, slider = m.link("crank", length=0.1 * size, mass=1), m.link("rod", length=0.2 * size, mass=1), m.point_mass("s", 1)
+    crank, rod, slider = (
+        m.link("crank", length=0.1 * size, mass=1),
+        m.link("rod", length=0.2 * size, mass=1),
+        m.point_mass("s", 1),
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slider)
     m.prismatic("guide", m.ground, slider, axis=(1, 0))
     for side in (1, -1):
-        solution = evaluate(Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"guide": 0.2 * size * side}))
+        solution = evaluate(
+            Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"guide": 0.2 * size * side})
+        )
         assert np.sign(solution.motion("guide").value[0]) == side

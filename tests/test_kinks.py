@@ -49,7 +49,9 @@ SMOOTH = {
     "a table of a straight line": Y - table(X, [0.0, 1.0, 2.0], [1.0, 3.0, 5.0]),
     "whole parts of a parameter alone": Y * ca.floor(2.5),
     "a quotient of what is small": Y - (1 - ca.cos(X - 0.3)) / (X - 0.3) ** 2,
-    "the same where it is kept from noise": Y - ca.if_else(ca.fabs(X) < 1e-3, 0.5 - X**2 / 24, (1 - ca.cos(X)) / X**2),
+    "the same where it is kept from noise": (
+        Y - ca.if_else(ca.fabs(X) < 1e-3, 0.5 - X**2 / 24, (1 - ca.cos(X)) / X**2)
+    ),
     "a quotient of cubes": Y - (X - ca.sin(X)) / X**3,
     "a bump": Y - ca.if_else(X > 0.5, ca.exp(-1 / (X - 0.5)), 0),
     "a power of a size": Y - ca.fabs(X - 0.5) ** 1.3,
@@ -58,7 +60,10 @@ SMOOTH = {
 }
 BROKEN = {
     "a table": (Y - table(X, TURN, np.sin(TURN)), "slope"),
-    "a table of micrometres": (Y - table(X, 0.3 + 1e-5 * np.arange(5), 1e-5 * np.arange(5) ** 2), "slope"),
+    "a table of micrometres": (
+        Y - table(X, 0.3 + 1e-5 * np.arange(5), 1e-5 * np.arange(5) ** 2),
+        "slope",
+    ),
     "a table of time": (Y - table(T, [0.0, 3.0, 5.0], [0.0, 1.0, 0.0]), "slope"),
     "a table within": (Y - ca.sin(table(ca.cos(X) + Y, [0.0, 0.5, 1.0], [0.0, 0.1, 0.4])), "slope"),
     "CasADi's own": (Y - ca.pw_lin(X, ca.DM([0, 1, 2]), ca.DM([0, 1, 4])), "slope"),
@@ -125,7 +130,12 @@ def test_at_the_end_of_a_path_one_side_has_a_limit_or_not(power, broken):
 
 def test_only_what_is_within_a_span_is_looked_at():
     law = ca.fmax(ca.fmin(2 * T, 1.0), 0.0)
-    for span, broken in (((0.1, 0.4), False), ((0.6, 3.0), False), ((0.1, 0.6), True), ((-1.0, 0.2), True)):
+    for span, broken in (
+        ((0.1, 0.4), False),
+        ((0.6, 3.0), False),
+        ((0.1, 0.6), True),
+        ((-1.0, 0.2), True),
+    ):
         assert (found(law, span) is not None) is broken
 
 
@@ -141,7 +151,10 @@ def cam(lift, law=None):
 
 def test_a_table_in_a_constraint_is_refused_with_the_way_out():
     """A cam of 36 points: without the curvature between them most of its torque is missing."""
-    says = r"constraint 'profile': its slope jumps by \d+\.?\d* % where .*turn = .*expected a curve whose slope does not jump"
+    says = (
+        r"constraint 'profile': its slope jumps by \d+\.?\d* % where .*turn = .*expected a curve"
+        r" whose slope does not jump"
+    )
     with pytest.raises(DeclarationError, match=says) as told:
         evaluate(cam(lambda q: table(q, np.tile(TURN, 1), 0.02 * np.sin(TURN))))
     assert "in place of a table, a curve(x, y), a polynomial or a Fourier sum" in str(told.value)
@@ -167,13 +180,18 @@ def test_pieces_that_go_on_smoothly_are_a_cam():
     slope = np.where(u < 1, 30 * u**2 - 60 * u**3 + 30 * u**4, 0) / 2
     early = solution.motion("turn").value < 3.0
     torque = 2.0 * (up * bend * 900 + 9.81) * up * slope
-    np.testing.assert_allclose(solution.effort("turn")[early], torque[early], rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(
+        solution.effort("turn")[early], torque[early], rtol=1e-11, atol=1e-12
+    )
 
 
 @pytest.mark.parametrize(
     ("law", "says"),
     [
-        (lambda t: table(t, [0.0, 0.1, 0.2], [0.0, 1.0, 3.0]), r"slope jumps by 50 % where t = 0\.1"),
+        (
+            lambda t: table(t, [0.0, 0.1, 0.2], [0.0, 1.0, 3.0]),
+            r"slope jumps by 50 % where t = 0\.1",
+        ),
         (lambda t: ca.fabs(t - 0.15), r"slope jumps by 200 % where t = 0\.15"),
         (lambda t: ca.floor(10 * t), r"value jumps by 100 % where t = 0\.1"),
     ],
@@ -187,7 +205,9 @@ def test_motions_with_corners_are_refused_where_they_are_asked_for(law, says):
 
 
 def test_tables_stay_in_loads_and_rows():
-    """Nothing of a load is differentiated, and a row is linear in the rates: its slopes are values."""
+    """Nothing of a load is differentiated, and a row is linear in the
+    rates: its slopes are values.
+    """
     m = Mechanism("m")
     a = m.link("a", length=1.0, mass=1.0)
     turn = m.revolute("J", m.ground, a)
@@ -195,7 +215,11 @@ def test_tables_stay_in_loads_and_rows():
     second = m.revolute("K", a.tip, b)
     q = m.coordinate(turn)
     m.torque("T", a, table(q, [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]))
-    m.nonholonomic("row", m.rate(second) - table(q, [0.0, 1.0, 2.0], [1.0, 1.0, 1.0]) * m.rate(turn), replaces=second)
+    m.nonholonomic(
+        "row",
+        m.rate(second) - table(q, [0.0, 1.0, 2.0], [1.0, 1.0, 1.0]) * m.rate(turn),
+        replaces=second,
+    )
     graph = derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
     assert {"load:T:mz", "_row:row"} <= set(graph.names)
 
@@ -205,5 +229,18 @@ def test_a_table_has_the_slope_of_the_side_beyond_at_its_points():
     y = table(X, [0.0, 1.0, 2.0, 4.0], [0.0, 1.0, 4.0, 5.0])
     f = ca.Function("f", [X], [y])
     forward, reverse, jacobian = f.forward(1), f.reverse(1), f.jacobian()
-    for x, slope in ((-1.0, 1.0), (0.0, 1.0), (1.0, 3.0), (1.5, 3.0), (2.0, 0.5), (4.0, 0.5), (5.0, 0.5)):
-        assert float(forward(x, f(x), 1.0)) == float(reverse(x, f(x), 1.0)) == float(jacobian(x, f(x))) == slope
+    for x, slope in (
+        (-1.0, 1.0),
+        (0.0, 1.0),
+        (1.0, 3.0),
+        (1.5, 3.0),
+        (2.0, 0.5),
+        (4.0, 0.5),
+        (5.0, 0.5),
+    ):
+        assert (
+            float(forward(x, f(x), 1.0))
+            == float(reverse(x, f(x), 1.0))
+            == float(jacobian(x, f(x)))
+            == slope
+        )

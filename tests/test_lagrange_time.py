@@ -1,7 +1,9 @@
-"""Systems that time itself moves, against the vector equations: forces times virtual displacements, by differences in 60 digits.
+"""Systems that time itself moves, against the vector equations: forces times virtual displacements,
+by differences in 60 digits.
 
-Places are written once for CasADi and mpmath alike. A motion q(t) = q + q' t + q'' t^2 / 2 is put into the latter, and what it
-makes of the places is differentiated by the time, not by any chain rule.
+Places are written once for CasADi and mpmath alike. A motion q(t) = q + q' t + q'' t^2 / 2 is put
+into the latter, and what it makes of the places is differentiated by the time, not by any chain
+rule.
 """
 
 import casadi as ca
@@ -28,7 +30,9 @@ class Functions:
 
 
 def lagrange(places, masses, n, way):
-    """R(q, q', q'', t) of point masses at ``places(f, q, t)``, each of three components, the last one upward."""
+    """R(q, q', q'', t) of point masses at ``places(f, q, t)``, each of three components, the last
+    one upward.
+    """
     q, qd, qdd, t = ca.SX.sym("q", n), ca.SX.sym("qd", n), ca.SX.sym("qdd", n), ca.SX.sym("t")
     at = ca.vertcat(*(ca.vertcat(*place) for place in places(Functions(ca), ca.vertsplit(q), t)))
     speeds = ca.jtimes(at, ca.vertcat(q, t), ca.vertcat(qd, 1))
@@ -37,7 +41,9 @@ def lagrange(places, masses, n, way):
     fields["force_function"] = -G * sum(m * at[3 * k + 2] for k, m in enumerate(masses))
     w = ca.SX.sym("w", speeds.numel())
     over = {"energy": speeds, "velocities": w, "both": ca.vertcat(w[::2], speeds[1::2])}[way]
-    order = {"both": [*range(0, speeds.numel(), 2), *range(1, speeds.numel(), 2)]}.get(way, list(range(speeds.numel())))
+    order = {"both": [*range(0, speeds.numel(), 2), *range(1, speeds.numel(), 2)]}.get(
+        way, list(range(speeds.numel()))
+    )
     fields["kinetic"] = ca.dot(weights[order], over**2) / 2
     if way != "energy":
         fields |= {"velocities": w, "velocity_graphs": speeds}
@@ -65,7 +71,11 @@ def newton(places, masses, state, t):
                 def displaced(x, j=j, k=k, axis=axis):
                     return places(functions, [*q[:j], x, *q[j + 1 :]], t)[k][axis]
 
-                total += m * (mpmath.diff(moved, t, 2) + (G if axis == 2 else 0)) * mpmath.diff(displaced, q[j])
+                total += (
+                    m
+                    * (mpmath.diff(moved, t, 2) + (G if axis == 2 else 0))
+                    * mpmath.diff(displaced, q[j])
+                )
         found.append(float(total))
     return found
 
@@ -75,18 +85,24 @@ def assert_newton(places, masses, n, state, t):
         expected = newton(places, masses, state, t)
     for way in WAYS:
         found = lagrange(places, masses, n, way)(*state, t).full().ravel()
-        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12 * (1 + np.abs(expected).max()))
+        np.testing.assert_allclose(
+            found, expected, rtol=1e-12, atol=1e-12 * (1 + np.abs(expected).max())
+        )
 
 
 def pendulum(f, q, t):
     """On a pivot that is shaken to the side and lifted."""
-    return [(0.3 * f.sin(5 * t) + 0.8 * f.sin(q[0]), 0, 0.1 * t**2 * f.cos(2 * t) - 0.8 * f.cos(q[0]))]
+    return [
+        (0.3 * f.sin(5 * t) + 0.8 * f.sin(q[0]), 0, 0.1 * t**2 * f.cos(2 * t) - 0.8 * f.cos(q[0]))
+    ]
 
 
 def hoop(f, q, t):
     """A bead on a hoop that turns about its upright diameter, ever faster."""
     turned = 2 * t + t**2
-    return [(0.5 * f.sin(q[0]) * f.cos(turned), 0.5 * f.sin(q[0]) * f.sin(turned), -0.5 * f.cos(q[0]))]
+    return [
+        (0.5 * f.sin(q[0]) * f.cos(turned), 0.5 * f.sin(q[0]) * f.sin(turned), -0.5 * f.cos(q[0]))
+    ]
 
 
 def frame(f, q, t):
@@ -105,7 +121,9 @@ def growing(f, q, t):
 SYSTEMS = [(pendulum, [1.3], 1), (hoop, [0.4], 1), (frame, [2.0], 3), (growing, [1.5, 0.7], 2)]
 
 
-@pytest.mark.parametrize(("places", "masses", "n"), SYSTEMS, ids=lambda x: getattr(x, "__name__", None))
+@pytest.mark.parametrize(
+    ("places", "masses", "n"), SYSTEMS, ids=lambda x: getattr(x, "__name__", None)
+)
 @settings(max_examples=10, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_systems_that_time_moves(places, masses, n, seed):
@@ -127,16 +145,23 @@ def test_a_pendulum_on_a_pivot_that_moves_by_a_law():
         "accelerations": qdd,
     }
     along, _ = LagrangeSystem(**fields, time=t).terms()
-    by_hand = m * l**2 * qdd + m * l * (-0.4 * 36 * ca.sin(6 * t) * ca.cos(q) + (0.6 * t + G) * ca.sin(q))
+    by_hand = m * l**2 * qdd + m * l * (
+        -0.4 * 36 * ca.sin(6 * t) * ca.cos(q) + (0.6 * t + G) * ca.sin(q)
+    )
     f = ca.Function("f", [q, qd, qdd, t, m, l], [along, by_hand])
     found, expected = (float(x) for x in f(0.7, -0.4, 1.3, 0.35, 1.2, 0.9))
     assert found == pytest.approx(expected, rel=1e-14)
-    with pytest.raises(DeclarationError, match=r"kinetic depends on 't': give time=t if it is the time, else give the parameter"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"kinetic depends on 't': give time=t if it is the time, else give the parameter",
+    ):
         LagrangeSystem(**fields)
 
 
 def test_a_parameter_may_be_called_t_where_it_cannot_be_taken_for_time():
-    """A thickness, beside a time that is given; and where nothing is differentiated that holds it."""
+    """A thickness, beside a time that is given; and where nothing is
+    differentiated that holds it.
+    """
     q, qd, qdd, t, when = (ca.SX.sym(name) for name in ("q", "qd", "qdd", "t", "when"))
     LagrangeSystem(t * qd**2, -ca.sin(when) * q, q, qd, qdd, time=when)
     along, _ = LagrangeSystem(qd**2, t * q, q, qd, qdd, forces=t * qd).terms()
@@ -144,7 +169,9 @@ def test_a_parameter_may_be_called_t_where_it_cannot_be_taken_for_time():
 
 
 def test_coordinates_may_be_carried_against_axes_that_turn():
-    """A pendulum's direction in space as cosine and sine, its coordinate against an arm that is turned: p' = T q' + r."""
+    """A pendulum's direction in space as cosine and sine, its coordinate against an arm that is
+    turned: p' = T q' + r.
+    """
     q, qd, qdd, t, p = (ca.SX.sym(*name) for name in (("q",), ("qd",), ("qdd",), ("t",), ("p", 2)))
     arm, l, m = 2 * t + ca.sin(t), 0.6, 1.4
     place = ca.vertcat(ca.cos(arm), ca.sin(arm)) + l * ca.vertcat(ca.cos(arm + q), ca.sin(arm + q))
@@ -162,7 +189,9 @@ def test_coordinates_may_be_carried_against_axes_that_turn():
     }
     w = ca.SX.sym("w", 2)
     carried = LagrangeSystem(m * ca.sumsqr(moved) / 2, drift=tangent * spin, **fields)
-    written = LagrangeSystem(m * ca.sumsqr(w) / 2, drift=tangent * spin, velocities=w, velocity_graphs=moved, **fields)
+    written = LagrangeSystem(
+        m * ca.sumsqr(w) / 2, drift=tangent * spin, velocities=w, velocity_graphs=moved, **fields
+    )
     systems = ca.vertcat(*(system.terms()[0] for system in (plain, carried, written)))
     f = ca.Function("f", [q, qd, qdd, t, p], [systems])
     angle = 2 * 0.7 + np.sin(0.7) + 0.4
@@ -173,11 +202,21 @@ def test_coordinates_may_be_carried_against_axes_that_turn():
 
 
 def test_a_rheonomic_constraint_bears_what_newton_says():
-    """A bead on a straight wire that is turned in a level plane: the wire pushes it by m (2 W r' + W' r)."""
-    q, qd, qdd, lam, t = ca.SX.sym("q", 2), ca.SX.sym("qd", 2), ca.SX.sym("qdd", 2), ca.SX.sym("lam"), ca.SX.sym("t")
+    """A bead on a straight wire that is turned in a level plane: the wire pushes it by m (2 W r' +
+    W' r).
+    """
+    q, qd, qdd, lam, t = (
+        ca.SX.sym("q", 2),
+        ca.SX.sym("qd", 2),
+        ca.SX.sym("qdd", 2),
+        ca.SX.sym("lam"),
+        ca.SX.sym("t"),
+    )
     m, angle = 0.8, 1.5 * t + t**2
     phi = ca.cos(angle) * q[1] - ca.sin(angle) * q[0]  # across the wire
-    system = LagrangeSystem(m * ca.sumsqr(qd) / 2, ca.SX(0), q, qd, qdd, constraints=phi, multipliers=lam, time=t)
+    system = LagrangeSystem(
+        m * ca.sumsqr(qd) / 2, ca.SX(0), q, qd, qdd, constraints=phi, multipliers=lam, time=t
+    )
     (along, _) = system.terms()
     now, r, slide, out = 0.6, 0.9, -0.7, 2.0
     a, w, change = 1.5 * now + now**2, 1.5 + 2 * now, 2.0
@@ -187,11 +226,15 @@ def test_a_rheonomic_constraint_bears_what_newton_says():
     acceleration = (out - r * w**2) * e + push / m * n
     f = ca.Function("f", [q, qd, qdd, lam, t], [along])
     left = f(place, speed, acceleration, push, now).full().ravel()
-    np.testing.assert_allclose(left, m * (out - r * w**2) * e, rtol=1e-13)  # what pulls it along the wire, and nothing across
+    np.testing.assert_allclose(
+        left, m * (out - r * w**2) * e, rtol=1e-13
+    )  # what pulls it along the wire, and nothing across
 
 
 def test_a_mobility_of_what_time_moves():
-    """The rope of a load that hangs from a trolley driven by a law: its tension, by Newton along the rope."""
+    """The rope of a load that hangs from a trolley driven by a law: its tension, by Newton along
+    the rope.
+    """
     a, ad, add, e, ed, t = (ca.SX.sym(name) for name in ("a", "ad", "add", "e", "ed", "t"))
     m, L = 3.0, 2.0
     x = 0.5 * ca.sin(2 * t)
@@ -221,8 +264,14 @@ def test_a_mobility_of_what_time_moves():
         ({"time": lambda s: 2 * s.coordinates[0]}, "time must be one symbol"),
         ({"time": lambda s: s.coordinates}, "time must be one symbol"),
         ({"time": lambda s: 0.0}, r"time must be one symbol, got 0"),
-        ({"time": lambda s: s.coordinates[0]}, "symbol 'q_0' stands both in coordinates and in time"),
-        ({"accelerations": lambda s: s.rates}, "symbol 'qd_0' stands both in rates and in accelerations"),
+        (
+            {"time": lambda s: s.coordinates[0]},
+            "symbol 'q_0' stands both in coordinates and in time",
+        ),
+        (
+            {"accelerations": lambda s: s.rates},
+            "symbol 'qd_0' stands both in rates and in accelerations",
+        ),
         ({"drift": lambda s: ca.SX.zeros(3)}, "drift must have 2 entries, got 3"),
         ({"tangent": lambda s: s.rates[0] * ca.SX.eye(2)}, "tangent must not depend on rates"),
         ({"drift": lambda s: s.rates}, "drift must not depend on rates"),
@@ -230,11 +279,26 @@ def test_a_mobility_of_what_time_moves():
             {"force_function": lambda s: s.velocities[0]},
             "force_function must not depend on velocities; put what does into 'forces'",
         ),
-        ({"force_function": lambda s: s.accelerations[0]}, "force_function must not depend on accelerations"),
-        ({"velocity_graphs": lambda s: s.rates + s.velocities}, "velocity_graphs must not depend on velocities"),
-        ({"velocity_graphs": lambda s: s.rates + s.accelerations}, "velocity_graphs must not depend on accelerations"),
-        ({"velocity_graphs": lambda s: s.rates + ca.SX.sym("time")}, "velocity_graphs depends on 'time': give time=time if"),
-        ({"constraints": lambda s: s.rates[0], "multipliers": lambda s: ca.SX.sym("l")}, "constraints must not depend on rates"),
+        (
+            {"force_function": lambda s: s.accelerations[0]},
+            "force_function must not depend on accelerations",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + s.velocities},
+            "velocity_graphs must not depend on velocities",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + s.accelerations},
+            "velocity_graphs must not depend on accelerations",
+        ),
+        (
+            {"velocity_graphs": lambda s: s.rates + ca.SX.sym("time")},
+            "velocity_graphs depends on 'time': give time=time if",
+        ),
+        (
+            {"constraints": lambda s: s.rates[0], "multipliers": lambda s: ca.SX.sym("l")},
+            "constraints must not depend on rates",
+        ),
     ],
 )
 def test_misuse_is_named(change, says):

@@ -1,4 +1,6 @@
-"""Packs of instants: the numbers of scalar C to a few units in the last place, whatever the vectors, the tail and the threads."""
+"""Packs of instants: the numbers of scalar C to a few units in the last place, whatever the
+vectors, the tail and the threads.
+"""
 
 import platform
 import subprocess
@@ -28,7 +30,10 @@ def test_packs_agree_with_scalar_c(name, precision):
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
     p = np.array(list(scene.mechanism.values().values()))
     packs, scalar = (columns(graph, t, language, precision=precision) for language in ("c++", "c"))
-    kinds = [(column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "") for column in graph.names]
+    kinds = [
+        (column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "")
+        for column in graph.names
+    ]
     for kind in set(kinds):
         rows = [i for i, other in enumerate(kinds) if other == kind]
         # A gap is rounding, of lengths.
@@ -63,7 +68,9 @@ def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monke
 
 @both
 def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
-    """Instants beyond the reach of the links have a status; their neighbours in the pack have their numbers."""
+    """Instants beyond the reach of the links have a status; their neighbours in the pack have their
+    numbers.
+    """
     graph, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
     p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
     table, _ = run(graph, t, p, Rung("lanes", precision))
@@ -118,8 +125,22 @@ int main() {
   TWO(atan2) TWO(hypot) TWO(pow) TWO(fmod) TWO(remainder) TWO(fmin) TWO(fmax) TWO(copysign) TWO(lanes_choose)
   TWO(less) TWO(most) TWO(same) TWO(other) TWO(both) TWO(either)
 }
-"""
-EXACT = ["sqrt", "floor", "ceil", "fabs", "lanes_sign", "no", "minus", "inverse", "fmod", "remainder", "fmin", "fmax", "copysign"]
+"""  # noqa: E501
+EXACT = [
+    "sqrt",
+    "floor",
+    "ceil",
+    "fabs",
+    "lanes_sign",
+    "no",
+    "minus",
+    "inverse",
+    "fmod",
+    "remainder",
+    "fmin",
+    "fmax",
+    "copysign",
+]
 EXACT += ["lanes_choose", "less", "most", "same", "other", "both", "either"]
 X86 = platform.machine() in ("x86_64", "AMD64")
 
@@ -128,7 +149,9 @@ X86 = platform.machine() in ("x86_64", "AMD64")
 @pytest.mark.parametrize("libmvec", ["where it is", "none"])
 @pytest.mark.parametrize("march", ["native", *(["x86-64", "x86-64-v3"] if X86 else [])])
 def test_every_function_of_a_pack(march, libmvec, tmp_path):
-    """Against the scalar functions: exact where C99 is, else within 4 units; the same infinities, the same NaN."""
+    """Against the scalar functions: exact where C99 is, else within 4 units; the same infinities,
+    the same NaN.
+    """
     source, program = tmp_path / "functions.cpp", tmp_path / "functions"
     source.write_text(HEADER.read_text() + PROGRAM)
     flags = [f"-march={march}", *(["-DLANES_LIBMVEC=0"] if libmvec == "none" else [])]
@@ -152,7 +175,11 @@ def test_every_function_of_a_pack(march, libmvec, tmp_path):
     wrong = []
     for name, x, y, found, expected in rows:
         a, b = float(found), float(expected)
-        exact = (a == b and (name in unsigned or np.signbit(a) == np.signbit(b))) or (np.isnan(a) and np.isnan(b))
-        if not exact and (name in EXACT or not np.isfinite(b) or abs(a - b) > 4 * np.spacing(abs(b))):
+        exact = (a == b and (name in unsigned or np.signbit(a) == np.signbit(b))) or (
+            np.isnan(a) and np.isnan(b)
+        )
+        if not exact and (
+            name in EXACT or not np.isfinite(b) or abs(a - b) > 4 * np.spacing(abs(b))
+        ):
             wrong.append((name, x, y, found, expected))
     assert not wrong

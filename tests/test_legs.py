@@ -1,4 +1,6 @@
-"""Legs in space that reach a point: in closed form where the pattern is there, iterated elsewhere."""
+"""Legs in space that reach a point: in closed form where the
+pattern is there, iterated elsewhere.
+"""
 
 import math
 
@@ -16,7 +18,9 @@ UPRIGHT = (Z, Y)
 
 
 def reaching(leg, posture, height=0.5, carried=False):
-    """A hand moves in space, and a leg reaches for it: from the ground, or from a base that rides and rolls."""
+    """A hand moves in space, and a leg reaches for it: from the ground, or from a base that rides
+    and rolls.
+    """
     m = SpatialMechanism("reaching")
     hand = m.link("hand", length=0.1, mass=2.0, centre=(0.0, 0.0, 0.0), inertia=(0.01, 0.02, 0.02))
     m.free("pose", m.ground, hand)
@@ -28,7 +32,9 @@ def reaching(leg, posture, height=0.5, carried=False):
     }
     foot = m.ground.at(0.02, -0.03, 0.01)
     if carried:
-        base = m.link("base", length=0.2, mass=1.0, inertia=(0.01, 0.02, 0.02), centre=(0.1, 0.0, 0.0))
+        base = m.link(
+            "base", length=0.2, mass=1.0, inertia=(0.01, 0.02, 0.02), centre=(0.1, 0.0, 0.0)
+        )
         m.revolute("roll", m.ground, base, axis=(0.6, 0.0, 0.8))
         laws["roll"] = harmonic(0.3, 0.1, 0.5)
         foot = base.at(0.02, -0.03, 0.01)
@@ -38,7 +44,10 @@ def reaching(leg, posture, height=0.5, carried=False):
 
 
 def telescope(m, foot, reverse=False):
-    cylinder, piston = m.link("cylinder", length=0.3, mass=1.0), m.link("piston", length=0.3, mass=0.5)
+    cylinder, piston = (
+        m.link("cylinder", length=0.3, mass=1.0),
+        m.link("piston", length=0.3, mass=0.5),
+    )
     if reverse:
         # The cylinder is the parent: its first turn is the one about its own axis.
         m.universal("U", cylinder, foot, axis=Y, second=X, turned=((0.0, 0.0, -1.0), Y))
@@ -55,7 +64,9 @@ def pins(m, foot, first, second, offset=0.0):
         m.link("arm", length=0.3, mass=1.0),
     )
     m.revolute("A", foot, yoke, axis=first)
-    m.revolute("B", yoke.at(-offset * first[2], 0.0, offset * first[0]), arm, axis=second, turned=UPRIGHT)
+    m.revolute(
+        "B", yoke.at(-offset * first[2], 0.0, offset * first[0]), arm, axis=second, turned=UPRIGHT
+    )
     return arm
 
 
@@ -80,7 +91,10 @@ def column(m, foot):
 
 
 def scara(m, foot):
-    arm, fore, quill = (m.link(name, length=length, mass=0.5) for name, length in (("arm", 0.15), ("fore", 0.12), ("quill", 0.1)))
+    arm, fore, quill = (
+        m.link(name, length=length, mass=0.5)
+        for name, length in (("arm", 0.15), ("fore", 0.12), ("quill", 0.1))
+    )
     m.revolute("A", foot, arm, axis=Z)
     m.revolute("E", arm.tip, fore, axis=Z)
     m.prismatic("Q", fore.tip, quill, axis=Z)
@@ -89,7 +103,10 @@ def scara(m, foot):
 
 LEGS = {
     "universal and slide": (telescope, {"U:turn_1": 0.0, "U:turn_2": 0.0, "P": 0.2}),
-    "told the other way round": (lambda m, foot: telescope(m, foot, True), {"U:turn_1": 0.0, "U:turn_2": 0.0, "P": 0.2}),
+    "told the other way round": (
+        lambda m, foot: telescope(m, foot, True),
+        {"U:turn_1": 0.0, "U:turn_2": 0.0, "P": 0.2},
+    ),
     "two pins at a slant and a slide": (skew, {"A": 0.0, "B": 0.0, "P": 0.2}),
     "an elbow": (elbow, {"A": 0.0, "B": -0.5, "E": 0.9}),
     "turn, height and radius": (column, {"C:turn": -0.5, "C:slide": 0.4, "R": 0.1}),
@@ -98,7 +115,9 @@ LEGS = {
 
 
 @pytest.mark.sampled(7)
-@pytest.mark.parametrize("carried", [False, True], ids=["from the ground", "from a base that moves"])
+@pytest.mark.parametrize(
+    "carried", [False, True], ids=["from the ground", "from a base that moves"]
+)
 @pytest.mark.parametrize("leg", LEGS)
 def test_a_leg_is_solved_without_iteration(leg, carried):
     scene = reaching(*LEGS[leg], carried=carried)
@@ -115,12 +134,21 @@ def test_axes_that_do_not_meet_are_left_to_iteration():
 
 
 def test_each_branch_of_an_elbow():
-    """Two ways of the elbow, each with two of the shoulder: the hand is the same, the joints are not."""
+    """Two ways of the elbow, each with two of the shoulder: the hand is the same, the joints are
+    not.
+    """
     found = set()
     for shoulder, bend in ((-0.5, 0.9), (0.5, -0.9), (math.pi + 0.5, 0.9), (math.pi - 0.5, -0.9)):
-        solution = evaluate(reaching(elbow, {"A": 0.0 if abs(shoulder) < 1 else math.pi, "B": shoulder, "E": bend}))
+        solution = evaluate(
+            reaching(elbow, {"A": 0.0 if abs(shoulder) < 1 else math.pi, "B": shoulder, "E": bend})
+        )
         assert solution.certified
-        found.add(tuple(round(math.remainder(float(solution.motion(name).value[0]), math.tau), 6) for name in "ABE"))
+        found.add(
+            tuple(
+                round(math.remainder(float(solution.motion(name).value[0]), math.tau), 6)
+                for name in "ABE"
+            )
+        )
     assert len(found) == 4
 
 
@@ -130,7 +158,9 @@ def test_ways_that_a_posture_leaves_open_are_told():
 
 
 def test_a_hand_out_of_reach():
-    with pytest.raises(AssemblyError, match="the loop closed by joint 'S' cannot be closed at the start"):
+    with pytest.raises(
+        AssemblyError, match="the loop closed by joint 'S' cannot be closed at the start"
+    ):
         evaluate(reaching(elbow, LEGS["an elbow"][1], height=0.9))
 
 
@@ -146,4 +176,9 @@ def passing(count):
     hand = m.link("hand", length=0.1, mass=2.0, centre=(0.0, 0.0, 0.0), inertia=(0.01, 0.02, 0.02))
     m.prismatic("rail", m.ground.at(0.4, 0.0, 0.0), hand, axis=Z)
     m.spherical("S", telescope(m, m.ground.at(0.0, -0.02, 0.0)), hand.base)
-    return Scene(m, {"rail": polynomial(-0.2, 0.4)}, t=(0.0, 1.0, count), posture={"U:turn_1": 1.0, "U:turn_2": 0.5, "P": 0.2})
+    return Scene(
+        m,
+        {"rail": polynomial(-0.2, 0.4)},
+        t=(0.0, 1.0, count),
+        posture={"U:turn_1": 1.0, "U:turn_2": 0.5, "P": 0.2},
+    )

@@ -17,7 +17,11 @@ from lagrange_casadi.studies.designs.engine import DesignEngine
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 RATIOS = (0.0, 1.0, 3)
-MISSES = {"0.1 + 0.2 on 0.3": (0.1 + 0.2, 0.3), "0.3 on 0.1 + 0.2": (0.3, 0.1 + 0.2), "its length": (0.3, 0.3)}
+MISSES = {
+    "0.1 + 0.2 on 0.3": (0.1 + 0.2, 0.3),
+    "0.3 on 0.1 + 0.2": (0.3, 0.1 + 0.2),
+    "its length": (0.3, 0.3),
+}
 
 
 def shelf(x, length):
@@ -40,16 +44,24 @@ def parametric(x, length):
 @pytest.mark.parametrize("scene", [shelf, parametric])
 @pytest.mark.parametrize("name", MISSES)
 def test_a_station_that_misses_the_tip_by_rounding_is_there(scene, name):
-    """The weight is in the section at the very tip, as that of what hangs on the tip itself is; and all checks hold."""
+    """The weight is in the section at the very tip, as that of what hangs on the tip itself is; and
+    all checks hold.
+    """
     x, length = MISSES[name]
     solution = evaluate(scene(x, length))
     weight = 2.0 * 9.81 + 1.0
     np.testing.assert_allclose(solution.section("arm").shear, np.full((3, 3), -weight), rtol=1e-14)
     np.testing.assert_allclose(
-        solution.section("arm").bending[0], -weight * 0.3 * np.array([1.0, 0.5, 0.0]), rtol=1e-14, atol=1e-15
+        solution.section("arm").bending[0],
+        -weight * 0.3 * np.array([1.0, 0.5, 0.0]),
+        rtol=1e-14,
+        atol=1e-15,
     )
     assert all(load.station[0] == 1.0 for load in solution.section("arm").law.loads)
-    assert max(np.max(values) for key, values in solution.certificate.items() if key != "condition") < 1e-14
+    assert (
+        max(np.max(values) for key, values in solution.certificate.items() if key != "condition")
+        < 1e-14
+    )
 
 
 @pytest.mark.parametrize("scene", [shelf, parametric])
@@ -58,7 +70,10 @@ def test_a_station_that_misses_the_base_by_rounding_is_there(scene, x):
     """What is at the base loads no section."""
     solution = evaluate(scene(x, 0.3))
     np.testing.assert_array_equal(solution.section("arm").shear, np.zeros((3, 3)))
-    assert max(np.max(values) for key, values in solution.certificate.items() if key != "condition") < 1e-14
+    assert (
+        max(np.max(values) for key, values in solution.certificate.items() if key != "condition")
+        < 1e-14
+    )
 
 
 @settings(max_examples=10, deadline=None)
@@ -76,17 +91,26 @@ def test_sums_of_decimals(parts):
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize(("x", "misses"), [(0.3 + 1e-9, True), (-1e-9, True), (0.3 + 1e-14, False), (-1e-14, False)])
+@pytest.mark.parametrize(
+    ("x", "misses"), [(0.3 + 1e-9, True), (-1e-9, True), (0.3 + 1e-14, False), (-1e-14, False)]
+)
 def test_all_programs_draw_the_line_at_the_same_place(x, misses, tmp_path):
     """The API, sweeps and exported C: a part in 1e9 beyond the end is beyond it."""
     scene = parametric(0.1, 0.3)
     engine = DesignEngine.of(scene, ["section:arm"])
-    status = engine.evaluate(np.array([[{"x": x, "l": 0.3}[name] for name in engine.parameters]])).status[0]
+    status = engine.evaluate(
+        np.array([[{"x": x, "l": 0.3}[name] for name in engine.parameters]])
+    ).status[0]
     assert status == (Status.IMPOSSIBLE if misses else Status.OK)
     made = export(scene, tmp_path)
-    call = f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); @_motion(&model, 0.5, &inputs); " + EVALUATED
+    call = (
+        f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); @_motion(&model, 0.5,"
+        " &inputs); " + EVALUATED
+    )
     if misses:
-        call = f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;"
+        call = (
+            f"parameters.x = {x!r}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;"
+        )
         with pytest.raises(ParameterError, match=r"station .* m is outside link 'arm', 0 to 0\.3"):
             evaluate(scene, parameters={"x": x})
     else:
@@ -98,14 +122,25 @@ def test_all_programs_draw_the_line_at_the_same_place(x, misses, tmp_path):
 def test_in_single_precision_it_is_the_rounding_of_singles(tmp_path):
     scene = parametric(0.1, 0.3)
     made = export(scene, tmp_path, precision="single")
-    for x, misses in (("0.1f + 0.2f", False), ("0.3f*(1 + 3e-7f)", False), ("0.3f*(1 + 1e-5f)", True)):
-        code, _, _ = told(tmp_path, made, f"parameters.x = {x}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;")
+    for x, misses in (
+        ("0.1f + 0.2f", False),
+        ("0.3f*(1 + 3e-7f)", False),
+        ("0.3f*(1 + 1e-5f)", True),
+    ):
+        code, _, _ = told(
+            tmp_path,
+            made,
+            f"parameters.x = {x}; status = @_prepare(&model, &parameters); outputs.effort_O = 0;",
+        )
         assert (code != 0) is misses, x
 
 
 def plated():
     m = Mechanism("plated")
-    rod, plate = m.link("rod", length=0.5, mass=1.0), m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1)
+    rod, plate = (
+        m.link("rod", length=0.5, mass=1.0),
+        m.link("plate", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=0.1),
+    )
     m.revolute("O", m.ground, rod)
     m.revolute("A", rod.tip, plate)
     m.weld("W", plate.tip, m.point_mass("lump", 1.0))
@@ -117,7 +152,10 @@ def plated():
     [
         (
             "plate",
-            "link 'plate' is known by its centre of mass and inertia only; a section needs to know how its mass lies along it",
+            (
+                "link 'plate' is known by its centre of mass and inertia only; a section needs to"
+                " know how its mass lies along it"
+            ),
         ),
         ("lump", "'lump' is not a link and has no sections; links: rod, plate"),
     ],
@@ -138,7 +176,10 @@ def test_the_same_explanation_wherever_sections_are_asked_for(part, why):
 def test_sections_that_were_not_wanted_say_so():
     solution = evaluate(plated(), wanted=["effort"])
     for ask in (lambda: solution.section("rod"), lambda: solution.peak("section:rod:bending")):
-        with pytest.raises(DeclarationError, match="the sections of link 'rod' were not wanted; want section:rod too"):
+        with pytest.raises(
+            DeclarationError,
+            match="the sections of link 'rod' were not wanted; want section:rod too",
+        ):
             ask()
 
 
@@ -148,6 +189,10 @@ def test_impossible_defaults_are_told_to_be_defaults():
     m.revolute("O", m.ground, arm)
     m.weld("W", arm.at(0.3), m.point_mass("p", 1.0))
     with pytest.raises(
-        ParameterError, match=r"station 0\.3 m is outside link 'arm', 0 to 0\.2 m; .*; with the default parameters l = 0\.2"
+        ParameterError,
+        match=(
+            r"station 0\.3 m is outside link 'arm', 0 to 0\.2 m; .*; with the default parameters l"
+            r" = 0\.2"
+        ),
     ):
         Scene(m, {"O": polynomial(math.pi)})

@@ -1,4 +1,6 @@
-"""Loads along links: exact in every section, by statics, by vector Newton-Euler, and at free tips."""
+"""Loads along links: exact in every section, by statics, by vector Newton-Euler,
+and at free tips.
+"""
 
 import math
 
@@ -10,7 +12,18 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, load, motion, refine, save
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    curve,
+    density,
+    derive,
+    evaluate,
+    load,
+    motion,
+    refine,
+    save,
+)
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.instants.rung import Rung
@@ -32,7 +45,9 @@ def beam(x=0.0, y=0.0, angle=0.0, turning=False, length=2.0, mass=3.0):
 
 
 def test_a_cantilever_of_the_textbooks():
-    """Under an even load q: shear -q (l - xi) on the tip's side, bending -q (l - xi)^2/2, both nothing at the free tip."""
+    """Under an even load q: shear -q (l - xi) on the tip's side, bending -q (l - xi)^2/2, both
+    nothing at the free tip.
+    """
     solution = evaluate(beam(y=-7.0))
     free = 2.0 * (1.0 - solution.xi)
     section = solution.section("arm")
@@ -46,15 +61,24 @@ def test_a_cantilever_of_the_textbooks():
 
 
 def test_a_triangular_load_and_a_load_along_the_axis():
-    """From nothing at the base to q at the tip: the moment at the wall is q l^2/3. Along the axis the sum beyond the section."""
+    """From nothing at the base to q at the tip: the moment at the wall is q l^2/3.
+
+    Along the axis the sum beyond the section.
+    """
     solution = evaluate(beam(y=(0.0, 6.0), x=(4.0, -2.0), angle=0.7, turning=True))
     u, l, section = solution.xi, 2.0, solution.section("arm")
     np.testing.assert_allclose(section.shear[0], 6.0 * l * (1 - u**2) / 2, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(section.bending[0], 6.0 * l * l * (1 / 3 - u / 2 + u**3 / 6), rtol=0, atol=1e-13)
-    np.testing.assert_allclose(section.axial[0], l * (4.0 * (1 - u) - 6.0 * (1 - u**2) / 2), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        section.bending[0], 6.0 * l * l * (1 / 3 - u / 2 + u**3 / 6), rtol=0, atol=1e-13
+    )
+    np.testing.assert_allclose(
+        section.axial[0], l * (4.0 * (1 - u) - 6.0 * (1 - u**2) / 2), rtol=0, atol=1e-13
+    )
     assert solution.section("arm").bending[0, 0] == pytest.approx(6.0 * l * l / 3, rel=1e-14)
     assert solution.array("load:wind:mz")[0] == pytest.approx(6.0 * l * l / 12, rel=1e-14)
-    np.testing.assert_array_equal([section.shear[:, -1], section.bending[:, -1], section.axial[:, -1]], 0.0)
+    np.testing.assert_array_equal(
+        [section.shear[:, -1], section.bending[:, -1], section.axial[:, -1]], 0.0
+    )
 
 
 def test_it_does_not_depend_on_how_the_mass_is_told_or_how_large_it_is():
@@ -64,32 +88,58 @@ def test_it_does_not_depend_on_how_the_mass_is_told_or_how_large_it_is():
     arm = m.link("arm", length=2.0, density=density.polynomial(1.5))
     m.revolute("wall", m.ground, arm)
     m.line_load("wind", arm, y=(3.0, 5.0))
-    solutions.append(evaluate(Scene(m, {"wall": motion.polynomial(0.0)}, t=(0, 1, 3), xi=(0, 1, 9))))
+    solutions.append(
+        evaluate(Scene(m, {"wall": motion.polynomial(0.0)}, t=(0, 1, 3), xi=(0, 1, 9)))
+    )
     for other in solutions[1:]:
         assert other.certified
         for force in ("shear", "bending"):
-            expected_, found = getattr(solutions[0].section("arm"), force), getattr(other.section("arm"), force)
-            np.testing.assert_allclose(found, expected_, rtol=0, atol=1e-13 * np.abs(expected_).max())
+            expected_, found = (
+                getattr(solutions[0].section("arm"), force),
+                getattr(other.section("arm"), force),
+            )
+            np.testing.assert_allclose(
+                found, expected_, rtol=0, atol=1e-13 * np.abs(expected_).max()
+            )
 
 
 def linkage(wind=(20.0, 60.0), lift=(-30.0, 10.0), **keywords):
-    """A crank-rocker whose coupler and rocker are loaded along their length, by time, motion, parameters and a curve."""
+    """A crank-rocker whose coupler and rocker are loaded along their length, by time, motion,
+    parameters and a curve.
+    """
     m = Mechanism("linkage")
     gust = m.parameter("gust", 1.0)
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("c", 0.25, 0.4)))
+    a, b, c = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("c", 0.25, 0.4))
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
     rocker = m.revolute("C", m.ground.at(0.3, 0.05), c)
-    shape = curve(np.linspace(0, 2 * math.pi, 9), [1.0, 1.2, 1.1, 0.9, 1.0, 1.3, 0.8, 0.7, 1.0], periodic=True)
+    shape = curve(
+        np.linspace(0, 2 * math.pi, 9), [1.0, 1.2, 1.1, 0.9, 1.0, 1.3, 0.8, 0.7, 1.0], periodic=True
+    )
     m.line_load("wind", b, x=tuple(gust * q * (1 + 0.2 * ca.sin(5 * m.time)) for q in wind), y=lift)
-    m.line_load("flow", c, y=(8.0 * shape(m.coordinate(rocker)), -3.0 * m.rate(rocker)), turning=True)
+    m.line_load(
+        "flow", c, y=(8.0 * shape(m.coordinate(rocker)), -3.0 * m.rate(rocker)), turning=True
+    )
     m.force("pull", b.at(0.2, 0.03), x=5.0, y=-9.0)
-    return Scene(m, {"O": motion.polynomial(0.2, 3.0, 4.0)}, posture={"c": 1.5}, **({"t": (0.1, 0.9, 5)} | keywords)), shape
+    return (
+        Scene(
+            m,
+            {"O": motion.polynomial(0.2, 3.0, 4.0)},
+            posture={"c": 1.5},
+            **({"t": (0.1, 0.9, 5)} | keywords),
+        ),
+        shape,
+    )
 
 
 def gaps(scene, shape, t, wind, lift):
-    """The largest difference from the oracle, over the largest force: its loads are at Gauss's points on either side of a cut."""
+    """The largest difference from the oracle, over the largest force: its loads are at Gauss's
+    points on either side of a cut.
+    """
     m, graph = scene.mechanism, derive(scene)
     values = m.values()
     found, drives = columns_at(graph, t, values)
@@ -109,11 +159,18 @@ def gaps(scene, shape, t, wind, lift):
 
         def loads(place, cut=cut):
             gust = 1 + 0.2 * math.sin(5 * t)
-            yield from spread("b", 0.35, cut, lambda u: [a + (b - a) * u for a, b in ((gust * wind[0], gust * wind[1]), lift)])
+            yield from spread(
+                "b",
+                0.35,
+                cut,
+                lambda u: [a + (b - a) * u for a, b in ((gust * wind[0], gust * wind[1]), lift)],
+            )
             angle = place(("c", 0.0, 0.0))[2]
             q, r = 8.0 * shape(float(angle.v)), -3.0 * angle.d
             c, s = math.cos(angle.v), math.sin(angle.v)
-            yield from spread("c", 0.25, cut, lambda u: (-s * (q + (r - q) * u), c * (q + (r - q) * u)))
+            yield from spread(
+                "c", 0.25, cut, lambda u: (-s * (q + (r - q) * u), c * (q + (r - q) * u))
+            )
             yield ("b", 0.2, 0.03), 5.0, -9.0, 0.0
 
         solved = oracle_of(m, values, loads=[loads]).solve(drives, rough)
@@ -121,15 +178,29 @@ def gaps(scene, shape, t, wind, lift):
         for link in "abc":
             law = solution.section(link).law
             pairs = zip(("axial", "shear", "bending"), solved.sections[link](cut), strict=True)
-            worst = max(worst, *(abs(law.at(force, np.array([[cut]]))[0, 0] - value) / size for force, value in pairs))
+            worst = max(
+                worst,
+                *(
+                    abs(law.at(force, np.array([[cut]]))[0, 0] - value) / size
+                    for force, value in pairs
+                ),
+            )
         worst = max(worst, abs(found["effort:O"] - solved.efforts["O"]) / size)
         for joint, (fx, fy, _) in solved.reactions.items():
-            worst = max(worst, abs(found[f"reaction:{joint}:fx"] - fx) / size, abs(found[f"reaction:{joint}:fy"] - fy) / size)
+            worst = max(
+                worst,
+                abs(found[f"reaction:{joint}:fx"] - fx) / size,
+                abs(found[f"reaction:{joint}:fy"] - fy) / size,
+            )
     return worst
 
 
 @settings(max_examples=10, deadline=None)
-@given(st.tuples(*[st.floats(-100, 100)] * 2), st.tuples(*[st.floats(-100, 100)] * 2), st.sampled_from([0.1, 0.37, 0.9]))
+@given(
+    st.tuples(*[st.floats(-100, 100)] * 2),
+    st.tuples(*[st.floats(-100, 100)] * 2),
+    st.sampled_from([0.1, 0.37, 0.9]),
+)
 def test_newton_and_euler_agree(wind, lift, t):
     scene, shape = linkage(wind, lift)
     assert gaps(scene, shape, t, wind, lift) < 1e-12
@@ -143,10 +214,16 @@ def test_every_way_of_evaluating_agrees(tmp_path):
         found = evaluate(scene, **way)
         assert found.certified
         for name in expected_.names():
-            gap, size = np.abs(found.array(name) - expected_.array(name)).max(), np.abs(expected_.array(name)).max()
+            gap, size = (
+                np.abs(found.array(name) - expected_.array(name)).max(),
+                np.abs(expected_.array(name)).max(),
+            )
             assert gap <= (1e-12 if "backend" in way else 1e-4) * max(size, 1.0), (way, name)
     save(expected_, tmp_path / "linkage.h5")
-    assert load(tmp_path / "linkage.h5").section("b").bending.tolist() == expected_.section("b").bending.tolist()
+    assert (
+        load(tmp_path / "linkage.h5").section("b").bending.tolist()
+        == expected_.section("b").bending.tolist()
+    )
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
@@ -154,7 +231,13 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     scene, _ = linkage(t=(0.1, 0.9, 41))
     made, told = exported(scene, tmp_path, precision=precision)
     solution = solve(scene, precision)
-    compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(scene, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, precision)),
+        expected(scene, told, solution),
+        told,
+        made,
+        solution,
+    )
 
 
 @pytest.mark.long
@@ -167,19 +250,33 @@ def test_sweeps_find_the_peaks_along_the_links():
         names = [str(quantity) for quantity in engine.quantities]
         for k, gust in enumerate((1.0, 2.5)):
             solution = evaluate(scene, parameters={"gust": gust})
-            for peak in refine(scene, solution, ["section:b:bending", "section:c:bending", "section:b:axial"]):
-                assert abs(found.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * abs(peak.value)
+            for peak in refine(
+                scene, solution, ["section:b:bending", "section:c:bending", "section:b:axial"]
+            ):
+                assert abs(found.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * abs(
+                    peak.value
+                )
                 fine = evaluate(scene, parameters={"gust": gust}, t=(0.1, 0.9, 4001))
                 assert fine.peak(peak.name).value == pytest.approx(peak.value, rel=1e-5)
 
 
 def test_what_bears_no_line_load_is_refused_by_name():
     m = Mechanism("refused")
-    rod, ball, low = m.link("rod", length=1.0, mass=1.0), m.point_mass("ball", 1.0), m.parameter("low", 0.2, "m")
+    rod, ball, low = (
+        m.link("rod", length=1.0, mass=1.0),
+        m.point_mass("ball", 1.0),
+        m.parameter("low", 0.2, "m"),
+    )
     for place in (ball, m.ground):
-        with pytest.raises(DeclarationError, match=r"load 'wind': a line load acts along a link, and '\w+' is none; take a force"):
+        with pytest.raises(
+            DeclarationError,
+            match=r"load 'wind': a line load acts along a link, and '\w+' is none; take a force",
+        ):
             m.line_load("wind", place, y=1.0)
-    expected_one = r"load 'wind': expected one value, two, where it begins and where it ends, or a function of the distance .*, got"
+    expected_one = (
+        r"load 'wind': expected one value, two, where it begins and where it ends, or a function of"
+        r" the distance .*, got"
+    )
     for value in ((1.0, 2.0, 3.0), ()):
         with pytest.raises(DeclarationError, match=expected_one):
             m.line_load("wind", rod, y=value)
@@ -188,23 +285,53 @@ def test_what_bears_no_line_load_is_refused_by_name():
     for foreign in (ca.SX.sym("foreign"), lambda xi: xi * ca.SX.sym("foreign")):
         with pytest.raises(DeclarationError, match="load 'wind' depends on 'foreign'"):
             m.line_load("wind", rod, y=foreign)
-    no_polynomial = "load 'wind' must be a polynomial of the distance from the base, of degree 7 at most; take one"
+    no_polynomial = (
+        "load 'wind' must be a polynomial of the distance from the base, of degree 7 at most;"
+        " take one"
+    )
     shape = curve([0.0, 0.3, 0.6, 1.0], [1.0, 2.0, 1.5, 0.0])
-    wrong = (ca.sin, ca.fabs, shape, lambda xi: xi**8, lambda xi: 1 / (1 + xi), lambda xi: ca.if_else(xi < 0.5, 1.0, 2.0))
-    for function in (*wrong, lambda xi: xi**0.5, lambda xi: 2**xi, lambda xi: low**xi, lambda xi: ca.fmax(xi, low)):
+    wrong = (
+        ca.sin,
+        ca.fabs,
+        shape,
+        lambda xi: xi**8,
+        lambda xi: 1 / (1 + xi),
+        lambda xi: ca.if_else(xi < 0.5, 1.0, 2.0),
+    )
+    for function in (
+        *wrong,
+        lambda xi: xi**0.5,
+        lambda xi: 2**xi,
+        lambda xi: low**xi,
+        lambda xi: ca.fmax(xi, low),
+    ):
         with pytest.raises(DeclarationError, match=no_polynomial):
             m.line_load("wind", rod, y=function)
-    with pytest.raises(DeclarationError, match="load 'wind': its function of the distance fails: ZeroDivisionError"):
+    with pytest.raises(
+        DeclarationError, match="load 'wind': its function of the distance fails: ZeroDivisionError"
+    ):
         m.line_load("wind", rod, y=lambda xi: xi * (1 / 0))
-    with pytest.raises(DeclarationError, match="load 'wind': its function of the distance fails: a symbol is neither true"):
+    with pytest.raises(
+        DeclarationError,
+        match="load 'wind': its function of the distance fails: a symbol is neither true",
+    ):
         m.line_load("wind", rod, y=lambda xi: xi if xi > 0 else 0)
-    with pytest.raises(DeclarationError, match=r"load 'wind' must be a scalar, got one of shape \(2, 1\)"):
+    with pytest.raises(
+        DeclarationError, match=r"load 'wind' must be a scalar, got one of shape \(2, 1\)"
+    ):
         m.line_load("wind", rod, y=lambda xi: ca.vertcat(xi, xi))
-    with pytest.raises(DeclarationError, match="load 'wind': between must be two distances from the base of 'rod'"):
+    with pytest.raises(
+        DeclarationError, match="load 'wind': between must be two distances from the base of 'rod'"
+    ):
         m.line_load("wind", rod, y=1.0, between=0.3)
-    with pytest.raises(DeclarationError, match="load 'wind': between depends on 't', not a parameter"):
+    with pytest.raises(
+        DeclarationError, match="load 'wind': between depends on 't', not a parameter"
+    ):
         m.line_load("wind", rod, y=1.0, between=(0.0, m.time))
-    with pytest.raises(DeclarationError, match=r"load 'wind': between must be two distances from the base that rise, got 0\.5"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"load 'wind': between must be two distances from the base that rise, got 0\.5",
+    ):
         m.line_load("wind", rod, y=1.0, between=(0.5, 0.5))
     m.line_load("wind", rod, y=1.0, between=(low, 0.6))
     with pytest.raises(DeclarationError, match="load 'wind' is declared twice"):
@@ -215,7 +342,10 @@ def test_what_bears_no_line_load_is_refused_by_name():
     told = r"load 'wind': it acts between {} and 0.6 m, but link 'rod' is from 0 to 1 m"
     with pytest.raises(ParameterError, match=told.format("-0.1")):
         evaluate(scene, parameters={"low": -0.1})
-    with pytest.raises(ParameterError, match=r"load 'wind': it acts between 0\.7 and 0\.6 m; it must end beyond where it begins"):
+    with pytest.raises(
+        ParameterError,
+        match=r"load 'wind': it acts between 0\.7 and 0\.6 m; it must end beyond where it begins",
+    ):
         evaluate(scene, parameters={"low": 0.7})
     engine = DesignEngine.of(scene, rung=Rung("vm"))
     assert engine.evaluate(np.array([[0.2], [-0.1], [0.6], [0.7]])).status.tolist() == [

@@ -47,7 +47,13 @@ def guided(offset=0.0):
         m.link("rod", length=0.4, mass=1.0),
         m.link("slider", length=0.05, mass=1.0),
     )
-    m.revolute("O", m.ground.at(*turned(0.0, offset)), crank, axis=turned(0, 0, 1), turned=(TURN[0], TURN[1]))
+    m.revolute(
+        "O",
+        m.ground.at(*turned(0.0, offset)),
+        crank,
+        axis=turned(0, 0, 1),
+        turned=(TURN[0], TURN[1]),
+    )
     m.revolute("A", crank.tip, rod, axis=(0, 0, 1))
     m.revolute("B", rod.tip, slider, axis=(0, 0, 1))
     m.cylindrical("G", m.ground, slider, axis=turned(1), turned=(TURN[0], TURN[1]))
@@ -90,7 +96,9 @@ def test_no_iteration_is_needed(name):
 
 
 def test_all_ways_of_a_rod_that_lies_askew():
-    """The sine of its angle to the guide is of two signs, each with two ways round; the posture that is told is the one found."""
+    """The sine of its angle to the guide is of two signs, each with two ways round; the posture
+    that is told is the one found.
+    """
     for offset in (0.0, 0.03):
         open_ = askew({}, offset)
         with pytest.raises(PostureError, match="can be assembled in several ways") as error:
@@ -102,7 +110,9 @@ def test_all_ways_of_a_rod_that_lies_askew():
             assert f"'{math.degrees(way['B']):.6g} deg'" in str(error.value)
             solution = evaluate(askew(dict(way), offset))
             assert solution.certified
-            assert math.remainder(float(solution.motion("B").value[0]) - way["B"], math.tau) == pytest.approx(0.0, abs=1e-9)
+            assert math.remainder(
+                float(solution.motion("B").value[0]) - way["B"], math.tau
+            ) == pytest.approx(0.0, abs=1e-9)
             found.append(solution.effort("O"))
         assert len({round(float(effort[3]), 6) for effort in found}) == (4 if offset else 2)
 
@@ -111,6 +121,10 @@ def test_a_sign_that_cannot_be_is_no_way():
     """At a distance from the line the rod reaches the crank on one side only."""
     with pytest.raises(PostureError, match="can be assembled in two ways") as error:
         evaluate(askew({}, 0.2, 0.25), t=(0.0, 0.1, 3))
-    assert {round(math.sin(way["B"]), 6) for way in error.value.ways[0]} == {round(math.sin(error.value.ways[0][0]["B"]), 6)}
-    with pytest.raises(AssemblyError, match="the loop closed by joint 'A' cannot be closed at the start"):
+    assert {round(math.sin(way["B"]), 6) for way in error.value.ways[0]} == {
+        round(math.sin(error.value.ways[0][0]["B"]), 6)
+    }
+    with pytest.raises(
+        AssemblyError, match="the loop closed by joint 'A' cannot be closed at the start"
+    ):
         evaluate(askew({}, 0.0, 0.1))

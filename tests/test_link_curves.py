@@ -1,4 +1,6 @@
-"""The curves of a link's section forces in C, as sweeps have them, over random laws: the same as in Python."""
+"""The curves of a link's section forces in C, as sweeps have them, over random laws: the same as in
+Python.
+"""
 
 import math
 import subprocess
@@ -32,27 +34,53 @@ LINKS = 15
 
 
 def drawn(generator, table, loaded):
-    """A law at one instant: of a link of any density, with stations anywhere but at breaks of the density, or without.
+    """A law at one instant: of a link of any density, with stations anywhere but at breaks of the
+    density, or without.
 
     Where ``loaded`` there are loads along it, on all of it or on a part.
     """
     many = int(generator.integers(1, 4))
-    breaks = (0.0, *map(float, sorted(generator.choice([0.2, 0.45, 0.5, 0.7], many - 1, replace=False))), 1.0)
-    cells = tuple(tuple(generator.uniform(0.1, 2.0, int(generator.integers(1, 5))).tolist()) for _ in range(many))
+    breaks = (
+        0.0,
+        *map(float, sorted(generator.choice([0.2, 0.45, 0.5, 0.7], many - 1, replace=False))),
+        1.0,
+    )
+    cells = tuple(
+        tuple(generator.uniform(0.1, 2.0, int(generator.integers(1, 5))).tolist())
+        for _ in range(many)
+    )
     places = [0.0, 1e-15, 0.25, 1 / 3, 0.1 / 0.3, 0.8, 0.95, 1.0 - 1e-15]
     stations = generator.choice(places, int(generator.integers(0, 4)), replace=False)
     of = StationLoad if table is PLANE else SpatialStationLoad
-    loads = tuple(of("", np.array([x]), *generator.normal(size=(len(table.station) - 1, 1))) for x in stations)
-    coefficients = {name: generator.normal(size=1) * (5.0 if name[-1] == "2" else 1.0) for name in table.law}
+    loads = tuple(
+        of("", np.array([x]), *generator.normal(size=(len(table.station) - 1, 1))) for x in stations
+    )
+    coefficients = {
+        name: generator.normal(size=1) * (5.0 if name[-1] == "2" else 1.0) for name in table.law
+    }
     spreads = []
     for _ in range(int(generator.integers(1, 4)) if loaded else 0):
         start, end = (
-            (0.0, 1.0) if generator.random() < 0.4 else sorted(generator.choice([0.0, 0.1, 0.35, 0.62, 0.9, 1.0], 2, False))
+            (0.0, 1.0)
+            if generator.random() < 0.4
+            else sorted(generator.choice([0.0, 0.1, 0.35, 0.62, 0.9, 1.0], 2, False))
         )
-        terms = {name: tuple(generator.normal(size=(int(generator.integers(1, 6)), 1)) * 4.0) for name in table.spread[:1]}
-        terms |= {name: tuple(generator.normal(size=(len(terms["qn"]), 1)) * 4.0) for name in table.spread[1:]}
+        terms = {
+            name: tuple(generator.normal(size=(int(generator.integers(1, 6)), 1)) * 4.0)
+            for name in table.spread[:1]
+        }
+        terms |= {
+            name: tuple(generator.normal(size=(len(terms["qn"]), 1)) * 4.0)
+            for name in table.spread[1:]
+        }
         spreads.append(SpreadLoad("", np.array([end - start]), np.array([end]), terms))
-    return SectionLaw(float(generator.uniform(0.1, 3.0)), NumericDensity(breaks, cells), coefficients, loads, tuple(spreads))
+    return SectionLaw(
+        float(generator.uniform(0.1, 3.0)),
+        NumericDensity(breaks, cells),
+        coefficients,
+        loads,
+        tuple(spreads),
+    )
 
 
 def along_of(law):
@@ -64,9 +92,19 @@ def along_of(law):
         return tuple(range(len(y) - len(values), len(y)))
 
     members = columns([law.coefficients[name] for name in law.table.law])
-    stations = tuple(columns([getattr(load, name) for name in law.table.place_first]) for load in law.loads)
-    spreads = tuple(columns([one.width, one.end, *(c for row in one.terms.values() for c in row)]) for one in law.spreads)
-    marks = [mark for width, end, *_ in spreads if (y[width], y[end]) != (1.0, 1.0) for mark in ((end, width), (end,))]
+    stations = tuple(
+        columns([getattr(load, name) for name in law.table.place_first]) for load in law.loads
+    )
+    spreads = tuple(
+        columns([one.width, one.end, *(c for row in one.terms.values() for c in row)])
+        for one in law.spreads
+    )
+    marks = [
+        mark
+        for width, end, *_ in spreads
+        if (y[width], y[end]) != (1.0, 1.0)
+        for mark in ((end, width), (end,))
+    ]
     marks += law.density.jumps if spreads else ()
     terms = max(map(len, law.density.cells))
     return Along(members, stations, law.density.breaks, terms, spreads, tuple(marks)), y
@@ -92,7 +130,7 @@ def program(laws):
     for (i = 0; i < {link.rows}; ++i) printf("%.17g ", place[i]);
     printf("\\n");
   }}
-"""
+"""  # noqa: E501
     sections = resources.files("lagrange_casadi.codegen").joinpath("sections.c").read_text()
     return f"""{HEAD}{sections}{turning([link for link, _ in links])}
 int main(void) {{
@@ -123,7 +161,12 @@ def test_curves_are_those_of_the_law(seed, table, loaded, tmp_path):
         first = 0
         for force, rows in zip(table.forces, link.places, strict=True):
             own, first = values[first : first + len(rows)], first + len(rows)
-            u = np.array([{"BASE": 0.0, "TIP": 1.0}[row] if isinstance(row, str) else places[row] for row in rows])
+            u = np.array(
+                [
+                    {"BASE": 0.0, "TIP": 1.0}[row] if isinstance(row, str) else places[row]
+                    for row in rows
+                ]
+            )
             scale = np.abs(own).max() + 1.0
             sides = np.stack([law.at(force, u[None], side)[0] for side in ("tip", "base")])
             assert np.abs(sides - own).min(axis=0).max() <= 1e-12 * scale, force
@@ -136,7 +179,9 @@ def test_curves_are_those_of_the_law(seed, table, loaded, tmp_path):
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("table", [PLANE, SPACE], ids=["plane", "space"])
 def test_nothing_along_a_loaded_link_is_beyond_what_the_law_finds(table):
-    """Smallest, largest and largest in size are forces at their places, and no point of a fine grid is beyond them."""
+    """Smallest, largest and largest in size are forces at their places, and no point of a fine grid
+    is beyond them.
+    """
     generator = np.random.default_rng(3)
     xi = np.linspace(0.0, 1.0, 5001)
     for _ in range(LINKS):
@@ -157,7 +202,11 @@ def test_curves_keep_their_places_where_the_shear_turns_at_the_base(tmp_path):
     """But for rounding, which must not tell which zero of the shear comes first."""
     generator, laws = np.random.default_rng(3), []
     for _ in range(LINKS):
-        bent = {f"f{axis}{k}": np.array([x]) for axis in "yz" for k, x in ((0, -0.2), (1, 1e-15 * generator.normal()), (2, 1.0))}
+        bent = {
+            f"f{axis}{k}": np.array([x])
+            for axis in "yz"
+            for k, x in ((0, -0.2), (1, 1e-15 * generator.normal()), (2, 1.0))
+        }
         coefficients = {name: np.zeros(1) for name in SPACE.law} | bent
         laws.append(SectionLaw(0.7, NumericDensity((0.0, 1.0), ((1.3,),)), coefficients))
     (tmp_path / "curves.c").write_text(program(laws))
@@ -166,7 +215,10 @@ def test_curves_keep_their_places_where_the_shear_turns_at_the_base(tmp_path):
     told = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout
     for law, line in zip(laws, told.splitlines(), strict=True):
         own = np.array([values for force in SPACE.forces for values in law.curves(force)[1][0]])
-        assert np.abs(np.array(line.split(), float)[: own.size] - own).max() <= 1e-13 * np.abs(own).max()
+        assert (
+            np.abs(np.array(line.split(), float)[: own.size] - own).max()
+            <= 1e-13 * np.abs(own).max()
+        )
 
 
 def test_planar_links_need_none_of_it():

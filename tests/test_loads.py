@@ -22,7 +22,9 @@ def loads_on(m, parts):
     m.force("wind", b.at(0.2, 0.01), x=4.0 * ca.sin(7 * m.time), y=-2.0)
     m.force("follower", b.at(0.1), y=5.0, turning=True)
     m.torque("brake", b.at(0.25), 0.7, against=a.at(0.05))
-    m.spring("spring", m.ground.at(0.2, 0.3), b.at(0.3, -0.02), stiffness=200.0, length=0.1, damping=4.0)
+    m.spring(
+        "spring", m.ground.at(0.2, 0.3), b.at(0.3, -0.02), stiffness=200.0, length=0.1, damping=4.0
+    )
     m.spring("strut", a.tip, s, stiffness=90.0, length=0.2)
     m.damper("dashpot", m.ground.at(0.5, 0.1), b.tip, damping=2.5)
     m.torsion_spring("coil", m.joints["A"], stiffness=1.5, angle=0.2, damping=0.05)
@@ -60,10 +62,15 @@ def test_loads_of_every_kind():
 
 
 def test_loads_are_reported():
-    solution = evaluate(crank_and_rod({"mass": 0.5}, loads=loads_on), wanted=["load:wind", "load:brake", "load:strut"])
+    solution = evaluate(
+        crank_and_rod({"mass": 0.5}, loads=loads_on),
+        wanted=["load:wind", "load:brake", "load:strut"],
+    )
     assert solution.array("load:wind:fx")[0] == pytest.approx(4.0 * math.sin(7 * INSTANT))
     assert solution.array("load:brake:mz").tolist() == [0.7, 0.7]
-    assert set(solution.series) == {f"load:{n}:{k}" for n in ("wind", "brake", "strut") for k in ("fx", "fy", "mz")}
+    assert set(solution.series) == {
+        f"load:{n}:{k}" for n in ("wind", "brake", "strut") for k in ("fx", "fy", "mz")
+    }
 
 
 def test_a_load_outside_its_link_is_named():

@@ -1,4 +1,6 @@
-"""Tables within graphs: what is found in them, by whom, and that no derivative goes through them."""
+"""Tables within graphs: what is found in them, by whom, and that
+no derivative goes through them.
+"""
 
 import casadi as ca
 import numpy as np
@@ -17,15 +19,30 @@ ENTRIES = [3.0, -0.1, 1e-9, 7e5]
 
 def looked_up():
     x = ca.SX.sym("x")
-    return ca.Function("f", [x], [cell(BREAKS, x, ends=True), entries(ENTRIES, cell(BREAKS, x, ends=True))])
+    return ca.Function(
+        "f", [x], [cell(BREAKS, x, ends=True), entries(ENTRIES, cell(BREAKS, x, ends=True))]
+    )
 
 
 @pytest.mark.parametrize(
-    ("x", "number"), [(-9.0, 0), (-1.0, 0), (-1e-300, 0), (0.0, 1), (0.25, 2), (1.999, 2), (2.0, 3), (5.0, 3), (70.0, 3)]
+    ("x", "number"),
+    [
+        (-9.0, 0),
+        (-1.0, 0),
+        (-1e-300, 0),
+        (0.0, 1),
+        (0.25, 2),
+        (1.999, 2),
+        (2.0, 3),
+        (5.0, 3),
+        (70.0, 3),
+    ],
 )
 def test_a_break_belongs_to_the_cell_after_it(x, number):
     function = looked_up()
-    assert [float(found) for found in function(x)] == pytest.approx([number, ENTRIES[number]], rel=1e-9)
+    assert [float(found) for found in function(x)] == pytest.approx(
+        [number, ENTRIES[number]], rel=1e-9
+    )
     followed = interpret(function, [[np.array([x, x + 0j])]], numpy_arithmetic())
     assert [row[0].tolist() for row in followed] == [[float(found)] * 2 for found in function(x)]
 
@@ -45,7 +62,9 @@ def test_no_derivative_goes_through_a_table():
     value = entries(ENTRIES, cell(BREAKS, x, ends=False)) * x**2
     for slope in (ca.jacobian(value, x), ca.gradient(value, x), ca.jtimes(value, x, 1)):
         function = ca.Function("slope", [x], [slope, ca.jacobian(slope, x)])
-        assert len(function.find_functions()) == 2  # the table and the cell, and none of CasADi's derivatives of them
+        assert (
+            len(function.find_functions()) == 2
+        )  # the table and the cell, and none of CasADi's derivatives of them
         assert [float(found) for found in function(3.0)] == pytest.approx([6.0 * 7e5, 2.0 * 7e5])
 
 
@@ -53,12 +72,16 @@ def test_a_function_tells_its_table_wherever_it_comes_from():
     function = ca.Function.deserialize(looked_up().serialize())
     assert followable(function)
     found = [step.looked_up for step in steps(function) if step.looked_up]
-    assert [(table.kind, table.ends) for table in found] == [("cell", True), ("cell", True), ("entry", False)] or [
-        (table.kind, table.ends) for table in found
-    ] == [("cell", True), ("entry", False)]
+    assert [(table.kind, table.ends) for table in found] == [
+        ("cell", True),
+        ("cell", True),
+        ("entry", False),
+    ] or [(table.kind, table.ends) for table in found] == [("cell", True), ("entry", False)]
     assert found[0].numbers.tolist() == BREAKS
     x = ca.SX.sym("x")
-    assert is_entry(entries(ENTRIES, x).dep(1).dep(0)) or is_entry(entries(ENTRIES, x).dep(0).dep(0))
+    assert is_entry(entries(ENTRIES, x).dep(1).dep(0)) or is_entry(
+        entries(ENTRIES, x).dep(0).dep(0)
+    )
     assert not is_entry(x)
     assert lookup(ca.Function("other", [x], [x])) is None
     assert lookup(ca.Function("lagrange_casadi_entry_0123456789abcdef", [x], [x])) is None
@@ -78,5 +101,7 @@ def test_pairs_look_up_by_their_value(precision):
     high, low = ca.SX.sym("high"), ca.SX.sym("low")
     (number,), (entry,) = interpret(looked_up(), [[Pair(high, low)]], Pairs(precision).arithmetic)
     function = ca.Function("f", [high, low], [number.value, entry.value])
-    assert [float(found) for found in function(0.25, -1e-30)] == pytest.approx([2.0, 1e-9], rel=1e-6)
+    assert [float(found) for found in function(0.25, -1e-30)] == pytest.approx(
+        [2.0, 1e-9], rel=1e-6
+    )
     assert [float(found) for found in function(2.0, 0.1)] == pytest.approx([3.0, 7e5], rel=1e-6)

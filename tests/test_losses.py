@@ -1,4 +1,6 @@
-"""Losses where gears mesh: efficiencies, which gear drives, what the certificate says, rest, and worms that lock themselves."""
+"""Losses where gears mesh: efficiencies, which gear drives, what the certificate says, rest, and
+worms that lock themselves.
+"""
 
 import math
 
@@ -17,7 +19,12 @@ TAN = math.tan(math.radians(20.0))
 
 def pair(kind, speed=None, **more):
     """Two gears of which the second is loaded, or brakes; or a gear and a rack."""
-    sizes = {"outside": (0.03, 0.05, 0.08), "ring": (0.03, 0.05, 0.02), "in a ring": (0.05, 0.03, -0.02), "rack": (0.03, 1, 0)}
+    sizes = {
+        "outside": (0.03, 0.05, 0.08),
+        "ring": (0.03, 0.05, 0.02),
+        "in a ring": (0.05, 0.03, -0.02),
+        "rack": (0.03, 1, 0),
+    }
     r1, r2, apart = sizes[kind]
     m = Mechanism("pair")
     m.set_gravity(0, 0)
@@ -41,7 +48,9 @@ def pair(kind, speed=None, **more):
 @pytest.mark.parametrize("moment", [40.0, -40.0])
 @pytest.mark.parametrize("share", [0.97, 0.88, 1.0])
 def test_what_comes_out_is_a_share_of_what_goes_in(kind, moment, share):
-    """Whichever gear drives; the couple is borne by no one else, so both torques and that on the bearings' frame are in balance."""
+    """Whichever gear drives; the couple is borne by no one else, so both torques and that on the
+    bearings' frame are in balance.
+    """
     scene, ratio = pair(kind)
     solution = evaluate(scene, parameters={"load": moment, "efficiency": share})
     assert solution.certified
@@ -76,7 +85,10 @@ def test_with_bearings_that_rub():
     """Both depend on each other: teeth press the bearings, whose friction the teeth pass on."""
     m = Mechanism("rubbing")
     m.set_gravity(0, 0)
-    first, second = wheel(m, "first", radius=0.03, mass=0.5), wheel(m, "second", radius=0.05, mass=1.0)
+    first, second = (
+        wheel(m, "first", radius=0.03, mass=0.5),
+        wheel(m, "second", radius=0.05, mass=1.0),
+    )
     joints = m.revolute("A", m.ground, first), m.revolute("B", m.ground.at(0.08, 0), second)
     for name, joint in zip("ab", joints, strict=True):
         m.friction(name, joint, mu=0.1, radius=0.01)
@@ -97,11 +109,19 @@ def worm(mu, driven, speed=3.0, hand="right", moment=-50.0):
     r1, r2, z = 0.02, 0.08, 40
     kwargs = {"mass": 0.0, "centre": (0, 0, 0)}
     screw = m.link("screw", length=0.1, inertia=(1e-12, 1e-12, 1e-12), **kwargs)
-    turned = m.link("turned", length=0.1, inertia=(1e-12, 1e-12, 1e-12), **(kwargs | {"mass": 1e-9}))
+    turned = m.link(
+        "turned", length=0.1, inertia=(1e-12, 1e-12, 1e-12), **(kwargs | {"mass": 1e-9})
+    )
     m.revolute("worm", m.ground, screw, axis=(1, 0, 0))
     m.revolute("wheel", m.ground.at(0, r1 + r2, 0), turned, axis=(0, 0, 1))
-    gears(m, "mesh", screw, turned, radii=(r1, r2), teeth=(4, z), hand=hand, mu=m.parameter("mu", mu))
-    m.torque("load", turned if driven == "worm" else screw, **({"z": moment} if driven == "worm" else {"x": moment}))
+    gears(
+        m, "mesh", screw, turned, radii=(r1, r2), teeth=(4, z), hand=hand, mu=m.parameter("mu", mu)
+    )
+    m.torque(
+        "load",
+        turned if driven == "worm" else screw,
+        **({"z": moment} if driven == "worm" else {"x": moment}),
+    )
     return Scene(m, {driven: polynomial(0.0, speed)}, t=(0, 1, 3)), math.atan(4 * r2 / (z * r1))
 
 
@@ -120,7 +140,8 @@ def test_a_worm_drives_its_wheel(mu, hand):
         if taken[0] > 0.0:
             assert taken / given == pytest.approx(np.full(3, efficiency), rel=1e-9)
         else:
-            # The wheel pushes: with the sign of mu the other way, less is given back, or it must be driven.
+            # The wheel pushes: with the sign of mu the other way, less is given back, or it must be
+            # driven.
             back = (cosine - mu / math.tan(lead)) / (cosine + mu * math.tan(lead))
             assert given / taken == pytest.approx(np.full(3, back), rel=1e-9)
         assert given - taken == pytest.approx(solution.output("mesh_loss"), rel=1e-9, abs=1e-9)
@@ -138,7 +159,10 @@ def test_a_wheel_drives_its_worm_unless_that_locks_itself():
 def test_numbers_that_cannot_be_are_refused_by_name():
     def refused(told, of=Mechanism, **more):
         m = of("bad")
-        first, second = wheel(m, "first", radius=0.05, mass=1.0), wheel(m, "second", radius=0.1, mass=1.0)
+        first, second = (
+            wheel(m, "first", radius=0.05, mass=1.0),
+            wheel(m, "second", radius=0.1, mass=1.0),
+        )
         m.revolute("A", m.ground, first)
         m.revolute("B", m.ground.at(0.05, 0), second)
         with pytest.raises(DeclarationError) as error:

@@ -1,4 +1,6 @@
-"""The lowest value of a polynomial on an interval, against values on a fine grid and known turning points."""
+"""The lowest value of a polynomial on an interval, against values on a fine grid and known turning
+points.
+"""
 
 import functools
 
@@ -30,7 +32,10 @@ coefficient = st.floats(-10, 10) | st.integers(-3, 3).map(float)
 
 
 @settings(max_examples=30, deadline=None)
-@given(cell=st.lists(coefficient, min_size=1, max_size=6), ends=st.sampled_from([(0.0, 1.0), (0.25, 0.3), (0.0, 0.5)]))
+@given(
+    cell=st.lists(coefficient, min_size=1, max_size=6),
+    ends=st.sampled_from([(0.0, 1.0), (0.25, 0.3), (0.0, 0.5)]),
+)
 def test_nothing_on_the_interval_is_lower(cell, ends):
     place, value = found(cell, *ends)
     size = 1e-14 * (1 + np.abs(cell).sum())
@@ -42,7 +47,9 @@ def test_nothing_on_the_interval_is_lower(cell, ends):
 @settings(max_examples=25, deadline=None)
 @given(roots=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=4), factor=st.floats(0.01, 10))
 def test_squares_touch_zero(roots, factor):
-    """A product of squares is nowhere negative, and zero at its roots, also where these fall together."""
+    """A product of squares is nowhere negative, and zero at its roots, also where these fall
+    together.
+    """
     cell = [factor]
     for root in roots:
         cell = np.polynomial.polynomial.polymul(cell, [root * root, -2 * root, 1.0])

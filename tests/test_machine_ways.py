@@ -1,4 +1,6 @@
-"""Machines from practice in every way of evaluating them: drives elsewhere, guided points, rows and curves together."""
+"""Machines from practice in every way of evaluating them: drives elsewhere, guided points, rows and
+curves together.
+"""
 
 from dataclasses import replace
 
@@ -30,7 +32,10 @@ def test_every_way_gives_the_same_within_its_errors(name):
         for quantity in exact.series:
             gap = np.abs(found.array(quantity) - exact.array(quantity)).max()
             # An estimate is within a factor of ten; angles and places may be of next to nothing.
-            assert gap <= 10.0 * float(np.max(found.errors[quantity])) + 1e-13 * size[exact.unit(quantity)], (way, quantity)
+            assert (
+                gap
+                <= 10.0 * float(np.max(found.errors[quantity])) + 1e-13 * size[exact.unit(quantity)]
+            ), (way, quantity)
 
 
 @pytest.mark.sampled(13)
@@ -41,7 +46,10 @@ def test_designs_have_the_peaks_of_the_api(name):
     if name == "cam":
         scene = replace(scene, wanted=["effort", "output:contact_force"])
     for backend in ("c", "lanes"):
-        designs, p = DesignEngine.of(scene, t=(*scene.span, 97), rung=Rung(backend)), around(scene, 2)
+        designs, p = (
+            DesignEngine.of(scene, t=(*scene.span, 97), rung=Rung(backend)),
+            around(scene, 2),
+        )
         outcome = designs.evaluate(p)
         assert outcome.status.tolist() == [Status.OK] * 2
         for row in range(2):
@@ -56,4 +64,6 @@ def test_exported_c_has_the_numbers_of_the_api(name, precision, tmp_path):
     made, told = exported(scene, tmp_path, precision=precision)
     solution = solve(scene, precision)
     found = by_c99(tmp_path, told, instants(solution.t, precision))
-    compare(found, expected(scene, told, solution), told, made, solution, exact=precision == "double")
+    compare(
+        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
+    )

@@ -1,4 +1,6 @@
-"""What people are told: of symbols that Python cannot use, of what a run replaced, in numbers that can be read."""
+"""What people are told: of symbols that Python cannot use, of what a run replaced, in numbers that
+can be read.
+"""
 
 import math
 import os
@@ -27,8 +29,9 @@ def scene():
     return Scene(m, {{"O": {law}}}, t=(0, 1, 5))
 """
 IF_ELSE = (
-    "a symbol is neither true nor false before it has a value: use casadi.if_else(condition, a, b) for 'if', casadi.logic_and and "
-    "logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and 'max'"
+    "a symbol is neither true nor false before it has a value: use casadi.if_else(condition, a, b)"
+    " for 'if', casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min'"
+    " and 'max'"
 )
 
 
@@ -42,7 +45,12 @@ def swinging(x=lambda t: 0.0, law=None):
 
 @pytest.mark.parametrize(
     "choice",
-    ["1.0 if m.time > 0.5 else 2.0", "max(m.time, 0.5)", "1.0 * (m.time > 0.2 and m.time < 0.5)", "2.0 if 0 < m.time < 0.5 else 1"],
+    [
+        "1.0 if m.time > 0.5 else 2.0",
+        "max(m.time, 0.5)",
+        "1.0 * (m.time > 0.2 and m.time < 0.5)",
+        "2.0 if 0 < m.time < 0.5 else 1",
+    ],
 )
 def test_a_choice_that_python_cannot_make_names_what_makes_it(tmp_path, choice):
     (tmp_path / "case.py").write_text(CASE.format(x=choice, law="polynomial(0, 1.0)"))
@@ -58,10 +66,15 @@ def test_a_law_that_chooses_names_what_makes_it():
     assert str(error.value).endswith(f"no casadi.SX expression of t: {IF_ELSE}"[:300])
 
 
-@pytest.mark.parametrize("function", [math.sin, float, lambda t: math.atan2(t, 0.5), lambda t: np.array(t)])
+@pytest.mark.parametrize(
+    "function", [math.sin, float, lambda t: math.atan2(t, 0.5), lambda t: np.array(t)]
+)
 def test_functions_of_math_name_casadis(function):
     with pytest.raises(
-        DeclarationError, match=r"load 'push' must be finite, got nan; functions of math .* CasADi's, as casadi\.sin$"
+        DeclarationError,
+        match=(
+            r"load 'push' must be finite, got nan; functions of math .* CasADi's, as casadi\.sin$"
+        ),
     ):
         swinging(function)
 
@@ -76,7 +89,9 @@ FUNCTIONS = {
     "clip": lambda t: np.clip(t, 0.35, 0.75),
     "deg2rad": np.deg2rad,
     "maximum": lambda t: np.maximum(t, 0.5) - np.minimum(t, 0.4),
-    "power": lambda t: np.power(t, 3) + np.sqrt(t) + np.abs(t - 0.5) + np.floor(3 * t) + np.mod(t, 0.3),
+    "power": lambda t: (
+        np.power(t, 3) + np.sqrt(t) + np.abs(t - 0.5) + np.floor(3 * t) + np.mod(t, 0.3)
+    ),
 }
 
 
@@ -84,14 +99,20 @@ FUNCTIONS = {
 @pytest.mark.filterwarnings("ignore::FutureWarning")
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_numpys_functions_of_symbols_are_what_they_are_of_numbers(name):
-    """They go into the graph as CasADi's own: the load at every instant is NumPy's own value there."""
+    """They go into the graph as CasADi's own: the load at every instant
+    is NumPy's own value there.
+    """
     function = FUNCTIONS[name]
     solution = evaluate(swinging(function), wanted=["load"])
-    np.testing.assert_allclose(solution.array("load:push:fx"), function(solution.t), rtol=1e-15, atol=1e-15)
+    np.testing.assert_allclose(
+        solution.array("load:push:fx"), function(solution.t), rtol=1e-15, atol=1e-15
+    )
 
 
 def test_a_note_about_numpy_does_not_fill_the_screen(here, capfd):
-    (here / "case.py").write_text(CASE.format(x="np.sin(m.time)", law="expression(lambda t: np.sin(t))"))
+    (here / "case.py").write_text(
+        CASE.format(x="np.sin(m.time)", law="expression(lambda t: np.sin(t))")
+    )
     assert main(["run", "case.py", "--no-figures"]) == 0
     assert capfd.readouterr().err == ""
 
@@ -113,7 +134,9 @@ def test_numbers_are_told_as_they_are_read():
         with pytest.raises(ParameterError) as error:
             m.values({"a": value})
         assert says in str(error.value)
-    with pytest.raises(ParameterError, match=r"link 'arm': length must be positive, got -0\.0333333 m$"):
+    with pytest.raises(
+        ParameterError, match=r"link 'arm': length must be positive, got -0\.0333333 m$"
+    ):
         m.values({"b": -0.1})
 
 
@@ -129,10 +152,14 @@ def test_run_says_what_it_replaced(here, capsys):
     out = capsys.readouterr().out
     assert "replaced four_bar.h5\n" in out
     older = "note: figures in four_bar_figures/ that are older than four_bar.h5: effort_O.png; "
-    assert f"{older}lagrange-casadi plot four_bar.h5 --out four_bar_figures draws them anew\n" in out
+    assert (
+        f"{older}lagrange-casadi plot four_bar.h5 --out four_bar_figures draws them anew\n" in out
+    )
     assert main(["run", "four_bar", "--t", "0:0.1:21", "--want", "motion"]) == 0
     out = capsys.readouterr().out
-    assert "note: figures in four_bar_figures/ that are older than four_bar.h5: effort_O.png\n" in out
+    assert (
+        "note: figures in four_bar_figures/ that are older than four_bar.h5: effort_O.png\n" in out
+    )
     assert main([*arguments, "--out", "other.h5", "--no-figures"]) == 0
     assert "older" not in capsys.readouterr().out
 
@@ -141,7 +168,15 @@ def test_a_command_is_told_commands(here, capfd):
     assert main(["run", "four_bar", "--t", "0:0.1:5", "--want", "effort", "--no-figures"]) == 0
     capfd.readouterr()
     assert main(["table", "four_bar.h5"]) == 1
-    says = "not the file of a sweep, but that of a run, which the commands info, plot and check read\n"
+    says = (
+        "not the file of a sweep, but that of a run, which the commands info, plot and check read\n"
+    )
     assert capfd.readouterr().err == f"error: four_bar.h5: {says}"
-    sweep(load_case("four_bar"), {"a": [0.1]}, wanted=["effort"], t=(0, 0.1, 5), out=os.path.join(here, "s.h5"))
+    sweep(
+        load_case("four_bar"),
+        {"a": [0.1]},
+        wanted=["effort"],
+        t=(0, 0.1, 5),
+        out=os.path.join(here, "s.h5"),
+    )
     assert main(["run", "four_bar", "--out", "s.h5"]) == 2

@@ -1,4 +1,6 @@
-"""Misuses of the command line: each ends with status 2 or 1 and one clear line, and none is taken for what has a meaning."""
+"""Misuses of the command line: each ends with status 2 or 1 and one clear line, and none is taken
+for what has a meaning.
+"""
 
 import random
 import signal
@@ -20,14 +22,31 @@ def scene():
     bar = beams.Beam(beams.rectangle(height=height, width=width), beams.material("C45+QT"))
     m.revolute("O", m.ground, m.link("arm", length=l, beam=bar))
     return Scene(m, {"O": motion.polynomial(0.0, 6.28)}, t=(0.0, 1.0, 5), xi=(0.0, 1.0, 3))
-"""
+"""  # noqa: E501
 
-MOTORS = "name,stall_torque,rated_torque,peak_torque,rated_speed,max_speed,inertia\nM,9,8,20,1000,2000,1e-5\n"
-FILES = {"case.py": CASE, "motors.csv": MOTORS, "profiles.csv": "name,h,w\nflat,0.03,0.01\n", "designs.csv": "l\n0.2\n0.3\n"}
+MOTORS = "name,stall_torque,rated_torque,peak_torque,rated_speed,max_speed,inertia\nM,9,8,20,1000,2000,1e-5\n"  # noqa: E501
+FILES = {
+    "case.py": CASE,
+    "motors.csv": MOTORS,
+    "profiles.csv": "name,h,w\nflat,0.03,0.01\n",
+    "designs.csv": "l\n0.2\n0.3\n",
+}
 
 RIGHT = {
     "run": ["case.py", "--backend", "vm", "--no-figures", "--out", "a.h5"],
-    "sweep": ["case.py", "--backend", "vm", "--grid", "l=0.2:0.3:2", "--want", "effort", "--quiet", "--out", "b.h5", "--force"],
+    "sweep": [
+        "case.py",
+        "--backend",
+        "vm",
+        "--grid",
+        "l=0.2:0.3:2",
+        "--want",
+        "effort",
+        "--quiet",
+        "--out",
+        "b.h5",
+        "--force",
+    ],
     "best": ["sweep.h5", "--minimise", "peak:effort:O"],
     "table": ["sweep.h5"],
     "trade": ["case.py", "--want", "effort"],
@@ -51,7 +70,17 @@ RIGHT = {
         "2",
         "--force",
     ],
-    "tolerances": ["case.py", "--backend", "vm", "--tolerance", "l=0.01", "--want", "effort", "--samples", "4"],
+    "tolerances": [
+        "case.py",
+        "--backend",
+        "vm",
+        "--tolerance",
+        "l=0.01",
+        "--want",
+        "effort",
+        "--samples",
+        "4",
+    ],
     "size": ["case.py", "--profiles", "profiles.csv"],
     "drive": ["case.py", "--motors", "motors.csv"],
     "new": ["begun"],
@@ -73,13 +102,73 @@ GRID = [
 TEXTS = ["", "nothing", "effort:Q", "peak:effort:Q", "a b", "effort:O:O:O", "\x07"]
 COUNTS = ["0", "-1", "1.5", "x", "", "nan", "1" + "0" * 40]
 POSITIVE = ["0", "-1", "nan", "inf", "x", "", "1e999"]
-FILE = ["nowhere.h5", "", ".", "/dev/null", "profiles.csv", "text.h5", "cut.h5", "case.py/x", "a" * 5000]
+FILE = [
+    "nowhere.h5",
+    "",
+    ".",
+    "/dev/null",
+    "profiles.csv",
+    "text.h5",
+    "cut.h5",
+    "case.py/x",
+    "a" * 5000,
+]
 WRONG = {
     "FILE": FILE,
-    "CASE": ["nowhere", "", "/dev/null", "profiles.csv", "text.h5", "raises.py", "empty.py", "none.py", "a" * 5000],
-    "--set": ["", "l", "l=", "=1", "l=x", "l=nan", "l=1e999", "q=1", "l=-1", "l=0.3=4", "l=0.3 kg", "l=3 deg", "l=\u0663", "l=1_0"],
-    "--t": ["", "0:1", "0:1:0", "0:1:-3", "0:1:2.5", "a:b:c", "0:1:nan", "1:0:5", "0:inf:5", "0:1:5:6", "0:1 deg:5", "0:1:1e99"],
-    "--over": ["", "O", "O=", "Q=0:1:5", "O=0:1", "O=0:0:5", "O=0:360:37", "=0:1:5", "O=0:1:0", "O=0:nan:5", "O=0:1 m:5"],
+    "CASE": [
+        "nowhere",
+        "",
+        "/dev/null",
+        "profiles.csv",
+        "text.h5",
+        "raises.py",
+        "empty.py",
+        "none.py",
+        "a" * 5000,
+    ],
+    "--set": [
+        "",
+        "l",
+        "l=",
+        "=1",
+        "l=x",
+        "l=nan",
+        "l=1e999",
+        "q=1",
+        "l=-1",
+        "l=0.3=4",
+        "l=0.3 kg",
+        "l=3 deg",
+        "l=\u0663",
+        "l=1_0",
+    ],
+    "--t": [
+        "",
+        "0:1",
+        "0:1:0",
+        "0:1:-3",
+        "0:1:2.5",
+        "a:b:c",
+        "0:1:nan",
+        "1:0:5",
+        "0:inf:5",
+        "0:1:5:6",
+        "0:1 deg:5",
+        "0:1:1e99",
+    ],
+    "--over": [
+        "",
+        "O",
+        "O=",
+        "Q=0:1:5",
+        "O=0:1",
+        "O=0:0:5",
+        "O=0:360:37",
+        "=0:1:5",
+        "O=0:1:0",
+        "O=0:nan:5",
+        "O=0:1 m:5",
+    ],
     "--xi": ["0:2:5", "-1:1:3", "0:1:0", "x", "", "0:nan:3"],
     "--want": TEXTS,
     "--grid": GRID,
@@ -135,9 +224,21 @@ SWEPT, RUN = ("best", "table"), ("plot", "report", "animate", "check")
 def misuses():
     """Commands that are wrong in one place."""
     for command, right in RIGHT.items():
-        options = {one for parameter in main_options(command) for one in parameter.opts if one.startswith("--")}
-        for value in WRONG["FILE" if command in (*SWEPT, *RUN) else "CASE"] if command != "new" else ["", "case.py", "a" * 5000]:
-            if value != "." or command not in ("report", "animate"):  # which show the case of a folder
+        options = {
+            one
+            for parameter in main_options(command)
+            for one in parameter.opts
+            if one.startswith("--")
+        }
+        for value in (
+            WRONG["FILE" if command in (*SWEPT, *RUN) else "CASE"]
+            if command != "new"
+            else ["", "case.py", "a" * 5000]
+        ):
+            if value != "." or command not in (
+                "report",
+                "animate",
+            ):  # which show the case of a folder
                 yield [command, value, *right[1:]]
         for option in sorted(options & set(WRONG)):
             for value in WRONG[option]:
@@ -162,7 +263,16 @@ def misuses():
     yield ["sweep", *RIGHT["sweep"], "--designs", "designs.csv"]
     yield ["sweep", *RIGHT["sweep"], "--set", "l=0.3"]
     yield ["optimise", *RIGHT["optimise"], "--resume"]
-    yield ["best", *RIGHT["best"], "--maximise", "l", "--maximise", "peak:effort:O", "--minimise", "l"]
+    yield [
+        "best",
+        *RIGHT["best"],
+        "--maximise",
+        "l",
+        "--maximise",
+        "peak:effort:O",
+        "--minimise",
+        "l",
+    ]
     yield []
     yield ["--nonsense"]
 
@@ -192,7 +302,9 @@ def folder(tmp_path_factory, interpreted):
         Path("empty.py").write_text("")
         Path("none.py").write_text("def scene():\n    return None\n")
         assert main(["run", *RIGHT["run"][:-1], "run.h5"]) == 0
-        assert main(["sweep", *("sweep.h5" if one == "b.h5" else one for one in RIGHT["sweep"])]) == 0
+        assert (
+            main(["sweep", *("sweep.h5" if one == "b.h5" else one for one in RIGHT["sweep"])]) == 0
+        )
         Path("text.h5").write_text("no file of HDF5")
         Path("cut.h5").write_bytes(Path("run.h5").read_bytes()[:3000])
         yield place
@@ -216,10 +328,17 @@ def fault(arguments, capsys):
         signal.alarm(0)
         signal.signal(signal.SIGALRM, before)
     told = capsys.readouterr()
-    lines = [line for line in told.err.splitlines() if not line.startswith(("note:", "Usage:", "Try "))]
+    lines = [
+        line for line in told.err.splitlines() if not line.startswith(("note:", "Usage:", "Try "))
+    ]
     if status not in (1, 2):
         return f"status {status}"
-    if "Traceback" in told.err or not lines or (len(lines) > 1 and arguments and len(arguments) > 1) or len(told.err) > 4000:
+    if (
+        "Traceback" in told.err
+        or not lines
+        or (len(lines) > 1 and arguments and len(arguments) > 1)
+        or len(told.err) > 4000
+    ):
         return f"says {told.err[:300]!r}"
     return ""
 

@@ -1,4 +1,6 @@
-"""Internal forces of many mechanisms against vector Newton-Euler on free bodies, which shares nothing with the package."""
+"""Internal forces of many mechanisms against vector Newton-Euler on free bodies, which shares
+nothing with the package.
+"""
 
 import math
 
@@ -33,10 +35,16 @@ def test_loops_without_closed_form_against_newton_euler():
 
 def test_parent_and_child_exchanged_are_the_same_mechanism():
     """The reaction changes its sign with the roles, nothing else changes."""
-    plain, turned = (evaluate(four_bar(turned=t), backend="vm") for t in ((False, False), (True, True)))
+    plain, turned = (
+        evaluate(four_bar(turned=t), backend="vm") for t in ((False, False), (True, True))
+    )
     for joint, sign in (("O", 1), ("A", -1), ("C", -1)):
-        np.testing.assert_allclose(plain.reaction(joint).fx, sign * turned.reaction(joint).fx, rtol=1e-12)
-        np.testing.assert_allclose(plain.reaction(joint).fy, sign * turned.reaction(joint).fy, rtol=1e-12)
+        np.testing.assert_allclose(
+            plain.reaction(joint).fx, sign * turned.reaction(joint).fx, rtol=1e-12
+        )
+        np.testing.assert_allclose(
+            plain.reaction(joint).fy, sign * turned.reaction(joint).fy, rtol=1e-12
+        )
     np.testing.assert_allclose(plain.effort("O"), turned.effort("O"), rtol=1e-12)
     # The coupler runs from the other end: its tip is where its base was.
     for force, sign in (("axial", 1), ("shear", 1), ("bending", -1)):
@@ -57,15 +65,21 @@ def test_declaration_order_does_not_matter():
         }
         for name in sorted(joints, reverse=order == "cba"):
             joints[name]()
-        return evaluate(Scene(m, {"O": MOTION}, posture={"c": 1.5, "b": 0.5}, t=(INSTANT, 1, 3)), backend="vm")
+        return evaluate(
+            Scene(m, {"O": MOTION}, posture={"c": 1.5, "b": 0.5}, t=(INSTANT, 1, 3)), backend="vm"
+        )
 
     one, two = declare("abc"), declare("cba")
     for name in one.names():
         scale = np.max(np.abs(one.array(name)), initial=1e-3)
-        np.testing.assert_allclose(one.array(name), two.array(name), atol=1e-12 * scale, err_msg=name)
+        np.testing.assert_allclose(
+            one.array(name), two.array(name), atol=1e-12 * scale, err_msg=name
+        )
 
 
-place = st.tuples(st.sampled_from(["base", "tip", "station", "beside"]), st.floats(0.1, 0.9), st.floats(-0.2, 0.2))
+place = st.tuples(
+    st.sampled_from(["base", "tip", "station", "beside"]), st.floats(0.1, 0.9), st.floats(-0.2, 0.2)
+)
 branch = st.tuples(
     st.sampled_from(["revolute", "prismatic", "weld", "mass"]),
     st.booleans(),
@@ -89,7 +103,9 @@ def point_of(body, choice):
 @settings(max_examples=10, deadline=None)
 @given(st.lists(branch, min_size=1, max_size=5))
 def test_random_trees(branches):
-    """Links hung on each other anywhere by any joint, either end of which may be the parent, at stations on and off their axes."""
+    """Links hung on each other anywhere by any joint, either end of which may be the parent, at
+    stations on and off their axes.
+    """
     m = Mechanism("tree")
     bodies, motion = [m.ground], {}
     for i, (kind, reverse, on, near, far, angle, mass) in enumerate(branches):
@@ -118,10 +134,17 @@ masses = st.floats(0.0, 5.0)
 
 
 @settings(max_examples=6, deadline=None)
-@given(st.tuples(lengths, lengths, lengths), st.tuples(masses, masses, st.floats(0.1, 5.0)), st.floats(0.1, 3.0), st.booleans())
+@given(
+    st.tuples(lengths, lengths, lengths),
+    st.tuples(masses, masses, st.floats(0.1, 5.0)),
+    st.floats(0.1, 3.0),
+    st.booleans(),
+)
 def test_random_four_bars(length, mass, frame, turned):
     try:
-        worst, gap = compare(four_bar(length, mass, (frame, 0.1), 0.9, (turned, not turned)), nudge=1e-3)
+        worst, gap = compare(
+            four_bar(length, mass, (frame, 0.1), 0.9, (turned, not turned)), nudge=1e-3
+        )
     except AssemblyError:
         return
     if _transmission(four_bar(length, mass, (frame, 0.1), 0.9)) > 1e-2:
@@ -129,20 +152,32 @@ def test_random_four_bars(length, mass, frame, turned):
 
 
 def _transmission(scene):
-    """How far a scene's loop is from a dead centre: the closure of loops.py, at its first instant."""
+    """How far a scene's loop is from a dead centre: the closure of
+    loops.py, at its first instant.
+    """
     graph = derive(scene)
     return float(instant_at(graph, scene.t[0])[graph.names.index("_closure:B")])
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.floats(0.05, 0.3), st.floats(-0.15, 0.15), st.tuples(masses, masses, masses, masses), st.floats(0.2, 0.4), st.booleans())
+@given(
+    st.floats(0.05, 0.3),
+    st.floats(-0.15, 0.15),
+    st.tuples(masses, masses, masses, masses),
+    st.floats(0.2, 0.4),
+    st.booleans(),
+)
 def test_random_six_bars(x, y, mass, arm, turned):
-    """A crank-rocker with a pin anywhere on its coupler that swings a second rocker; parents, children and order exchanged."""
+    """A crank-rocker with a pin anywhere on its coupler that swings a second rocker; parents,
+    children and order exchanged.
+    """
     m = Mechanism("six_bar")
     swing = m.link("swing", length=0.28, mass=0.5)
     crank, coupler, rocker, last = (
         m.link(n, length=l, mass=w)
-        for n, l, w in zip(("crank", "coupler", "rocker", "arm"), (0.1, 0.35, 0.25, arm), mass, strict=True)
+        for n, l, w in zip(
+            ("crank", "coupler", "rocker", "arm"), (0.1, 0.35, 0.25, arm), mass, strict=True
+        )
     )
     ends = {
         "O": (m.ground, crank),
@@ -155,12 +190,18 @@ def test_random_six_bars(x, y, mass, arm, turned):
     }
     for name in sorted(ends, reverse=turned):
         m.revolute(name, *(ends[name][::-1] if turned and name != "O" else ends[name]))
-    scene = Scene(m, {"O": MOTION}, posture={"rocker": 1.5, "arm": 0.3, "swing": 1.8}, t=(INSTANT, 1, 2))
+    scene = Scene(
+        m, {"O": MOTION}, posture={"rocker": 1.5, "arm": 0.3, "swing": 1.8}, t=(INSTANT, 1, 2)
+    )
     try:
         graph = derive(scene)
     except AssemblyError:
         return
-    closures = [float(instant_at(graph, INSTANT)[k]) for k, name in enumerate(graph.names) if name.startswith("_closure")]
+    closures = [
+        float(instant_at(graph, INSTANT)[k])
+        for k, name in enumerate(graph.names)
+        if name.startswith("_closure")
+    ]
     worst, gap = compare(scene, nudge=1e-3)
     if min(closures) > 1e-2:
         assert gap < 1e-10, worst
@@ -175,7 +216,11 @@ def test_random_slider_cranks(r, ratio, m1, m2, m3):
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.lists(st.tuples(st.sampled_from(["revolute", "prismatic"]), st.booleans()), min_size=1, max_size=4))
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(["revolute", "prismatic"]), st.booleans()), min_size=1, max_size=4
+    )
+)
 def test_random_open_chains(parts):
     worst, gap = compare(chain(*parts), nudge=1e-3)
     assert gap < TOLERANCE, worst

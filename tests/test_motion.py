@@ -27,13 +27,19 @@ def test_polynomial():
 def test_harmonic():
     w = 2 * math.pi * 3.0
     found = at(motion.harmonic(0.2, 0.5, 3.0, 0.1), 0.4)
-    expected = [0.2 + 0.5 * math.sin(w * 0.4 + 0.1), 0.5 * w * math.cos(w * 0.4 + 0.1), -0.5 * w**2 * math.sin(w * 0.4 + 0.1)]
+    expected = [
+        0.2 + 0.5 * math.sin(w * 0.4 + 0.1),
+        0.5 * w * math.cos(w * 0.4 + 0.1),
+        -0.5 * w**2 * math.sin(w * 0.4 + 0.1),
+    ]
     assert found == pytest.approx(expected, rel=1e-13)
 
 
 def test_expression():
     found = at(motion.expression(lambda t: ca.exp(-t) * t), 1.5)
-    assert found == pytest.approx([1.5 * math.exp(-1.5), -0.5 * math.exp(-1.5), -0.5 * math.exp(-1.5)], rel=1e-14)
+    assert found == pytest.approx(
+        [1.5 * math.exp(-1.5), -0.5 * math.exp(-1.5), -0.5 * math.exp(-1.5)], rel=1e-14
+    )
 
 
 def test_samples_are_interpolated_twice_continuously():
@@ -55,10 +61,16 @@ def test_samples_of_a_cubic_are_exact():
 
 
 def test_third_derivatives():
-    """Of a polynomial with a parameter, an expression, and a spline, whose second derivative is a polygon; also at its knots."""
+    """Of a polynomial with a parameter, an expression, and a spline, whose second derivative is a
+    polygon; also at its knots.
+    """
     p, times = ca.SX.sym("c"), np.array([0.0, 0.3, 0.5, 1.1, 1.4, 2.0])
     spline = motion.samples(times, np.sin(3 * times))
-    laws = {"P": motion.polynomial(1, 2, 3, p), "E": motion.expression(lambda t: ca.sin(2 * t)), "S": spline}
+    laws = {
+        "P": motion.polynomial(1, 2, 3, p),
+        "E": motion.expression(lambda t: ca.sin(2 * t)),
+        "S": spline,
+    }
     jerk = Laws.of(laws, p).jerk()
     for t in (0.1, 0.3, 0.7, 1.1, 1.9):
         nodes = times[np.searchsorted(times, t, side="right") - 1 :][:2]
@@ -75,19 +87,27 @@ def test_laws_of_both_kinds_run_together():
     m.revolute("J", m.ground, a)
     m.revolute("K", a.tip, b)
     times = np.linspace(0, 1, 30)
-    scene = Scene(m, {"J": motion.samples(times, times**2), "K": motion.polynomial(0, speed)}, t=(0, 1, 11))
-    compiled, machine = (evaluate(scene, backend=backend, parameters={"speed": 3.0}) for backend in ("c", "vm"))
+    scene = Scene(
+        m, {"J": motion.samples(times, times**2), "K": motion.polynomial(0, speed)}, t=(0, 1, 11)
+    )
+    compiled, machine = (
+        evaluate(scene, backend=backend, parameters={"speed": 3.0}) for backend in ("c", "vm")
+    )
     np.testing.assert_allclose(compiled.motion("J").value, compiled.t**2, atol=1e-12)
     np.testing.assert_allclose(compiled.motion("K").value, 3.0 * compiled.t, atol=1e-15)
     for name in compiled.names():
-        np.testing.assert_allclose(compiled.array(name), machine.array(name), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(
+            compiled.array(name), machine.array(name), rtol=1e-12, atol=1e-12
+        )
 
 
 def test_samples_cover_their_span_only():
     m = Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=1, mass=1))
     scene = Scene(m, {"J": motion.samples([0, 1, 2, 3], [0, 1, 4, 9])}, t=(0, 3, 4))
-    with pytest.raises(DeclarationError, match=r"joint 'J' cover t from 0 to 3 s, but t from 0 to 3\.5 s"):
+    with pytest.raises(
+        DeclarationError, match=r"joint 'J' cover t from 0 to 3 s, but t from 0 to 3\.5 s"
+    ):
         evaluate(scene, t=(0, 3.5, 4))
 
 
@@ -97,11 +117,20 @@ def test_samples_cover_their_span_only():
         (lambda: motion.polynomial(), "at least one coefficient"),
         (lambda: motion.expression(3.0), "expression: law: expected a function, got"),
         (lambda: motion.samples([0, 1, 2], [0, 1, 2]), "at least 4, got 3"),
-        (lambda: motion.samples([0, 1, 1, 2], [0, 1, 2, 3]), "places must increase, but entry 2 is at 1 after 1"),
+        (
+            lambda: motion.samples([0, 1, 1, 2], [0, 1, 2, 3]),
+            "places must increase, but entry 2 is at 1 after 1",
+        ),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, math.nan, 3]), "must be finite"),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, 2]), "of one length"),
-        (lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0), "the motion of joint 'J' must be a scalar"),
-        (lambda: at(motion.expression(lambda t: math.sin(t)), 1.0), "joint 'J' is not a number; use CasADi's functions"),
+        (
+            lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0),
+            "the motion of joint 'J' must be a scalar",
+        ),
+        (
+            lambda: at(motion.expression(lambda t: math.sin(t)), 1.0),
+            "joint 'J' is not a number; use CasADi's functions",
+        ),
         (lambda: motion.samples("abcd", "abcd"), "times: expected a row of numbers, got 'abcd'"),
     ],
 )

@@ -22,7 +22,10 @@ def test_an_angle_counts_turns(parent, child):
     m = Mechanism("m")
     a, b = m.link("a", length=1, mass=1), m.link("b", length=1, mass=1)
     symbols = [ca.SX.sym(name, 3) for name in "ab"]
-    frames = {name: Frame(rotation=Rotation.flat(*ca.vertsplit(symbol))) for name, symbol in zip("ab", symbols, strict=True)}
+    frames = {
+        name: Frame(rotation=Rotation.flat(*ca.vertsplit(symbol)))
+        for name, symbol in zip("ab", symbols, strict=True)
+    }
     joint = m.revolute("J", a.tip, b)
     function = ca.Function("angle", symbols, [place_along(joint, joint.axes[0], frames, ())])
     one, two = ((math.cos(angle), math.sin(angle), angle) for angle in (parent, child))

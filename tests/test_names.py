@@ -8,12 +8,19 @@ from lagrange_casadi.errors import DeclarationError
 BEARERS = {
     "a link": lambda m, name: m.link(name, length=1, mass=1),
     "a point mass": lambda m, name: m.point_mass(name, 1),
-    "a joint": lambda m, name: m.weld(name, m.links["arm"].tip, m.point_mass(f"end{len(m.bodies)}", 1)),
+    "a joint": lambda m, name: m.weld(
+        name, m.links["arm"].tip, m.point_mass(f"end{len(m.bodies)}", 1)
+    ),
     "a load": lambda m, name: m.force(name, m.links["arm"], x=1),
     "a constraint": lambda m, name: m.constraint(name, m.coordinate(m.joints["pin"])),
-    "a non-holonomic constraint": lambda m, name: m.nonholonomic(name, m.rate(m.joints["pin"]), replaces=m.joints["pin"]),
+    "a non-holonomic constraint": lambda m, name: m.nonholonomic(
+        name, m.rate(m.joints["pin"]), replaces=m.joints["pin"]
+    ),
 }
-TAKERS = {kind: BEARERS[f"a {kind}"] for kind in ("joint", "load", "constraint", "non-holonomic constraint")}
+TAKERS = {
+    kind: BEARERS[f"a {kind}"]
+    for kind in ("joint", "load", "constraint", "non-holonomic constraint")
+}
 TAKERS |= {
     "gear": lambda m, name: m.gear(name, m.joints["pin"], m.joints["pin"], ratio=2),
     "spring": lambda m, name: m.spring(name, m.ground, m.links["arm"].tip, stiffness=1, length=1),
@@ -35,7 +42,11 @@ def test_a_taken_name_says_by_what(bearer, taker):
     BEARERS[bearer](m, "x")
     kind = CALLED.get(taker, taker)
     twice = bearer == f"a {kind}"
-    says = "is declared twice in mechanism 'machine'" if twice else f"the name is taken by {bearer} of mechanism 'machine'"
+    says = (
+        "is declared twice in mechanism 'machine'"
+        if twice
+        else f"the name is taken by {bearer} of mechanism 'machine'"
+    )
     with pytest.raises(DeclarationError) as told:
         TAKERS[taker](m, "x")
     assert str(told.value) == f"{kind} 'x'{' ' if twice else ': '}{says}"
@@ -43,7 +54,9 @@ def test_a_taken_name_says_by_what(bearer, taker):
 
 @pytest.mark.parametrize("taker", TAKERS)
 def test_the_ground_has_its_name(taker):
-    with pytest.raises(DeclarationError, match="the name is taken by the ground of mechanism 'machine'"):
+    with pytest.raises(
+        DeclarationError, match="the name is taken by the ground of mechanism 'machine'"
+    ):
         TAKERS[taker](arm(), "ground")
 
 

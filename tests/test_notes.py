@@ -1,4 +1,6 @@
-"""Points that slide beyond the end of a link: the forces are those of a bracket, in every program, and it is said."""
+"""Points that slide beyond the end of a link: the forces are those of a bracket, in every program,
+and it is said.
+"""
 
 import math
 
@@ -27,10 +29,14 @@ def slotted(x=0.05):
 
 def test_it_is_said_which_joint_leaves_when_and_how_far():
     (note,) = evaluate(bracket()).notes
-    assert note.startswith("joint 'S' leaves link 'arm' at t = 0.05 s (xi/l from -1.3 to 2.3): beyond its ends")
+    assert note.startswith(
+        "joint 'S' leaves link 'arm' at t = 0.05 s (xi/l from -1.3 to 2.3): beyond its ends"
+    )
     # The pivot is 0.3041 m from the crank's.
     (note,) = evaluate(slotted()).notes
-    assert note.startswith("joint 'S' leaves link 'b' at t = 0 s (xi/l from 0.6379 to 1.263): beyond its ends")
+    assert note.startswith(
+        "joint 'S' leaves link 'b' at t = 0 s (xi/l from 0.6379 to 1.263): beyond its ends"
+    )
     assert evaluate(bracket(reach=0.2)).notes == ()
 
 
@@ -63,22 +69,38 @@ def test_forces_beyond_the_ends_are_those_of_newton(scene, t):
 
 
 def test_nothing_vanishes_before_the_base_or_beyond_the_tip():
-    """The arm's weight and the mass's: a lever of 1.15 m beyond a tip at 0.5 m, one of 0.65 m before the base."""
+    """The arm's weight and the mass's: a lever of 1.15 m beyond a tip at 0.5 m, one of 0.65 m
+    before the base.
+    """
     m = Mechanism("still")
     arm, p = m.link("arm", length=0.5, mass=0.0), m.point_mass("p", 2.0)
     m.revolute("J", m.ground, arm.at(0.1))
     m.prismatic("S", arm, p, axis=(1, 0))
-    scene = Scene(m, {"J": polynomial(0.0), "S": harmonic(0.25, 0.9, 0.0, math.pi / 2)}, t=(0, 1, 2), xi=(0, 1, 11))
+    scene = Scene(
+        m,
+        {"J": polynomial(0.0), "S": harmonic(0.25, 0.9, 0.0, math.pi / 2)},
+        t=(0, 1, 2),
+        xi=(0, 1, 11),
+    )
     section, weight = evaluate(scene).section("arm"), 2.0 * 9.81
     u = np.linspace(0, 1, 11)
     inside = u >= 0.2  # the joint bears it there
     np.testing.assert_allclose(section.shear[0], np.where(inside, -weight, 0.0), atol=1e-12)
-    np.testing.assert_allclose(section.bending[0], np.where(inside, -weight * (1.15 - 0.5 * u), 0.0), atol=1e-12)
-    before = Scene(m, {"J": polynomial(0.0), "S": harmonic(0.25, -0.9, 0.0, math.pi / 2)}, t=(0, 1, 2), xi=(0, 1, 11))
+    np.testing.assert_allclose(
+        section.bending[0], np.where(inside, -weight * (1.15 - 0.5 * u), 0.0), atol=1e-12
+    )
+    before = Scene(
+        m,
+        {"J": polynomial(0.0), "S": harmonic(0.25, -0.9, 0.0, math.pi / 2)},
+        t=(0, 1, 2),
+        xi=(0, 1, 11),
+    )
     section = evaluate(before).section("arm")
     # The mass hangs from the base: between it and the joint the arm bears it, beyond nothing.
     np.testing.assert_allclose(section.shear[0], np.where(inside, 0.0, weight), atol=1e-12)
-    np.testing.assert_allclose(section.bending[0], np.where(inside, 0.0, -weight * (0.65 + 0.5 * u)), atol=1e-12)
+    np.testing.assert_allclose(
+        section.bending[0], np.where(inside, 0.0, -weight * (0.65 + 0.5 * u)), atol=1e-12
+    )
 
 
 @pytest.mark.sampled(7)

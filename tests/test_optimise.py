@@ -1,4 +1,6 @@
-"""Designs found by gradients: beside closed forms, golden sections of the peaks, and what relaxed limits gain."""
+"""Designs found by gradients: beside closed forms, golden sections of the peaks, and what relaxed
+limits gain.
+"""
 
 import math
 
@@ -17,9 +19,14 @@ def case(name):
 
 
 def balanced():
-    """An arm that swings, with a counterweight: at rest nothing need hold it where the moments are equal."""
+    """An arm that swings, with a counterweight: at rest nothing need hold it where the moments are
+    equal.
+    """
     m = Mechanism("balanced")
-    weight, reach = m.parameter("weight", 1.0, "kg", low=0.0), m.parameter("reach", 0.2, "m", low=0.0)
+    weight, reach = (
+        m.parameter("weight", 1.0, "kg", low=0.0),
+        m.parameter("reach", 0.2, "m", low=0.0),
+    )
     arm, tail = m.link("arm", length=0.5, mass=2.0), m.link("tail", length=reach, mass=1e-9)
     m.revolute("O", m.ground, arm)
     m.weld("rear", arm.base, tail, angle=math.pi)
@@ -43,7 +50,9 @@ def golden(f, low, high, name, quantity, steps=60):
 
 @pytest.mark.long
 def test_a_counterweight_balances_a_slow_arm():
-    """The moments about the pin are equal where weight x reach is 2 kg x 0.25 m; of a motion this slow gravity is all."""
+    """The moments about the pin are equal where weight x reach is 2 kg x 0.25 m; of a motion this
+    slow gravity is all.
+    """
     found = optimise(balanced(), minimise="peak:effort:O", over={"weight": (0.0, 8.0)}, starts=2)
     assert found.converged
     assert found.feasible
@@ -80,7 +89,8 @@ def test_a_limit_of_a_parameter_and_what_it_costs():
     scene = case("slider_crank")
     words = {"minimise": "rms:effort:O", "over": {"m3": (0.02, 0.4), "l": (0.12, 0.4)}, "starts": 2}
     found, relaxed = (
-        optimise(scene, subject_to=["peak:section:rod:bending <= 0.9", f"m3 >= {limit}"], **words) for limit in (0.05, 0.0499)
+        optimise(scene, subject_to=["peak:section:rod:bending <= 0.9", f"m3 >= {limit}"], **words)
+        for limit in (0.05, 0.0499)
     )
     for one in (found, relaxed):
         assert one.feasible
@@ -93,30 +103,48 @@ def test_a_limit_of_a_parameter_and_what_it_costs():
 
 @pytest.mark.long
 def test_an_active_limit_has_the_multiplier_of_its_slope():
-    """The longest rod is best, but bends: the limit is met, and each of ten starts ends where it is."""
+    """The longest rod is best, but bends: the limit is met, and each of ten starts ends where it
+    is.
+    """
     scene = case("slider_crank")
     words = {"minimise": "peak:effort:O", "over": {"l": (0.12, 0.8)}}
     starts = [{"l": float(l)} for l in np.linspace(0.12, 0.8, 10)]
     found = optimise(scene, subject_to=["peak:section:rod:bending <= 1.2"], starts=starts, **words)
     assert found.feasible
-    assert all(one.objective == pytest.approx(found.objective, rel=1e-6) for one in found.starts if one.excess <= 1e-7)
+    assert all(
+        one.objective == pytest.approx(found.objective, rel=1e-6)
+        for one in found.starts
+        if one.excess <= 1e-7
+    )
     (limit,) = found.limits
     assert limit.active
-    more = optimise(scene, subject_to=["peak:section:rod:bending <= 1.2012"], starts=[found.values], **words)
+    more = optimise(
+        scene, subject_to=["peak:section:rod:bending <= 1.2012"], starts=[found.values], **words
+    )
     assert (found.objective - more.objective) / 0.0012 == pytest.approx(limit.multiplier, rel=2e-2)
 
 
 def test_what_seems_better_by_the_violation_that_passes_is_not_taken_for_what_converged():
-    """A program's design may be a little beyond a limit, and gain much by it where the limit costs much."""
+    """A program's design may be a little beyond a limit, and gain much by it where the limit costs
+    much.
+    """
     limits, starts = ["peak:section:rod:bending <= 0.745724140959767"], [{"l": 0.2}, {"l": 0.8}]
-    found = optimise(case("slider_crank"), minimise="peak:effort:O", over={"l": (0.12, 0.8)}, subject_to=limits, starts=starts)
+    found = optimise(
+        case("slider_crank"),
+        minimise="peak:effort:O",
+        over={"l": (0.12, 0.8)},
+        subject_to=limits,
+        starts=starts,
+    )
     assert found.limits[0].multiplier > 500.0
     assert [start.ending for start in found.starts] == ["converged", "converged"]
     assert found.converged
 
 
 def test_the_search_stays_away_from_dead_centres():
-    """The shortest rod: the sine of its transmission angle at its worst is the root of 1 - (r/l)^2."""
+    """The shortest rod: the sine of its transmission angle at its worst is the
+    root of 1 - (r/l)^2.
+    """
     scene = case("slider_crank")
     sine = 0.6
     found = optimise(scene, minimise="l", over={"l": (0.05, 0.5)}, transmission=sine, starts=3)
@@ -151,7 +179,9 @@ def test_a_stop_leaves_the_best_so_far():
         if len(seen) == 2:
             raise KeyboardInterrupt
 
-    found = optimise(case("four_bar"), minimise="peak:effort:O", over={"c": (0.2, 0.32)}, progress=stop)
+    found = optimise(
+        case("four_bar"), minimise="peak:effort:O", over={"c": (0.2, 0.32)}, progress=stop
+    )
     assert found.stopped
     assert len(seen) == 2
     assert found.objective <= seen[0]
@@ -172,9 +202,17 @@ def test_limits_that_hold_nowhere_are_told():
 @pytest.mark.parametrize(
     ("words", "error", "said"),
     [
-        ({"minimise": "effort:O"}, DeclarationError, "'effort:O' is neither a parameter nor peak:QUANTITY"),
+        (
+            {"minimise": "effort:O"},
+            DeclarationError,
+            "'effort:O' is neither a parameter nor peak:QUANTITY",
+        ),
         ({"minimise": "peak:effort:X"}, UnknownNameError, "effort:X"),
-        ({"minimise": "mean:reaction:O:fx"}, DeclarationError, "means are of effort, friction, output alone"),
+        (
+            {"minimise": "mean:reaction:O:fx"},
+            DeclarationError,
+            "means are of effort, friction, output alone",
+        ),
         ({"minimise": "min:effort:O"}, DeclarationError, "use max:effort:O"),
         ({"over": {"k": (0.1, 0.2)}}, UnknownNameError, "parameter"),
         (
@@ -207,7 +245,10 @@ def test_limits_that_hold_nowhere_are_told():
 )
 def test_mistakes(words, error, said):
     with pytest.raises(error, match=said):
-        optimise(case("slider_crank"), **{"minimise": "peak:effort:O", "over": {"l": (0.2, 0.3)}, **words})
+        optimise(
+            case("slider_crank"),
+            **{"minimise": "peak:effort:O", "over": {"l": (0.2, 0.3)}, **words},
+        )
 
 
 def test_no_design_has_a_result():
@@ -233,7 +274,10 @@ def test_motions_by_samples():
     m.revolute("O", m.ground, upper)
     m.revolute("A", upper.tip, fore)
     swing = np.sin(math.pi * times) ** 2
-    laws = {"O": samples(times, (0.7 * swing).tolist()), "A": samples(times, (0.5 * swing).tolist())}
+    laws = {
+        "O": samples(times, (0.7 * swing).tolist()),
+        "A": samples(times, (0.5 * swing).tolist()),
+    }
     scene = Scene(m, laws, t=(0.0, 1.0, 51))
     found = optimise(scene, minimise="peak:effort:O", over={"l": (0.3, 0.5)}, starts=1)
     assert found.converged

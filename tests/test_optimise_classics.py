@@ -1,4 +1,6 @@
-"""Designs that are known: published, or by a closed form, or by least squares on efforts that are linear in masses."""
+"""Designs that are known: published, or by a closed form, or by least squares on efforts that are
+linear in masses.
+"""
 
 import math
 
@@ -13,9 +15,15 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def hoeken(half):
-    """A crank of 1, and a coupler point as far beyond its pin as that is from the crank's; straight where the crank points back."""
+    """A crank of 1, and a coupler point as far beyond its pin as that is from the crank's; straight
+    where the crank points back.
+    """
     m = Mechanism("hoeken")
-    ground, side, level = m.parameter("ground", 2.3), m.parameter("side", 2.9), m.parameter("level", 5.0)
+    ground, side, level = (
+        m.parameter("ground", 2.3),
+        m.parameter("side", 2.9),
+        m.parameter("level", 5.0),
+    )
     crank, coupler, rocker = (
         m.link("crank", length=1.0, mass=1.0),
         m.link("coupler", length=2 * side, mass=1.0),
@@ -27,11 +35,19 @@ def hoeken(half):
     m.revolute("B", coupler.at(side), rocker.tip)
     m.output("off", m.place(coupler.tip)[1] - level, unit="m")
     posture = {"coupler": 0.9, "rocker": 2.2}
-    return Scene(m, {"O": polynomial(math.pi - half, 2 * half)}, t=(0, 1, 73), posture=posture, wanted=["output:off"])
+    return Scene(
+        m,
+        {"O": polynomial(math.pi - half, 2 * half)},
+        t=(0, 1, 73),
+        posture=posture,
+        wanted=["output:off"],
+    )
 
 
 def straightness(ground, side, half):
-    """How far the path of that point is from a straight line, and how long it is, by plain geometry."""
+    """How far the path of that point is from a straight line, and how long it is, by plain
+    geometry.
+    """
     angle = math.pi + np.linspace(-half, half, 20001)
     pin = np.array([np.cos(angle), np.sin(angle)])
     across = np.array([[ground], [0.0]]) - pin
@@ -44,10 +60,15 @@ def straightness(ground, side, half):
 
 @pytest.mark.parametrize(
     ("degrees", "ground", "side", "percent", "length"),
-    [(180, 2.2, 2.8, 0.096, 4.181), pytest.param(120, 2.625, 3.438, 0.010, 3.238, marks=pytest.mark.long)],
+    [
+        (180, 2.2, 2.8, 0.096, 4.181),
+        pytest.param(120, 2.625, 3.438, 0.010, 3.238, marks=pytest.mark.long),
+    ],
 )
 def test_the_straightest_path_of_a_four_bar(degrees, ground, side, percent, length):
-    """Hoeken's linkage: Norton, Design of Machinery, table 3-1, has the ratios of the straightest path for ranges of the crank."""
+    """Hoeken's linkage: Norton, Design of Machinery, table 3-1, has the ratios of the straightest
+    path for ranges of the crank.
+    """
     half = math.radians(degrees / 2)
     # The table is right, to the digits that it has.
     off, long = straightness(ground, side, half)
@@ -66,7 +87,9 @@ def test_the_straightest_path_of_a_four_bar(degrees, ground, side, percent, leng
 
 
 def test_a_spring_balances_an_arm():
-    """A spring without free length, from a m above the pin to b m along the arm, balances it where k a b = m g l/2 (Carwardine)."""
+    """A spring without free length, from a m above the pin to b m along the arm, balances it where
+    k a b = m g l/2 (Carwardine).
+    """
     m = Mechanism("lamp")
     stiffness = m.parameter("k", 50.0, "N/m", low=0.0)
     arm = m.link("arm", length=0.8, mass=2.0)
@@ -79,7 +102,9 @@ def test_a_spring_balances_an_arm():
 
 
 def test_a_torsion_spring_takes_the_torque_of_an_oscillation():
-    """Where stiffness over inertia is the square of the circular frequency, nothing is left to the drive."""
+    """Where stiffness over inertia is the square of the circular frequency, nothing is left to the
+    drive.
+    """
     m = Mechanism("balance_wheel")
     m.set_gravity(0.0, 0.0)
     stiffness = m.parameter("k", 5.0, "N m/rad", low=0.0)
@@ -92,8 +117,8 @@ def test_a_torsion_spring_takes_the_torque_of_an_oscillation():
 
 
 def test_the_flywheel_of_least_peak_torque():
-    """A load takes an energy E more and less than is even, speeds vary by a share k: the torque is even where the inertia is
-    E/(k w^2) (Norton, Design of Machinery, the section on flywheels)."""
+    """A load takes an energy E more and less than is even, speeds vary by a share k: the torque is
+    even where the inertia is E/(k w^2) (Norton, Design of Machinery, the section on flywheels)."""
     m = Mechanism("press")
     m.set_gravity(0.0, 0.0)
     inertia = m.parameter("inertia", 1.0, "kg m^2", low=0.0)
@@ -103,14 +128,18 @@ def test_the_flywheel_of_least_peak_torque():
     m.torque("load", wheel, -even - swing * ca.sin(2 * speed * m.time))
     law = expression(lambda t: speed * t + varies / 4 * ca.sin(2 * speed * t))
     scene = Scene(m, {"shaft": law}, t=(0.0, 2 * math.pi / speed, 73), wanted=["effort"])
-    found = optimise(scene, minimise="peak:effort:shaft", over={"inertia": (0.0, 20.0)}, starts=2, screen=8)
+    found = optimise(
+        scene, minimise="peak:effort:shaft", over={"inertia": (0.0, 20.0)}, starts=2, screen=8
+    )
     # E is the integral of swing sin 2a over a quarter of a turn.
     assert found.values["inertia"] == pytest.approx(swing / (varies * speed**2), rel=1e-6)
     assert found.objective == pytest.approx(even, rel=1e-6)
 
 
 def test_the_motion_of_least_rms_torque_is_the_cubic():
-    """Of inertia alone, from rest to rest: the rms torque is sqrt(12) I h/T^2, by the calculus of variations."""
+    """Of inertia alone, from rest to rest: the rms torque is sqrt(12) I h/T^2, by the calculus of
+    variations.
+    """
     m = Mechanism("index")
     m.set_gravity(0.0, 0.0)
     c = [m.parameter(f"c{k}", value, "1") for k, value in enumerate((3.0, -5.0))]
@@ -121,7 +150,13 @@ def test_the_motion_of_least_rms_torque_is_the_cubic():
         return 1.2 * (3 * s**2 - 2 * s**3 + s**2 * (1 - s) ** 2 * (c[0] + c[1] * (s - 0.5)))
 
     scene = Scene(m, {"O": expression(law)}, t=(0.0, 0.4, 401), wanted=["effort"])
-    found = optimise(scene, minimise="rms:effort:O", over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)}, starts=2, screen=8)
+    found = optimise(
+        scene,
+        minimise="rms:effort:O",
+        over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)},
+        starts=2,
+        screen=8,
+    )
     assert found.converged
     assert found.curvature > 0.0
     assert found.objective == pytest.approx(math.sqrt(12) * 1.5 * 0.36 / 3 * 1.2 / 0.4**2, rel=1e-5)
@@ -129,18 +164,32 @@ def test_the_motion_of_least_rms_torque_is_the_cubic():
 
 
 def arm6():
-    """An arm of six revolute joints whose upper arm and forearm have counterweights behind their joints."""
+    """An arm of six revolute joints whose upper arm and forearm have counterweights behind their
+    joints.
+    """
     m = SpatialMechanism("arm6")
-    first, second = (m.parameter(name, 1.0, "kg", low=0.0) for name in ("behind_shoulder", "behind_elbow"))
+    first, second = (
+        m.parameter(name, 1.0, "kg", low=0.0) for name in ("behind_shoulder", "behind_elbow")
+    )
     lengths, masses = (0.16, 0.42, 0.39, 0.12, 0.1, 0.08), (3.7, 8.4, 2.3, 1.2, 1.2, 0.2)
-    links = [m.link(f"link{k}", length=l, mass=mass) for k, (l, mass) in enumerate(zip(lengths, masses, strict=True), 1)]
+    links = [
+        m.link(f"link{k}", length=l, mass=mass)
+        for k, (l, mass) in enumerate(zip(lengths, masses, strict=True), 1)
+    ]
     along, up = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
     m.revolute("turn", m.ground, links[0], axis=up, turned=[("y", "-90 deg")])
     for name, one, other, axis in zip(
-        ("shoulder", "elbow", "roll", "pitch", "flange"), links, links[1:], (up, up, along, up, along), strict=False
+        ("shoulder", "elbow", "roll", "pitch", "flange"),
+        links,
+        links[1:],
+        (up, up, along, up, along),
+        strict=False,
     ):
         m.revolute(name, one.tip, other, axis=axis)
-    for name, link, reach, mass in (("rear", links[1], 0.3, first), ("back", links[2], 0.2, second)):
+    for name, link, reach, mass in (
+        ("rear", links[1], 0.3, first),
+        ("back", links[2], 0.2, second),
+    ):
         tail = m.link(name, length=reach, mass=0.0)
         m.weld(f"{name}_end", link, tail, turned=[("z", "180 deg")])
         m.weld(f"{name}_held", tail.tip, m.point_mass(f"{name}_weight", mass))
@@ -156,11 +205,15 @@ def arm6():
 
 
 def test_masses_of_an_arm_of_six_joints_are_those_of_least_squares():
-    """Efforts are linear in masses: three designs tell all, and the least mean square follows by normal equations."""
+    """Efforts are linear in masses: three designs tell all, and the least mean square follows by
+    normal equations.
+    """
     scene = arm6()
 
     def effort(first, second):
-        return evaluate(scene, parameters={"behind_shoulder": first, "behind_elbow": second}).effort("shoulder")
+        return evaluate(
+            scene, parameters={"behind_shoulder": first, "behind_elbow": second}
+        ).effort("shoulder")
 
     none, columns = effort(0, 0), []
     for masses in ((1, 0), (0, 1)):

@@ -1,4 +1,6 @@
-"""``lagrange-casadi optimise``: what it says and writes, its statuses, and the one line of every mistake."""
+"""``lagrange-casadi optimise``: what it says and writes, its statuses, and the one line of every
+mistake.
+"""
 
 import os
 import signal
@@ -39,7 +41,9 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
     assert main(["check", "a.h5"]) == 0
     assert capfd.readouterr().out == "a.h5: whole and consistent\n"
     assert main(["info", "a.h5"]) == 1
-    assert "but that of a search for designs, which the command check reads" in capfd.readouterr().err
+    assert (
+        "but that of a search for designs, which the command check reads" in capfd.readouterr().err
+    )
     assert kind_of("a.h5") == "lagrange-casadi-optimum"
     with h5py.File("a.h5") as file:
         assert file.attrs["feasible"]
@@ -58,7 +62,20 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
 
 
 def test_limits_that_hold_nowhere_end_with_a_status(here, capfd):
-    assert main([*ASKED[:-4], "--over", "l=0.2:0.3", "--starts", "1", "--subject-to", "peak:section:rod:bending<=0.01"]) == 1
+    assert (
+        main(
+            [
+                *ASKED[:-4],
+                "--over",
+                "l=0.2:0.3",
+                "--starts",
+                "1",
+                "--subject-to",
+                "peak:section:rod:bending<=0.01",
+            ]
+        )
+        == 1
+    )
     out, _ = capfd.readouterr()
     assert "peak:section:rod:bending <= 0.01: 0.9417" in out
     assert "VIOLATED by 0.9317" in out

@@ -1,4 +1,6 @@
-"""What is said of an optimum: one or several, minimum or saddle, smooth or at a jump; and the conditions themselves."""
+"""What is said of an optimum: one or several, minimum or saddle, smooth or at a jump; and the
+conditions themselves.
+"""
 
 import math
 
@@ -27,9 +29,14 @@ def torque(amplitude):
 
 
 def test_a_convex_problem_has_one_optimum_from_random_starts():
-    """The shaking force is affine in the counterweights, so its peak is convex: the same optimum from ten random starts."""
+    """The shaking force is affine in the counterweights, so its peak is convex: the same optimum
+    from ten random starts.
+    """
     m = Mechanism("compressor")
-    weight, piston = m.parameter("weight", 0.5, "kg", low=0.0), m.parameter("piston", 1.0, "kg", low=0.0)
+    weight, piston = (
+        m.parameter("weight", 0.5, "kg", low=0.0),
+        m.parameter("piston", 1.0, "kg", low=0.0),
+    )
     crank, tail = m.link("crank", length=0.05, mass=0.5), m.link("tail", length=0.05, mass=0.0)
     rod, slider = m.link("rod", length=0.2, mass=0.6), m.point_mass("slider", piston)
     m.revolute("O", m.ground, crank)
@@ -41,7 +48,10 @@ def test_a_convex_problem_has_one_optimum_from_random_starts():
     shaking(m)
     scene = Scene(m, {"O": polynomial(0, 100)}, t=(0, 2 * math.pi / 100, 61), posture={"rod": 0.0})
     rng = np.random.default_rng(7)
-    starts = [{"weight": w, "piston": p} for w, p in zip(rng.uniform(0, 3, 10), rng.uniform(0.4, 2, 10), strict=True)]
+    starts = [
+        {"weight": w, "piston": p}
+        for w, p in zip(rng.uniform(0, 3, 10), rng.uniform(0.4, 2, 10), strict=True)
+    ]
     found = optimise(
         scene,
         minimise="peak:output:shaking_fx",
@@ -63,7 +73,10 @@ def test_all_local_optima_are_named():
         return (c**2 - 1) ** 2 + 0.05 * c + 0.5
 
     found = optimise(
-        swinging(amplitude), minimise="peak:effort:O", over={"c": (-2.0, 2.0)}, starts=[{"c": c} for c in (-1.7, -0.4, 0.9, 1.8)]
+        swinging(amplitude),
+        minimise="peak:effort:O",
+        over={"c": (-2.0, 2.0)},
+        starts=[{"c": c} for c in (-1.7, -0.4, 0.9, 1.8)],
     )
     assert found.converged
     left, right = found.optima
@@ -72,14 +85,20 @@ def test_all_local_optima_are_named():
     assert [left.starts, right.starts] == [2, 2]
     assert left.objective == pytest.approx(torque(amplitude(roots[0])), rel=1e-6)
     assert found.values == left.values
-    # The second derivative by the share of the bounds, which are 4 apart, over the objective at the first start.
+    # The second derivative by the share of the bounds, which are 4 apart, over the objective at the
+    # first start.
     start = torque(amplitude(-1.7))
     assert found.curvature == pytest.approx(16 * torque(12 * roots[0] ** 2 - 4) / start, rel=1e-3)
 
 
 def test_a_hilltop_is_no_optimum():
     for kind in ("peak", "rms"):
-        found = optimise(swinging(lambda c: 2.0 - c**2), minimise=f"{kind}:effort:O", over={"c": (-1.0, 1.0)}, starts=[{"c": 0.0}])
+        found = optimise(
+            swinging(lambda c: 2.0 - c**2),
+            minimise=f"{kind}:effort:O",
+            over={"c": (-1.0, 1.0)},
+            starts=[{"c": 0.0}],
+        )
         assert found.converged
         assert abs(found.values["c"]) == pytest.approx(1.0, rel=1e-7)
         assert found.history[1, 4] == pytest.approx(0.0, abs=1e-3)
@@ -107,9 +126,15 @@ def test_a_jump_that_goes_with_what_is_chosen_is_followed(start):
     at = m.parameter("at", 0.5, "s", low=0.0)
     arm = m.link("arm", length=0.3, mass=1.0)
     m.revolute("O", m.ground, arm)
-    m.torque("brake", arm, -ca.if_else(m.time > at, (1 + 10 * (at - 0.6) ** 2) * ca.exp(at - m.time), 0.0))
+    m.torque(
+        "brake",
+        arm,
+        -ca.if_else(m.time > at, (1 + 10 * (at - 0.6) ** 2) * ca.exp(at - m.time), 0.0),
+    )
     scene = Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 42), wanted=["effort"])
-    found = optimise(scene, minimise="peak:effort:O", over={"at": (0.3, 0.9)}, starts=[{"at": start}])
+    found = optimise(
+        scene, minimise="peak:effort:O", over={"at": (0.3, 0.9)}, starts=[{"at": start}]
+    )
     assert found.converged
     assert found.values["at"] == pytest.approx(0.6, rel=1e-6)
     assert found.objective == pytest.approx(1.0, rel=1e-9)
@@ -121,7 +146,9 @@ def program(f, g):
     slope = ca.gradient(f(x) + ca.dot(by, g(x)), x)
     parts = ca.horzcat(ca.gradient(f(x), x), ca.jtimes(g(x), x, by, True))
     hessian = ca.densify(ca.jacobian(slope, x))
-    return ca.Function("slopes", [x, by, ca.SX.sym("p", 1)], [slope, parts, g(x), ca.jacobian(g(x), x), hessian])
+    return ca.Function(
+        "slopes", [x, by, ca.SX.sym("p", 1)], [slope, parts, g(x), ca.jacobian(g(x), x), hessian]
+    )
 
 
 @pytest.mark.parametrize("formed", [True, False])
@@ -147,7 +174,9 @@ def test_conditions_of_the_second_order(formed):
     held = told(saddle, lambda x: ca.vertcat(x[1] - 0.7), (0.5, 0.7), [0.4])
     assert held.residual <= 1e-12
     assert held.curvature == pytest.approx(2.0, rel=1e-6)
-    corner = told(lambda x: x[0] + x[1], lambda x: ca.vertcat(x[0] - 5), (0.0, 0.0), [0.0], (-1.0, -1.0))
+    corner = told(
+        lambda x: x[0] + x[1], lambda x: ca.vertcat(x[0] - 5), (0.0, 0.0), [0.0], (-1.0, -1.0)
+    )
     assert corner.curvature == corner.least == math.inf
     wrong = told(lambda x: x[0] + x[1], lambda x: ca.vertcat(x[0] - 5), (0.5, 0.5), [0.0])
     assert wrong.residual == pytest.approx(1.0)

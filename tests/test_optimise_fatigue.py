@@ -1,4 +1,6 @@
-"""Fatigue as a limit and as an objective of a search, against solutions and sweeps of the designs that it finds."""
+"""Fatigue as a limit and as an objective of a search, against solutions and sweeps of the designs
+that it finds.
+"""
 
 import casadi as ca
 import numpy as np
@@ -14,14 +16,21 @@ from lagrange_casadi.studies.optimise.problem import Question
 
 def used(scene, link, values):
     """Utilisation against fatigue, by the code that judges one solution."""
-    solution = evaluate(scene, parameters=values, wanted=[f"section:{link}"], certificate=False, backend="vm")
+    solution = evaluate(
+        scene, parameters=values, wanted=[f"section:{link}"], certificate=False, backend="vm"
+    )
     return 1.0 / solution.safety(link).against("fatigue")
 
 
 def test_the_lightest_that_does_not_tire_is_found():
     scene = slider(80e6)
     found = optimise(
-        scene, minimise="mass:all", over={"h": (0.004, 0.04)}, subject_to=["least:fatigue:crank >= 2"], starts=1, screen=4
+        scene,
+        minimise="mass:all",
+        over={"h": (0.004, 0.04)},
+        subject_to=["least:fatigue:crank >= 2"],
+        starts=1,
+        screen=4,
     )
     assert found.converged
     assert found.feasible
@@ -30,7 +39,9 @@ def test_the_lightest_that_does_not_tire_is_found():
     h = found.values["h"]
     # The worst place is the base of the crank, at which a solution and a search look alike.
     assert used(scene, "crank", {"h": h}) == pytest.approx(0.5, rel=1e-7)
-    slope = (used(scene, "crank", {"h": h * 1.001}) - used(scene, "crank", {"h": h * 0.999})) / (0.002 * h)
+    slope = (used(scene, "crank", {"h": h * 1.001}) - used(scene, "crank", {"h": h * 0.999})) / (
+        0.002 * h
+    )
     assert limit.multiplier == pytest.approx(-7850.0 * 0.012 * 0.5 / slope, rel=1e-3)
 
 
@@ -51,7 +62,12 @@ def iterated(endurance=80e6):
 def test_of_loops_that_are_iterated():
     scene = iterated()
     found = optimise(
-        scene, minimise="mass:rod", over={"h": (0.004, 0.04)}, subject_to=["least:fatigue:rod >= 2"], starts=1, screen=4
+        scene,
+        minimise="mass:rod",
+        over={"h": (0.004, 0.04)},
+        subject_to=["least:fatigue:rod >= 2"],
+        starts=1,
+        screen=4,
     )
     assert found.converged
     assert found.feasible
@@ -61,7 +77,9 @@ def test_of_loops_that_are_iterated():
 
 @pytest.mark.long
 def test_as_an_objective_in_space_where_stresses_are_out_of_phase():
-    """Shear counts there, and swings are counted: the multiplier of the bound it ends at, against differences of sweeps."""
+    """Shear counts there, and swings are counted: the multiplier of the bound it ends at, against
+    differences of sweeps.
+    """
     scene = robot(beams.tube(0.03, 0.003), STEEL.but(endurance=220e6))
     term = "peak:utilisation:upper:fatigue"
     found = optimise(scene, minimise=term, over={"pull": (200.0, 300.0)}, starts=1, screen=4)
@@ -76,14 +94,18 @@ def test_as_an_objective_in_space_where_stresses_are_out_of_phase():
 
 
 def test_it_is_that_of_the_instants_that_are_asked_for():
-    """Of a crank that speeds up, equal steps of its angle are none of time; the worst place is its base."""
+    """Of a crank that speeds up, equal steps of its angle are none of time; the worst place is its
+    base.
+    """
     m = Mechanism("crank")
     h = m.parameter("h", 0.02, "m", low=0.0)
     bar = beams.Beam(beams.rectangle(h, 0.012), STEEL.but(endurance=80e6))
     m.revolute("O", m.ground, m.link("crank", length=0.3, beam=bar))
     scene = Scene(m, {"O": polynomial(0, 2.0, 30.0)}, over=("O", 0.0, 6.2, 9))
     words = {"transmission": 0.05, "t": None, "parameters": None, "backend": "vm"}
-    question = Question.of(scene, "peak:utilisation:crank:fatigue", {"h": (0.01, 0.03)}, (), **words)
+    question = Question.of(
+        scene, "peak:utilisation:crank:fatigue", {"h": (0.01, 0.03)}, (), **words
+    )
     judged = Finder.of(question, question.engine(scene)).judge.look(np.array([0.015]))
     (value,) = judged.values.values()
     assert value == pytest.approx(used(scene, "crank", {"h": 0.015}), rel=1e-9)
@@ -94,7 +116,12 @@ def test_it_is_that_of_the_instants_that_are_asked_for():
     [
         (slider, "'C45.QT' has no endurance, which fatigue by goodman needs"),
         pytest.param(
-            lambda: press(beams.rectangle(0.03, 0.012), material=STEEL.but(endurance=2e8), sliding=True, t=(0, 0.2, 9)),
+            lambda: press(
+                beams.rectangle(0.03, 0.012),
+                material=STEEL.but(endurance=2e8),
+                sliding=True,
+                t=(0, 0.2, 9),
+            ),
             "a load travels along link 'rod': its fatigue is followed by sweeps alone",
             marks=pytest.mark.long,
         ),
@@ -105,5 +132,10 @@ def test_what_cannot_be_limited(make, told):
     name = next(iter(scene.mechanism.parameters))
     with pytest.raises(DeclarationError, match=told):
         optimise(
-            scene, minimise="peak:effort:O", over={name: (0.05, 0.1)}, subject_to=["least:fatigue:rod >= 2"], starts=1, screen=2
+            scene,
+            minimise="peak:effort:O",
+            over={name: (0.05, 0.1)},
+            subject_to=["least:fatigue:rod >= 2"],
+            starts=1,
+            screen=2,
         )

@@ -30,8 +30,32 @@ def scene():
     law = expression(lambda t: (ca.pi - less) * (3 * (t / duration) ** 2 - 2 * (t / duration) ** 3))
     return Scene(m, {"O": law}, t=(0, duration, 41), wanted=["effort"])
 """
-ASKED = ["optimise", "turning.py", "--minimise", "peak:effort:O", "--minimise", "T", "--over", "T=0.5:2", "--over", "c=0:1"]
-ASKED += ["--subject-to", "c<=0.5", "--points", "8", "--starts", "2", "--screen", "8", "--backend", "vm", "--figure", "x.svg"]
+ASKED = [
+    "optimise",
+    "turning.py",
+    "--minimise",
+    "peak:effort:O",
+    "--minimise",
+    "T",
+    "--over",
+    "T=0.5:2",
+    "--over",
+    "c=0:1",
+]
+ASKED += [
+    "--subject-to",
+    "c<=0.5",
+    "--points",
+    "8",
+    "--starts",
+    "2",
+    "--screen",
+    "8",
+    "--backend",
+    "vm",
+    "--figure",
+    "x.svg",
+]
 
 
 def undrawn(_scene, _front, file, _ending):
@@ -64,7 +88,9 @@ def lines(path):
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.long)]
+)
 def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
     target = here / "x.h5"
     journal = journal_of(target)
@@ -89,20 +115,36 @@ def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
         journal.write_bytes(journal.read_bytes() + b'0123abcd {"of": "cut sho')
     capfd.readouterr()
     assert main([*ASKED, "--out", "x.h5"]) == 2
-    assert "is of an unfinished search: go on with --resume, or start anew with --force" in capfd.readouterr().err
-    assert main([*ASKED[:-2], "--figure", "y.svg", "--out", "x.h5", "--resume", "--transmission", "0.1"]) == 1
+    assert (
+        "is of an unfinished search: go on with --resume, or start anew with --force"
+        in capfd.readouterr().err
+    )
+    assert (
+        main(
+            [*ASKED[:-2], "--figure", "y.svg", "--out", "x.h5", "--resume", "--transmission", "0.1"]
+        )
+        == 1
+    )
     assert "is of another search: transmission was 0.05 and is 0.1" in capfd.readouterr().err
     assert lines(journal) >= kept
     assert main([*ASKED, "--out", "x.h5", "--resume"]) == 0
     out = capfd.readouterr().out
-    assert out.startswith("turning: 8 designs, none of which is better in all of peak:effort:O, T\n")
+    assert out.startswith(
+        "turning: 8 designs, none of which is better in all of peak:effort:O, T\n"
+    )
     assert ", c = 0.5\n" in out
     assert not journal.exists()
     assert target.read_bytes() == whole
 
 
 def asked(**words):
-    scene = {"minimise": "peak:effort:O", "over": {"T": (0.5, 2.0), "c": (0.0, 1.0)}, "backend": "vm", "starts": 3, "screen": 8}
+    scene = {
+        "minimise": "peak:effort:O",
+        "over": {"T": (0.5, 2.0), "c": (0.0, 1.0)},
+        "backend": "vm",
+        "starts": 3,
+        "screen": 8,
+    }
     return optimise(load_case("turning.py"), **scene | words)
 
 
@@ -122,7 +164,9 @@ def test_what_was_done_is_not_done_again(here):
 
 @pytest.mark.parametrize("objectives", ["peak:effort:O", ["peak:effort:O", "T"]])
 def test_an_interrupt_between_ways_loses_nothing(here, objectives, monkeypatch):
-    """It comes where a result is put together: that one is whole, and what would follow is not begun."""
+    """It comes where a result is put together: that one is whole, and what would follow is not
+    begun.
+    """
     calls = iter(range(100))
 
     def look(self, p, own=Search.look):
@@ -159,7 +203,10 @@ def test_damaged_lines_are_done_again(here):
 
 
 def test_a_journal_whose_first_line_was_cut_holds_nothing(here):
-    """At every byte of it: the same command begins once more. What no search wrote is left alone."""
+    """At every byte of it: the same command begins once more.
+
+    What no search wrote is left alone.
+    """
     journal = here / "x.h5.journal"
 
     def stop_later(start, _objective, _excess):
@@ -187,7 +234,17 @@ def test_a_journal_whose_first_line_was_cut_holds_nothing(here):
         assert journal.read_bytes().rstrip() == other.rstrip()
 
 
-ODD = ['["identity"]', '"identity"', '{"identity": 3}', "3", "null", '{"of": "x", "trail": {}}', '{"of": []}', "[" * 9999, "\\xff"]
+ODD = [
+    '["identity"]',
+    '"identity"',
+    '{"identity": 3}',
+    "3",
+    "null",
+    '{"of": "x", "trail": {}}',
+    '{"of": []}',
+    "[" * 9999,
+    "\\xff",
+]
 
 
 def test_odd_lines_and_journals_that_were_joined(here):
@@ -206,7 +263,9 @@ def test_odd_lines_and_journals_that_were_joined(here):
     assert asked(out="x.h5", resume=True).objective == asked().objective
     assert asked(out="x.h5", progress=stop, transmission=0.1, force=True).stopped
     journal.write_bytes(own + journal.read_bytes())
-    with pytest.raises(StoreError, match=r"is of another search: transmission was 0\.1 and is 0\.05"):
+    with pytest.raises(
+        StoreError, match=r"is of another search: transmission was 0\.1 and is 0\.05"
+    ):
         asked(out="x.h5", resume=True)
     journal.write_bytes(odd)
     with pytest.raises(StoreError, match="holds what no search wrote"):
@@ -267,5 +326,8 @@ def test_a_search_replaces_none_but_a_search(here, capfd):
     (here / "x.h5").write_text("mine")
     for more in ([], ["--force"]):
         assert main([*ASKED, "--out", "x.h5", *more]) == 2
-        assert capfd.readouterr().err == "error: cannot write x.h5: it is no file of HDF5; choose another name\n"
+        assert (
+            capfd.readouterr().err
+            == "error: cannot write x.h5: it is no file of HDF5; choose another name\n"
+        )
         assert (here / "x.h5").read_text() == "mine"

@@ -1,4 +1,6 @@
-"""What the oracle says of mechanisms that have no one answer: which forces are open, and how far a dead centre is."""
+"""What the oracle says of mechanisms that have no one answer: which forces are open, and how far a
+dead centre is.
+"""
 
 import math
 
@@ -38,7 +40,10 @@ def test_two_guides_share_a_moment():
 
 def slider_crank(angle):
     """A crank of 0.1 m and a rod of 0.3 m, the slider driven."""
-    rods = [oracle.from_density(name, length, lambda u: 1.0) for name, length in (("a", 0.1), ("b", 0.3))]
+    rods = [
+        oracle.from_density(name, length, lambda u: 1.0)
+        for name, length in (("a", 0.1), ("b", 0.3))
+    ]
     joints = [
         oracle.Joint("O", "revolute", ("ground", 0, 0), ("a", 0, 0)),
         oracle.Joint("A", "revolute", ("a", 0.1, 0), ("b", 0, 0)),
@@ -49,7 +54,9 @@ def slider_crank(angle):
     x, y = 0.1 * math.cos(angle), 0.1 * math.sin(angle)
     lean = -math.asin(y / 0.3)
     place = x + 0.3 * math.cos(lean)
-    return model.move({"P": (place, 0.1, 0.0)}, {"a": (0, 0, angle), "b": (x, y, lean), "s": (place, 0, 0)})
+    return model.move(
+        {"P": (place, 0.1, 0.0)}, {"a": (0, 0, angle), "b": (x, y, lean), "s": (place, 0, 0)}
+    )
 
 
 def test_a_dead_centre_is_near_where_crank_and_rod_are_in_line():
@@ -60,11 +67,15 @@ def test_a_dead_centre_is_near_where_crank_and_rod_are_in_line():
 
 
 def test_all_is_open_that_several_joints_bear_together():
-    """A joint declared twice: both bear the sum, in parts that nothing tells; the rest is as with one."""
+    """A joint declared twice: both bear the sum, in parts that nothing tells; the rest is as with
+    one.
+    """
     welds = [oracle.Joint(name, "weld", ("ground", 0, 0), ("bar", 0, 0)) for name in "WV"]
     one, two = bar(welds[0]).solve({}, STILL), bar(*welds).solve({}, STILL)
     assert one.open == set()
-    assert two.open == {f"reaction:{joint}:{member}" for joint in "WV" for member in ("fx", "fy", "mz")}
+    assert two.open == {
+        f"reaction:{joint}:{member}" for joint in "WV" for member in ("fx", "fy", "mz")
+    }
     np.testing.assert_allclose(two.sections["bar"](0.2), one.sections["bar"](0.2), atol=1e-12)
     assert two.open_sections["bar"](0.2) == (False, False, False)
 

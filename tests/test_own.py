@@ -29,10 +29,15 @@ DENSITIES = {
 
 
 def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
-    """A crank, a rod with a lump beside a station, a piston under a spring of gas; outputs of everything that there is."""
+    """A crank, a rod with a lump beside a station, a piston under a spring of gas; outputs of
+    everything that there is.
+    """
     m = Mechanism("engine")
     r, place = m.parameter("r", 0.1, "m"), m.parameter("place", 0.4)
-    crank, rod = m.link("crank", length=r, mass=0.8), m.link("rod", length=0.25, **(rod or {"mass": 1.1}))
+    crank, rod = (
+        m.link("crank", length=r, mass=0.8),
+        m.link("rod", length=0.25, **(rod or {"mass": 1.1})),
+    )
     piston = m.point_mass("piston", 0.6)
     main = m.revolute("main", m.ground, crank)
     pin = m.revolute("pin", crank.tip, rod)
@@ -42,7 +47,9 @@ def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
     gas = m.force("gas", piston, x=-100.0 * m.coordinate(bore))
     found = m.results
     m.output("power", found.effort(main) * m.rate(main), unit="W")
-    m.output("pin_load", ca.sqrt(found.reaction(pin).fx ** 2 + found.reaction(pin).fy ** 2), unit="N")
+    m.output(
+        "pin_load", ca.sqrt(found.reaction(pin).fx ** 2 + found.reaction(pin).fy ** 2), unit="N"
+    )
     for name, ratio in (*RATIOS.items(), ("p", place)):
         section = found.section(rod, ratio)
         for force, unit in LAWS.items():
@@ -55,7 +62,13 @@ def engine(rod=None, wanted=("all",), more=lambda m, parts: None, **keywords):
     m.output("bent", m.coordinate(pin) / (2 * math.pi), unit="1")
     m.output("clock", 2 * m.time + r, unit="s")
     more(m, {"main": main, "rod": rod, "bore": bore})
-    return Scene(m, {"main": motion.polynomial(0.3, 10, 2.0)}, wanted, posture={"rod": 0.0}, **({"t": (0, 1, 201)} | keywords))
+    return Scene(
+        m,
+        {"main": motion.polynomial(0.3, 10, 2.0)},
+        wanted,
+        posture={"rod": 0.0},
+        **({"t": (0, 1, 201)} | keywords),
+    )
 
 
 @pytest.mark.parametrize("rod", DENSITIES)
@@ -69,7 +82,9 @@ def test_sections_at_a_ratio_are_those_of_the_law(rod):
             for force in LAWS:
                 size = 1e-15 * law.bound(force, np.array([ratio]))
                 at = law.at(force, np.full((21, 1), ratio))[:, 0]
-                np.testing.assert_allclose(found.output(f"{force}_{name}"), at, rtol=0, atol=4 * size)
+                np.testing.assert_allclose(
+                    found.output(f"{force}_{name}"), at, rtol=0, atol=4 * size
+                )
 
 
 def test_they_are_what_they_are_made_of():
@@ -86,7 +101,9 @@ def test_they_are_what_they_are_made_of():
         "clock": 2 * found.t + 0.1,
     }
     for name, values in same.items():
-        np.testing.assert_allclose(found.output(name), values, rtol=1e-13, atol=1e-13 * np.abs(values).max())
+        np.testing.assert_allclose(
+            found.output(name), values, rtol=1e-13, atol=1e-13 * np.abs(values).max()
+        )
         assert float(found.errors[f"output:{name}"]) < 1e-11 * np.abs(values).max()
     assert np.abs(found.output("bent")).max() > 1.5
     pose = found.pose("rod")
@@ -95,7 +112,8 @@ def test_they_are_what_they_are_made_of():
     speed = np.gradient(place.real, found.t)
     assert np.abs(speed - found.output("vx"))[1:-1].max() < 2e-3 * np.abs(speed).max()
     assert (
-        np.abs(np.gradient(found.output("vx"), found.t) - found.output("ax"))[1:-1].max() < 2e-3 * np.abs(found.output("ax")).max()
+        np.abs(np.gradient(found.output("vx"), found.t) - found.output("ax"))[1:-1].max()
+        < 2e-3 * np.abs(found.output("ax")).max()
     )
     assert found.unit("output:power") == "W"
 
@@ -107,7 +125,10 @@ def test_what_is_not_wanted_costs_nothing_and_what_is_brings_what_it_is_made_of(
     assert list(evaluate(scene, wanted=["output:power"]).series) == ["effort:main", "output:power"]
     assert list(evaluate(scene, wanted=["output:vx"]).series) == ["output:vx"]
     assert "section:rod:law:n0" in evaluate(scene, wanted=["output:bending_c"]).series
-    assert sum(derive(scene, ["output:power"]).instructions.values()) <= sum(derive(scene, ["effort"]).instructions.values()) + 3
+    assert (
+        sum(derive(scene, ["output:power"]).instructions.values())
+        <= sum(derive(scene, ["effort"]).instructions.values()) + 3
+    )
 
 
 def test_their_peaks_are_between_instants():
@@ -127,7 +148,9 @@ def test_sweeps_keep_their_peaks_and_means(backend):
     assert outcome.status.tolist() == [Status.OK] * 2
     for row in range(2):
         assert_refined(scene, designs, outcome, row, p[row])
-        power = evaluate(scene, parameters=dict(zip(scene.mechanism.parameters, p[row], strict=True))).output("power")
+        power = evaluate(
+            scene, parameters=dict(zip(scene.mechanism.parameters, p[row], strict=True))
+        ).output("power")
         k = designs.efforts.index("output:power")
         assert outcome.mean[row, k] == pytest.approx(np.trapezoid(power) / 100, rel=1e-12)
 
@@ -140,7 +163,9 @@ def test_exported_c_has_them(precision, tmp_path):
     found = by_c99(tmp_path, told, instants(solution.t, precision))
     row = next(row for row in told["outputs"] if row["path"] == "output/power")
     assert row["unit"] == "W"
-    compare(found, expected(scene, told, solution), told, made, solution, exact=precision == "double")
+    compare(
+        found, expected(scene, told, solution), told, made, solution, exact=precision == "double"
+    )
 
 
 def test_files_hold_them(tmp_path):
@@ -177,35 +202,57 @@ def test_an_effort_where_nothing_drives_is_named():
     def more(m, parts):
         m.output("wrong", m.results.effort(parts["bore"]))
 
-    with pytest.raises(DeclarationError, match=r"made of effort:bore, and joint 'bore' is no drive; drives: main"):
+    with pytest.raises(
+        DeclarationError, match=r"made of effort:bore, and joint 'bore' is no drive; drives: main"
+    ):
         evaluate(engine(more=more))
 
 
 @pytest.mark.parametrize(
     ("declare", "error", "told"),
     [
-        (lambda m, p: m.output("power", 1.0), DeclarationError, "output 'power' is declared twice in mechanism 'engine'"),
+        (
+            lambda m, p: m.output("power", 1.0),
+            DeclarationError,
+            "output 'power' is declared twice in mechanism 'engine'",
+        ),
         (lambda m, p: m.output("a b", 1.0), DeclarationError, "output name 'a b' must be a letter"),
         (
             lambda m, p: m.output("x", ca.SX.sym("y")),
             DeclarationError,
             "output 'x' depends on 'y', not a parameter, .* result",
         ),
-        (lambda m, p: m.output("x", None), DeclarationError, "output 'x' must be a number or an expression"),
-        (lambda m, p: m.output("x", ca.vertcat(m.time, m.time)), DeclarationError, "output 'x' must be a scalar"),
+        (
+            lambda m, p: m.output("x", None),
+            DeclarationError,
+            "output 'x' must be a number or an expression",
+        ),
+        (
+            lambda m, p: m.output("x", ca.vertcat(m.time, m.time)),
+            DeclarationError,
+            "output 'x' must be a scalar",
+        ),
         (lambda m, p: m.output("x", 1.0, unit="a\nb"), DeclarationError, "its unit must be a line"),
         (
             lambda m, p: m.results.section(p["rod"], 1.5),
             DeclarationError,
             "expected a ratio xi/l from 0 to 1, got 1.5",
         ),
-        (lambda m, p: m.results.section(m.ground, 0.5), DeclarationError, "section: 'ground' is not a link"),
+        (
+            lambda m, p: m.results.section(m.ground, 0.5),
+            DeclarationError,
+            "section: 'ground' is not a link",
+        ),
         (
             lambda m, p: m.results.load("gas"),
             DeclarationError,
             "expected the load itself, as its declaration returned it, got its name 'gas'",
         ),
-        (lambda m, p: m.results.multiplier(p["rod"]), UnknownNameError, "unknown constraint of mechanism 'engine' 'rod'"),
+        (
+            lambda m, p: m.results.multiplier(p["rod"]),
+            UnknownNameError,
+            "unknown constraint of mechanism 'engine' 'rod'",
+        ),
         (
             lambda m, p: m.force("f", p["rod"], x=m.results.effort(p["main"])),
             DeclarationError,
@@ -224,7 +271,9 @@ def test_misuse_is_told(declare, error, told):
 
 
 def test_frictions_and_what_they_take_are_results():
-    """Wanted alone they bring their frictions; the heat of all is the drive's power less that of the load."""
+    """Wanted alone they bring their frictions; the heat of all is the drive's power less that of
+    the load.
+    """
     m = Mechanism("pump")
     crank, rod = m.link("crank", length=0.05, mass=0.0), m.link("rod", length=0.16, mass=0.0)
     piston = m.link("piston", length=0.06, mass=1e-12, centre=(0.0, 0.0), inertia=0.0)
@@ -233,12 +282,20 @@ def test_frictions_and_what_they_take_are_results():
     m.revolute("wrist", rod.tip, piston)
     bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
     m.force("gas", piston, x=-2000.0)
-    rub = m.friction("bearing", main, mu=0.05, radius=0.02), m.friction("rings", bore, mu=0.1, length=0.05, viscous=20.0)
+    rub = (
+        m.friction("bearing", main, mu=0.05, radius=0.02),
+        m.friction("rings", bore, mu=0.1, length=0.05, viscous=20.0),
+    )
     m.output("heat", sum(m.results.friction(one).loss for one in rub), unit="W")
     m.output("braked", m.results.friction(rub[1]).along, unit="N")
-    with pytest.raises(UnknownNameError, match="unknown friction of mechanism 'pump' 'gas'; valid: bearing, rings"):
+    with pytest.raises(
+        UnknownNameError, match="unknown friction of mechanism 'pump' 'gas'; valid: bearing, rings"
+    ):
         m.results.friction(m.loads["gas"])
-    with pytest.raises(DeclarationError, match="expected the friction itself, as its declaration returned it, got its name"):
+    with pytest.raises(
+        DeclarationError,
+        match="expected the friction itself, as its declaration returned it, got its name",
+    ):
         m.results.friction("rings")
     scene = Scene(m, {"main": motion.polynomial(0.1, 60.0)}, t=(0, 0.1, 21), posture={"rod": 0.0})
     solution = evaluate(scene, wanted=["output"], backend="vm")
@@ -254,7 +311,9 @@ def test_frictions_and_what_they_take_are_results():
 def test_an_unknown_output_lists_what_there_is():
     with pytest.raises(UnknownNameError, match=r"output:power"):
         evaluate(engine(), wanted=["output:powr"])
-    with pytest.raises(UnknownNameError, match=r"unknown output of the mechanism's own 'powr' .*valid: power"):
+    with pytest.raises(
+        UnknownNameError, match=r"unknown output of the mechanism's own 'powr' .*valid: power"
+    ):
         evaluate(engine(), wanted=["output:power"]).output("powr")
 
 

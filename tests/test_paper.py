@@ -1,7 +1,8 @@
 """The printed equations of Nguyen, Petre, Stroe, corrected and as printed.
 
-Every test of a printed formula states the correction it makes and shows that the formula as printed misses by just that. The
-engine is asked at arbitrary theta, theta', theta'' and dimensions, where no term can hide.
+Every test of a printed formula states the correction it makes and shows that the formula as printed
+misses by just that. The engine is asked at arbitrary theta, theta', theta'' and dimensions, where
+no term can hide.
 """
 
 from dataclasses import dataclass
@@ -52,14 +53,21 @@ def graph():
 
 
 def engine(graph, x):
-    out = graph.instant(0.0, [x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3])
+    out = graph.instant(
+        0.0, [x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3]
+    )
     return dict(zip(graph.names, out.full().ravel(), strict=True))
 
 
 def torque_14(x, corrected):
     """Eq. (14), solved for M."""
     m1, m2, m3, r, l, s, c, D, q = x.m1, x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
-    by_acceleration = m1 / 3 + (m2 * l**2 / 3 + m3 * r**2 * s**2) * c**2 / D + (m2 + m3) * s**2 + (m2 + 2 * m3) * r * s**2 * c / q
+    by_acceleration = (
+        m1 / 3
+        + (m2 * l**2 / 3 + m3 * r**2 * s**2) * c**2 / D
+        + (m2 + m3) * s**2
+        + (m2 + 2 * m3) * r * s**2 * c / q
+    )
     by_rate = (
         (3 * m2 / 4 + m3) * s * c
         - (m2 / 2 + m3) * r * s**3 / q
@@ -71,7 +79,9 @@ def torque_14(x, corrected):
     )
     if corrected:
         by_rate += missing_in_14(x)
-    return r**2 * (by_acceleration * x.acceleration + by_rate * x.rate**2) + (m1 + m2) * G * r * c / 2
+    return (
+        r**2 * (by_acceleration * x.acceleration + by_rate * x.rate**2) + (m1 + m2) * G * r * c / 2
+    )
 
 
 def missing_in_14(x):
@@ -89,7 +99,11 @@ def test_eq_14_active_torque(graph, x):
 
 
 def test_eq_14_as_printed_misses_visibly(graph):
-    gaps = [abs(engine(graph, x)["effort:O"] / torque_14(x, corrected=False) - 1) for x in STATES if x.rate]
+    gaps = [
+        abs(engine(graph, x)["effort:O"] / torque_14(x, corrected=False) - 1)
+        for x in STATES
+        if x.rate
+    ]
     assert max(gaps) > 1e-3
 
 
@@ -107,7 +121,9 @@ def test_eq_17_angular_velocity_to_first_order(x):
     for v, v_rate in ((1e-5, 0.3), (-1e-5, 0.3)):
         rise, rise_rate = v - x.r * x.s, v_rate - x.r * x.c * x.rate
         exact = rise_rate / np.sqrt(x.l**2 - rise**2)
-        printed = (x.D * v_rate + x.r**2 * v * x.rate * x.s * x.c) / (x.D * x.q) - x.r * x.rate * x.c / x.q
+        printed = (x.D * v_rate + x.r**2 * v * x.rate * x.s * x.c) / (
+            x.D * x.q
+        ) - x.r * x.rate * x.c / x.q
         # What printed leaves out is the coupling of v with v', and v^2.
         coupling = -v * x.r * x.s * v_rate / (x.D * x.q)
         rates.append(exact - printed - coupling)
@@ -116,7 +132,9 @@ def test_eq_17_angular_velocity_to_first_order(x):
 
 @pytest.mark.parametrize("x", STATES)
 def test_eq_18_force_function(x):
-    """The rod's centre is at (r s + v)/2; the printed v^2 term is an artefact, and has no slope at v = 0."""
+    """The rod's centre is at (r s + v)/2; the printed v^2 term is an artefact, and has no slope at
+    v = 0.
+    """
 
     def printed(v):
         rod = x.r * x.s / 2 + x.r * v**2 * x.s / (4 * x.D) + v / 2
@@ -135,13 +153,14 @@ def test_eq_18_force_function(x):
 def guide_19(x, corrected):
     """Eq. (19), N_B, term by term; the corrections are those listed in the test."""
     m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
-    # In short 3 (m2 + 2 m3) r^2 D^2 (s^2 theta'' + s c theta'^2), which only D^2 below turns into a force.
+    # In short 3 (m2 + 2 m3) r^2 D^2 (s^2 theta'' + s c theta'^2), which only D^2 below turns into a
+    # force.
     first = (
         3 * m2 * r**6 * s**6 + 6 * m3 * r**6 * s**6 + 3 * m2 * r**2 * l**4 * s**2
         + 6 * m3 * r**2 * l**4 * s**2 - 6 * m2 * r**4 * l**2 * s**4 - 12 * m3 * r**4 * l**2 * s**4
     ) * x.acceleration + (
         3 * m2 * r**6 * s**5 * c + 6 * m3 * r**6 * s**5 * c - 6 * m2 * r**4 * l**2 * s**3 * c
-        - 12 * m3 * r**4 * l**2 * s**3 * c + 3 * m2 * r**2 * l**4 * s * c + 6 * m3 * r**2 * l**4 * s * c
+        - 12 * m3 * r**4 * l**2 * s**3 * c + 3 * m2 * r**2 * l**4 * s * c + 6 * m3 * r**2 * l**4 * s * c  # noqa: E501
     ) * x.rate**2  # fmt: skip
     factor = c if corrected else 1.0
     second = (
@@ -150,7 +169,7 @@ def guide_19(x, corrected):
     ) * x.acceleration  # fmt: skip
     a, b = (4, 6) if corrected else (2, 4)
     second += (
-        -3 * m2 * r**5 * s**5 - 6 * m3 * r**5 * s**5 + a * m2 * r**3 * l**2 * s + 6 * m3 * r**3 * l**2 * s
+        -3 * m2 * r**5 * s**5 - 6 * m3 * r**5 * s**5 + a * m2 * r**3 * l**2 * s + 6 * m3 * r**3 * l**2 * s  # noqa: E501
         - m2 * r * l**4 * s - b * m2 * r**3 * l**2 * s * c**2 - 12 * m3 * r**3 * l**2 * s * c**2
     ) * x.rate**2  # fmt: skip
     weight = -m2 * G / 2 - m3 * G
@@ -161,7 +180,9 @@ def guide_19(x, corrected):
 
 @pytest.mark.parametrize("x", STATES)
 def test_eq_19_guide_force(graph, x):
-    """Corrected: 6 D^2 q and - 6 D^2 below; a factor c with r^5 s^4; 4 and 6 for 2 and 4 with m2 r^3 l^2. N_B = -(reaction, y)."""
+    """Corrected: 6 D^2 q and - 6 D^2 below; a factor c with r^5 s^4; 4 and 6 for 2 and 4 with m2
+    r^3 l^2. N_B = -(reaction, y).
+    """
     found = -engine(graph, x)["reaction:guide:fy"]
     scale = abs(found) + (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration))
     assert found == pytest.approx(guide_19(x, corrected=True), abs=1e-13 * scale)
@@ -173,13 +194,13 @@ def axial_21(x, xi, corrected):
     m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
     first = (
         6 * m2 * r**6 * xi * s**5 * c - 5 * m2 * r**2 * l**5 * s * c - 6 * m3 * r**2 * l**5 * s * c
-        - 3 * m2 * r**6 * l * s**5 * c + 8 * m2 * r**4 * l**3 * s**3 * c + 6 * m3 * r**4 * l**3 * s**3 * c
+        - 3 * m2 * r**6 * l * s**5 * c + 8 * m2 * r**4 * l**3 * s**3 * c + 6 * m3 * r**4 * l**3 * s**3 * c  # noqa: E501
         - 12 * m2 * r**4 * l**2 * xi * s**3 * c + 6 * m2 * r**2 * l**4 * xi * s * c
     ) * x.acceleration + (
         -6 * m2 * r**6 * xi * s**6 + 3 * m2 * r**6 * l * s**6 - 3 * m2 * r**2 * l**5 * c**2
         - 6 * m3 * r**2 * l**5 * c**2 + 2 * m2 * r**4 * l**3 * s**2 + 5 * m2 * r**2 * l**5 * s**2
         + 6 * m3 * r**4 * l**3 * s**2 + 6 * m3 * r**2 * l**5 * s**2 - 10 * m2 * r**4 * l**3 * s**4
-        - 12 * m3 * r**4 * l**3 * s**4 + 3 * m2 * r**2 * l**3 * xi**2 * c**2 - m2 * r**4 * l**3 * s**2 * c**2
+        - 12 * m3 * r**4 * l**3 * s**4 + 3 * m2 * r**2 * l**3 * xi**2 * c**2 - m2 * r**4 * l**3 * s**2 * c**2  # noqa: E501
         - 6 * m3 * r**4 * l**3 * s**2 * c**2 - 6 * m2 * r**2 * l**4 * xi * s**2
         + 12 * m2 * r**4 * l**2 * xi * s**4 - 3 * m2 * r**4 * l * xi**2 * s**2 * c**2
     ) * x.rate**2  # fmt: skip
@@ -195,8 +216,8 @@ def axial_21(x, xi, corrected):
         + 18 * m2 * r**5 * l**2 * xi * s**5 + 6 * m2 * r * l**6 * xi * s
     ) * x.acceleration + (
         -6 * m2 * r * l**7 * c - 6 * m3 * r * l**7 * c + 6 * m2 * r * l**6 * xi * c
-        + 15 * m2 * r**3 * l**5 * s**2 * c + 12 * m3 * r**3 * l**5 * s**2 * c - 12 * m2 * r**5 * l**3 * s**4 * c
-        - 6 * m3 * r**5 * l**3 * s**4 * c - 6 * m2 * r**7 * xi * s**6 * c + 3 * m2 * r**7 * l * s**6 * c
+        + 15 * m2 * r**3 * l**5 * s**2 * c + 12 * m3 * r**3 * l**5 * s**2 * c - 12 * m2 * r**5 * l**3 * s**4 * c  # noqa: E501
+        - 6 * m3 * r**5 * l**3 * s**4 * c - 6 * m2 * r**7 * xi * s**6 * c + 3 * m2 * r**7 * l * s**6 * c  # noqa: E501
         - 18 * m2 * r**3 * l**4 * xi * s**2 * c + 18 * m2 * r**5 * l**2 * xi * s**4 * c
     ) * x.rate**2  # fmt: skip
     return first / (6 * l**2 * D**2) + second / (6 * l**2 * D**2 * q)
@@ -205,7 +226,10 @@ def axial_21(x, xi, corrected):
 @pytest.mark.parametrize("ratio", [0.0, 0.1, 0.25, 0.5, 0.9, 1.0])
 @pytest.mark.parametrize("x", STATES)
 def test_eq_21_axial_force(graph, x, ratio):
-    """The last term of gravity needs a factor xi, by its dimension; all else is right. N = -(axial): compression positive."""
+    """The last term of gravity needs a factor xi, by its dimension; all else is right.
+
+    N = -(axial): compression positive.
+    """
     found = engine(graph, x)
     law = {k: found[f"section:rod:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
     axial = -section_forces(law, x.m2, x.l, ratio)[0]
@@ -213,13 +237,19 @@ def test_eq_21_axial_force(graph, x, ratio):
     xi = ratio * x.l
     assert axial == pytest.approx(axial_21(x, xi, corrected=True), abs=1e-13 * scale)
     miss = x.m2 * G * x.r * x.l**2 * x.s * (xi - 1.0) / x.D**2
-    assert axial - axial_21(x, xi, corrected=False) == pytest.approx(miss, abs=1e-12 * (scale + abs(miss)))
+    assert axial - axial_21(x, xi, corrected=False) == pytest.approx(
+        miss, abs=1e-12 * (scale + abs(miss))
+    )
     assert abs(miss) > 1e-3 * x.m2 * G * x.r
 
 
 def test_eq_22_motion(solution):
-    """theta = Omega0 t + epsilon0 t^2/2 with Omega0 = 25 pi, epsilon0 = pi/100: about one turn in 0.08 s."""
+    """theta = Omega0 t + epsilon0 t^2/2 with Omega0 = 25 pi, epsilon0 = pi/100: about one turn in
+    0.08 s.
+    """
     t = solution.t
-    np.testing.assert_allclose(solution.motion("O").value, 25 * np.pi * t + np.pi / 200 * t**2, rtol=1e-15)
+    np.testing.assert_allclose(
+        solution.motion("O").value, 25 * np.pi * t + np.pi / 200 * t**2, rtol=1e-15
+    )
     np.testing.assert_allclose(solution.motion("O").rate, 25 * np.pi + np.pi / 100 * t, rtol=1e-15)
     np.testing.assert_array_equal(solution.motion("O").acceleration, np.full_like(t, np.pi / 100))

@@ -1,4 +1,6 @@
-"""Links as they are and joints of every kind, against vector Newton-Euler; and what is said of misuse."""
+"""Links as they are and joints of every kind, against vector Newton-Euler; and what is said of
+misuse.
+"""
 
 import math
 
@@ -31,14 +33,20 @@ def test_links_of_every_density(rod):
 def test_density_may_depend_on_parameters():
     m = Mechanism("taper")
     tip = m.parameter("tip", 1.0, "kg/m")
-    m.revolute("O", m.ground, m.link("a", length=m.parameter("l", 0.5, "m"), density=density.polynomial(2.0, tip - 2.0)))
+    m.revolute(
+        "O",
+        m.ground,
+        m.link("a", length=m.parameter("l", 0.5, "m"), density=density.polynomial(2.0, tip - 2.0)),
+    )
     scene = Scene(m, {"O": MOTION}, t=(INSTANT, 1, 2))
     for parameters in ({}, {"tip": 0.2}, {"tip": 3.0, "l": 0.8}):
         assert_balanced(scene, parameters=parameters)
 
 
 def test_lumps_and_branches_at_stations():
-    """Point masses welded on and beside the axis, a lever welded at an angle, and a pinned pendulum, on one link."""
+    """Point masses welded on and beside the axis, a lever welded at an angle, and a pinned
+    pendulum, on one link.
+    """
     m = Mechanism("branched")
     a = m.link("a", length=0.6, mass=0.8)
     b = m.link("b", length=0.2, mass=0.2)
@@ -54,7 +62,9 @@ def test_lumps_and_branches_at_stations():
 
 
 def test_one_sided_values_at_a_station():
-    """A lump's weight is the jump of shear; both sides are there, and the grid takes the tip's side."""
+    """A lump's weight is the jump of shear; both sides are there, and the grid takes the tip's
+    side.
+    """
     m = Mechanism("shelf")
     a = m.link("a", length=1.0, mass=0.0)
     m.weld("wall", m.ground, a)
@@ -72,7 +82,10 @@ def test_one_sided_values_at_a_station():
 
 def test_welded_assemblies_carry_their_moments():
     m = Mechanism("frame")
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.3, 0.5), ("b", 0.2, 0.4), ("c", 0.25, 0.3)))
+    a, b, c = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.3, 0.5), ("b", 0.2, 0.4), ("c", 0.25, 0.3))
+    )
     m.revolute("O", m.ground, a)
     m.weld("W1", a.tip, b, angle=math.pi / 2)
     m.weld("W2", c, b.tip, angle=-0.4)
@@ -93,7 +106,9 @@ def test_pin_in_slot(axis):
     assert_balanced(scene)
     solution = evaluate(scene)
     station = solution.section("b").law.loads[0].station
-    np.testing.assert_allclose(station, solution.motion("S").value * axis[0] / math.hypot(*axis) / 0.6, rtol=1e-12)
+    np.testing.assert_allclose(
+        station, solution.motion("S").value * axis[0] / math.hypot(*axis) / 0.6, rtol=1e-12
+    )
 
 
 def test_scotch_yoke_and_trammel():
@@ -107,46 +122,131 @@ def test_scotch_yoke_and_trammel():
 
 
 def test_drive_between_two_moving_links():
-    """The coupler's own motor drives a four-bar: its torque acts on both links, with opposite signs."""
+    """The coupler's own motor drives a four-bar: its torque acts on both links, with opposite
+    signs.
+    """
     m = Mechanism("inner_drive")
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.2, 0.3), ("b", 0.35, 0.5), ("c", 0.25, 0.4)))
+    a, b, c = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in (("a", 0.2, 0.3), ("b", 0.35, 0.5), ("c", 0.25, 0.4))
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
     m.revolute("C", m.ground.at(0.3, 0.05), c)
-    assert_balanced(Scene(m, {"A": polynomial(-1.2, 0.8, -0.5)}, posture={"a": 1.5, "c": 1.2}, t=(INSTANT, 1, 2)))
+    assert_balanced(
+        Scene(
+            m, {"A": polynomial(-1.2, 0.8, -0.5)}, posture={"a": 1.5, "c": 1.2}, t=(INSTANT, 1, 2)
+        )
+    )
 
 
 @pytest.mark.parametrize(
     ("declare", "error", "says"),
     [
-        (lambda m, a: m.link("b", length=1), DeclarationError, "link 'b': give its mass, or a density"),
-        (lambda m, a: m.link("b", length=1, mass=1, density=density.uniform(1)), DeclarationError, "give its mass, or a density"),
-        (lambda m, a: m.link("b", length=1, mass=1, centre=(0, 0)), DeclarationError, "centre and inertia go together"),
+        (
+            lambda m, a: m.link("b", length=1),
+            DeclarationError,
+            "link 'b': give its mass, or a density",
+        ),
+        (
+            lambda m, a: m.link("b", length=1, mass=1, density=density.uniform(1)),
+            DeclarationError,
+            "give its mass, or a density",
+        ),
+        (
+            lambda m, a: m.link("b", length=1, mass=1, centre=(0, 0)),
+            DeclarationError,
+            "centre and inertia go together",
+        ),
         (
             lambda m, a: m.link("b", length=1, density=3.0),
             DeclarationError,
             "expected a density of lagrange_casadi.density",
         ),
-        (lambda m, a: density.tabulated([0, 0.5, 0.5, 1], [1, 1, 1, 1]), DeclarationError, "places must increase, but entry 2"),
-        (lambda m, a: density.tabulated([0, 0.5], [1, 1]), DeclarationError, "must reach from 0 to 1, got 0 to 0.5"),
+        (
+            lambda m, a: density.tabulated([0, 0.5, 0.5, 1], [1, 1, 1, 1]),
+            DeclarationError,
+            "places must increase, but entry 2",
+        ),
+        (
+            lambda m, a: density.tabulated([0, 0.5], [1, 1]),
+            DeclarationError,
+            "must reach from 0 to 1, got 0 to 0.5",
+        ),
         (lambda m, a: density.polynomial(), DeclarationError, "at least one coefficient"),
-        (lambda m, a: table(m.time, [0, 1, 1], [1, 2, 3]), DeclarationError, "table: places must increase"),
+        (
+            lambda m, a: table(m.time, [0, 1, 1], [1, 2, 3]),
+            DeclarationError,
+            "table: places must increase",
+        ),
         (lambda m, a: m.force("F", "nothing", x=1), DeclarationError, "load 'F': expected a link"),
-        (lambda m, a: m.force("F", Mechanism("n").link("z", length=1, mass=1), x=1), DeclarationError, "of another mechanism"),
-        (lambda m, a: [m.force("F", a, x=1), m.force("F", a, x=1)], DeclarationError, "load 'F' is declared twice"),
-        (lambda m, a: m.force("J", a, x=1), DeclarationError, "load 'J': the name is taken by a joint of mechanism 'm'"),
-        (lambda m, a: m.torque("T", m.point_mass("p", 1), 1.0), DeclarationError, "point mass 'p' bears no torque"),
-        (lambda m, a: m.constraint("c", 3.0), DeclarationError, "constraint 'c' depends on no coordinate"),
+        (
+            lambda m, a: m.force("F", Mechanism("n").link("z", length=1, mass=1), x=1),
+            DeclarationError,
+            "of another mechanism",
+        ),
+        (
+            lambda m, a: [m.force("F", a, x=1), m.force("F", a, x=1)],
+            DeclarationError,
+            "load 'F' is declared twice",
+        ),
+        (
+            lambda m, a: m.force("J", a, x=1),
+            DeclarationError,
+            "load 'J': the name is taken by a joint of mechanism 'm'",
+        ),
+        (
+            lambda m, a: m.torque("T", m.point_mass("p", 1), 1.0),
+            DeclarationError,
+            "point mass 'p' bears no torque",
+        ),
+        (
+            lambda m, a: m.constraint("c", 3.0),
+            DeclarationError,
+            "constraint 'c' depends on no coordinate",
+        ),
         (lambda m, a: m.constraint("c", m.time * 2), DeclarationError, "depends on no coordinate"),
-        (lambda m, a: m.constraint("c", m.coordinate(m.joints["J"]) * m.rate(m.joints["J"])), DeclarationError, "depends on rates"),
-        (lambda m, a: m.nonholonomic("r", m.rate(m.joints["J"]) ** 2, replaces=m.joints["J"]), DeclarationError, "must be linear"),
-        (lambda m, a: m.nonholonomic("r", m.time, replaces=m.joints["J"]), DeclarationError, "depends on no rate"),
-        (lambda m, a: m.coordinate("J"), DeclarationError, "expected a joint of mechanism 'm', got 'J'; joints: J"),
-        (lambda m, a: m.coordinate(m.weld("W", a.tip, m.point_mass("p", 1))), DeclarationError, "joint 'W' has no coordinate"),
-        (lambda m, a: m.weld("W", m.point_mass("p", 1), a), DeclarationError, "no direction to carry the weld"),
-        (lambda m, a: m.force("F", m.ground, x=1), DeclarationError, "a force on the ground moves nothing"),
-        (lambda m, a: m.prismatic("P", m.ground, m.point_mass("p", 1), axis=1), DeclarationError, "axis must be two components"),
+        (
+            lambda m, a: m.constraint("c", m.coordinate(m.joints["J"]) * m.rate(m.joints["J"])),
+            DeclarationError,
+            "depends on rates",
+        ),
+        (
+            lambda m, a: m.nonholonomic("r", m.rate(m.joints["J"]) ** 2, replaces=m.joints["J"]),
+            DeclarationError,
+            "must be linear",
+        ),
+        (
+            lambda m, a: m.nonholonomic("r", m.time, replaces=m.joints["J"]),
+            DeclarationError,
+            "depends on no rate",
+        ),
+        (
+            lambda m, a: m.coordinate("J"),
+            DeclarationError,
+            "expected a joint of mechanism 'm', got 'J'; joints: J",
+        ),
+        (
+            lambda m, a: m.coordinate(m.weld("W", a.tip, m.point_mass("p", 1))),
+            DeclarationError,
+            "joint 'W' has no coordinate",
+        ),
+        (
+            lambda m, a: m.weld("W", m.point_mass("p", 1), a),
+            DeclarationError,
+            "no direction to carry the weld",
+        ),
+        (
+            lambda m, a: m.force("F", m.ground, x=1),
+            DeclarationError,
+            "a force on the ground moves nothing",
+        ),
+        (
+            lambda m, a: m.prismatic("P", m.ground, m.point_mass("p", 1), axis=1),
+            DeclarationError,
+            "axis must be two components",
+        ),
         (
             lambda m, a: m.revolute("a", m.ground, a.tip),
             DeclarationError,
@@ -158,7 +258,9 @@ def test_drive_between_two_moving_links():
             "'J': the name is taken by a joint",
         ),
         (
-            lambda m, a: [m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"],
+            lambda m, a: [
+                m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"
+            ],
             DeclarationError,
             "non-holonomic constraint 's': 'r' already replaces the drive of joint 'J'",
         ),
@@ -175,8 +277,14 @@ def test_misuse_is_named(declare, error, says):
 @pytest.mark.parametrize(
     ("matter", "says"),
     [
-        ({"density": density.polynomial(1.0, -3.0)}, r"density must not be negative, got -2 kg/m at xi/l = 1"),
-        ({"density": density.polynomial(1.0, -5.0, 5.0)}, r"density must not be negative, got -0\.25 kg/m at xi/l = 0\.5"),
+        (
+            {"density": density.polynomial(1.0, -3.0)},
+            r"density must not be negative, got -2 kg/m at xi/l = 1",
+        ),
+        (
+            {"density": density.polynomial(1.0, -5.0, 5.0)},
+            r"density must not be negative, got -0\.25 kg/m at xi/l = 0\.5",
+        ),
         ({"density": density.tabulated([0, 0.5, 1], [1, -1, 1])}, r"got -1 kg/m at xi/l = 0\.5"),
         ({"mass": 1.0, "centre": (0, 0), "inertia": -1.0}, "inertia must not be negative"),
     ],
@@ -194,12 +302,16 @@ def test_a_station_outside_its_link_is_named():
     m.revolute("J", m.ground, a)
     m.weld("W", a.at(m.parameter("x", 0.5, "m")), m.point_mass("p", 1))
     scene = Scene(m, {"J": polynomial(0)})
-    with pytest.raises(ParameterError, match=r"joint 'W': station 1\.5 m is outside link 'a', 0 to 1 m"):
+    with pytest.raises(
+        ParameterError, match=r"joint 'W': station 1\.5 m is outside link 'a', 0 to 1 m"
+    ):
         evaluate(scene, parameters={"x": 1.5})
 
 
 def test_a_slider_may_leave_its_link():
-    """What is beyond the base acts on the base's side of every section: the rest hangs on it as on a bracket."""
+    """What is beyond the base acts on the base's side of every section: the rest hangs on it as on
+    a bracket.
+    """
     m = Mechanism("boom")
     a, p = m.link("a", length=0.5, mass=1.0), m.point_mass("p", 2.0)
     m.revolute("J", m.ground.at(0, 0), a)

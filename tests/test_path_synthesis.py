@@ -1,4 +1,6 @@
-"""A four-bar whose coupler point passes eighteen points at equal steps of its crank, as Kunjur and Krishnamurty (1997) asked."""
+"""A four-bar whose coupler point passes eighteen points at equal steps of its crank, as Kunjur and
+Krishnamurty (1997) asked.
+"""
 
 import cmath
 import math
@@ -17,26 +19,53 @@ Y = (1.1, 1.1, 1.1, 1.0, 0.9, 0.75, 0.6, 0.5, 0.4, 0.3, 0.25, 0.2, 0.3, 0.4, 0.5
 """The points, 20 degrees of the crank apart."""
 
 PLACES = ("along", "aside", "x", "y", "x_rocker", "y_rocker", "start")
-BOUNDS = dict.fromkeys(("crank", "coupler", "rocker"), (0.05, 6.0)) | dict.fromkeys(PLACES, (-6.0, 6.0))
+BOUNDS = dict.fromkeys(("crank", "coupler", "rocker"), (0.05, 6.0)) | dict.fromkeys(
+    PLACES, (-6.0, 6.0)
+)
 
 
 def published(r1, r2, r3, r4, rcx, rcy, x0, y0, theta0, theta2):
-    """A design in the words of the literature: ground, crank, coupler, rocker, the coupler point, the crank's joint, two angles."""
+    """A design in the words of the literature: ground, crank, coupler, rocker, the coupler point,
+    the crank's joint, two angles.
+    """
     far = complex(x0, y0) + cmath.rect(r1, theta0)
     lengths = {"crank": r2, "coupler": r3, "rocker": r4, "along": rcx, "aside": rcy}
-    return lengths | {"x": x0, "y": y0, "x_rocker": far.real, "y_rocker": far.imag, "start": theta0 + theta2}
+    return lengths | {
+        "x": x0,
+        "y": y0,
+        "x_rocker": far.real,
+        "y_rocker": far.imag,
+        "start": theta0 + theta2,
+    }
 
 
-CABRERA = published(3.057878, 0.237803, 4.828954, 2.056456, 0.767038, 1.850828, 1.776808, -0.641991, 1.002168, 0.226186)
-"""Cabrera, Simon and Prado, Optimal synthesis of mechanisms with genetic algorithms, Mechanism and Machine Theory 37 (2002)."""
+CABRERA = published(
+    3.057878,
+    0.237803,
+    4.828954,
+    2.056456,
+    0.767038,
+    1.850828,
+    1.776808,
+    -0.641991,
+    1.002168,
+    0.226186,
+)
+"""Cabrera, Simon and Prado, Optimal synthesis of mechanisms with genetic algorithms, Mechanism and
+Machine Theory 37 (2002).
+"""
 
 
 def places(design, turned=0.0, side=1):
-    """Both joints of the coupler as complex numbers, the crank ``turned`` from its start: plain geometry, one of its two sides."""
+    """Both joints of the coupler as complex numbers, the crank ``turned`` from its start: plain
+    geometry, one of its two sides.
+    """
     near, far = complex(design["x"], design["y"]), complex(design["x_rocker"], design["y_rocker"])
     pin = near + cmath.rect(design["crank"], design["start"] + turned)
     away = far - pin
-    cosine = (design["coupler"] ** 2 + abs(away) ** 2 - design["rocker"] ** 2) / (2 * design["coupler"] * abs(away))
+    cosine = (design["coupler"] ** 2 + abs(away) ** 2 - design["rocker"] ** 2) / (
+        2 * design["coupler"] * abs(away)
+    )
     return pin, pin + cmath.rect(design["coupler"], cmath.phase(away) + side * math.acos(cosine))
 
 
@@ -53,7 +82,10 @@ def errors(design):
 def linkage(design, side=1):
     m = Mechanism("path")
     p = {name: m.parameter(name, value) for name, value in design.items()}
-    crank, rocker = m.link("crank", length=p["crank"], mass=1.0), m.link("rocker", length=p["rocker"], mass=1.0)
+    crank, rocker = (
+        m.link("crank", length=p["crank"], mass=1.0),
+        m.link("rocker", length=p["rocker"], mass=1.0),
+    )
     coupler = m.link("coupler", length=p["coupler"], mass=1.0)
     m.revolute("O", m.ground.at(p["x"], p["y"]), crank)
     m.revolute("A", crank.tip, coupler)
@@ -61,16 +93,26 @@ def linkage(design, side=1):
     m.revolute("B", coupler.tip, rocker.tip)
     shares = np.linspace(0.0, 1.0, 19)
     x, y, *_ = m.place(coupler.at(p["along"], p["aside"]))
-    off = [own - curve(shares, [*row, row[0]], periodic=True)(m.time) for own, row in ((x, X), (y, Y))]
+    off = [
+        own - curve(shares, [*row, row[0]], periodic=True)(m.time) for own, row in ((x, X), (y, Y))
+    ]
     m.output("off", ca.sqrt(off[0] ** 2 + off[1] ** 2), unit="m")
     pin, joint = places(design, side=side)
     far = complex(design["x_rocker"], design["y_rocker"])
     posture = {"coupler": cmath.phase(joint - pin), "rocker": cmath.phase(joint - far)}
-    return Scene(m, {"O": polynomial(p["start"], 2 * math.pi)}, t=(0, 1, 19), posture=posture, wanted=["output:off"])
+    return Scene(
+        m,
+        {"O": polynomial(p["start"], 2 * math.pi)},
+        t=(0, 1, 19),
+        posture=posture,
+        wanted=["output:off"],
+    )
 
 
 def squares(rms):
-    """Their sum over the eighteen points: over a whole turn trapezia count the first and the last as one."""
+    """Their sum over the eighteen points: over a whole turn trapezia count the first and the last
+    as one.
+    """
     return 18 * rms**2
 
 
@@ -87,7 +129,8 @@ def cognate(design):
     third, rest = near + z * (far - near), 1 - z
     pin, joint = places(design)
     crank = rest * (pin - near)
-    # Its coupler goes from the tip of its crank to that of its rocker, which turns as the coupler does that it stands for.
+    # Its coupler goes from the tip of its crank to that of its rocker, which turns as the coupler
+    # does that it stands for.
     other = far - rest * (joint - pin)
     across = other - third - crank
     point = (pin + z * (joint - pin) - third - crank) / across * abs(across)
@@ -106,7 +149,9 @@ def cognate(design):
 
 
 def test_the_best_four_bar_through_eighteen_points():
-    """From those dimensions to an optimum that has a quarter of their error; nothing beside it is better, by plain geometry."""
+    """From those dimensions to an optimum that has a quarter of their error; nothing beside it is
+    better, by plain geometry.
+    """
     found = optimise(linkage(CABRERA), minimise="rms:output:off", over=BOUNDS, starts=[CABRERA])
     assert found.converged
     assert found.curvature > 0.0
@@ -121,7 +166,7 @@ def test_the_best_four_bar_through_eighteen_points():
     slopes = prepare(linkage(found.values)).gradient().rms["output:off"]
     assert max(map(abs, slopes.values())) <= 1e-6
     again = cognate(found.values)
-    assert evaluate(linkage(again, side=-1), certificate=False).statistics("output:off").rms == pytest.approx(
-        found.objective, rel=1e-8
-    )
+    assert evaluate(linkage(again, side=-1), certificate=False).statistics(
+        "output:off"
+    ).rms == pytest.approx(found.objective, rel=1e-8)
     assert again["crank"] == pytest.approx(0.3128, abs=1e-4)

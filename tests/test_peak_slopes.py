@@ -1,4 +1,6 @@
-"""How peaks change with parameters: beside closed forms, and beside differences of the peaks themselves."""
+"""How peaks change with parameters: beside closed forms, and beside differences of the peaks
+themselves.
+"""
 
 import math
 
@@ -17,7 +19,9 @@ from lagrange_casadi.sensitivity.peaks import PeakKind
 
 
 def gaps(f, parameters=None, **at):
-    """How far each slope is from Richardson's differences of the peaks, over the largest of its quantity; and the gradient."""
+    """How far each slope is from Richardson's differences of the peaks, over the largest of its
+    quantity; and the gradient.
+    """
     gradient = f.gradient(**at)
     values = dict(zip(f.parameters, f._answers.p[0].tolist(), strict=True))
     sizes = np.nanmax(np.abs(gradient.slopes * f._answers.p[0]), axis=1) + np.abs(gradient.value)
@@ -35,12 +39,17 @@ def gaps(f, parameters=None, **at):
         four = {k: f.peaks(**{**at, name: x + k * step}).value.copy() for k in (-2, -1, 1, 2)}
         slopes = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
         own = gradient.slopes[:, f.parameters.index(name)]
-        found |= {(q, name): gap for q, gap in zip(f.quantities, np.abs(own - slopes) * abs(x) / sizes, strict=True)}
+        found |= {
+            (q, name): gap
+            for q, gap in zip(f.quantities, np.abs(own - slopes) * abs(x) / sizes, strict=True)
+        }
     return found, gradient
 
 
 @pytest.mark.sampled(7)
-@pytest.mark.parametrize("name", ["slider_crank", "quick_return", "beam_pump", "excavator", "cardan_shaft", "arm6"])
+@pytest.mark.parametrize(
+    "name", ["slider_crank", "quick_return", "beam_pump", "excavator", "cardan_shaft", "arm6"]
+)
 def test_slopes_of_peaks_are_those_of_their_differences(name):
     """Smooth ones, at ends, and at kinks and jumps, whose times change with the parameters."""
     scene = load_case(CASES / name).scene
@@ -59,7 +68,10 @@ def test_loops_that_are_iterated():
 
 
 def rotor(**motion):
-    """A link that turns; no gravity. Its axial force at the base is the density's first moment times the square of the rate."""
+    """A link that turns; no gravity.
+
+    Its axial force at the base is the density's first moment times the square of the rate.
+    """
     m = Mechanism("rotor")
     m.set_gravity(0, 0)
     speed, l = m.parameter("speed", 20.0, "rad/s"), m.parameter("l", 0.4, "m")
@@ -72,11 +84,20 @@ def rotor(**motion):
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
     m, speed, _ = rotor()
-    f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 11)), wanted=["section"], backend=backend)
+    f = prepare(
+        Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 11)),
+        wanted=["section"],
+        backend=backend,
+    )
     gradient = f.gradient(speed=30.0, l=0.5)
     w, l, heavy, taper = 30.0, 0.5, 3.0, -1.0
     moment = heavy / 2 + taper / 3
-    exact = {"speed": 2 * w * l**2 * moment, "l": 2 * w**2 * l * moment, "heavy": w**2 * l**2 / 2, "taper": w**2 * l**2 / 3}
+    exact = {
+        "speed": 2 * w * l**2 * moment,
+        "l": 2 * w**2 * l * moment,
+        "heavy": w**2 * l**2 / 2,
+        "taper": w**2 * l**2 / 3,
+    }
     for name, slope in gradient["section:arm:axial"].items():
         assert abs(slope - exact[name]) <= 1e-14 * exact["l"]
     with pytest.raises(UnknownNameError, match="quantity with a peak"):
@@ -84,9 +105,15 @@ def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
 
 
 def test_a_smooth_peak_has_the_slopes_of_its_exact_place():
-    """A search by values knows the place to 1e-9 s; an oscillation's effort changes there with its frequency at 30 N m/Hz/s."""
+    """A search by values knows the place to 1e-9 s; an oscillation's effort changes there with its
+    frequency at 30 N m/Hz/s.
+    """
     m = Mechanism("arm")
-    l, swing, beat = m.parameter("l", 0.7, "m"), m.parameter("swing", 0.6, "rad"), m.parameter("beat", 1.3, "Hz")
+    l, swing, beat = (
+        m.parameter("l", 0.7, "m"),
+        m.parameter("swing", 0.6, "rad"),
+        m.parameter("beat", 1.3, "Hz"),
+    )
     arm = m.link("arm", length=l, mass=2.0)
     m.revolute("O", m.ground, arm)
     f = prepare(Scene(m, {"O": harmonic(0.2, swing, beat)}, t=(0, 0.7, 40)), wanted=["effort"])
@@ -94,19 +121,29 @@ def test_a_smooth_peak_has_the_slopes_of_its_exact_place():
 
     def effort(t, l, swing, beat):
         w = 2 * mpmath.mp.pi * beat
-        angle, acceleration = mpmath.mpf(0.2) + swing * mpmath.sin(w * t), -swing * w * w * mpmath.sin(w * t)
+        angle, acceleration = (
+            mpmath.mpf(0.2) + swing * mpmath.sin(w * t),
+            -swing * w * w * mpmath.sin(w * t),
+        )
         return 2 * l**2 / 3 * acceleration + mpmath.mpf(9.81) * l * mpmath.cos(angle)
 
     with mpmath.workdps(40):
         at = [mpmath.mpf(0.7), mpmath.mpf(0.6), mpmath.mpf(1.3)]
-        t = mpmath.findroot(lambda t: mpmath.diff(lambda x: effort(x, *at), t), mpmath.mpf(float(gradient.t[0])))
-        exact = [float(mpmath.diff(lambda *x: effort(t, *x), at, tuple(int(i == k) for i in range(3)))) for k in range(3)]
+        t = mpmath.findroot(
+            lambda t: mpmath.diff(lambda x: effort(x, *at), t), mpmath.mpf(float(gradient.t[0]))
+        )
+        exact = [
+            float(mpmath.diff(lambda *x: effort(t, *x), at, tuple(int(i == k) for i in range(3))))
+            for k in range(3)
+        ]
     np.testing.assert_allclose(gradient.slopes[0], exact, rtol=1e-11)
 
 
 @pytest.mark.parametrize("asked", ["times", "over"])
 def test_a_peak_at_an_end_goes_with_the_end(asked):
-    """The link speeds up as 10 t^2: at the last instant the effort's place and the rate are largest, and that instant moves."""
+    """The link speeds up as 10 t^2: at the last instant the effort's place and the rate are
+    largest, and that instant moves.
+    """
     m, speed, _ = rotor()
     law = polynomial(0.0, 0.0, 10.0)
     at = {"t": (0.0, speed / 20, 21)} if asked == "times" else {"over": ("O", 0.1, speed / 2, 21)}
@@ -118,8 +155,12 @@ def test_a_peak_at_an_end_goes_with_the_end(asked):
     assert gradient.kinds[k] == PeakKind.END
     moment = 0.4**2 * (3.0 / 2 - 1.0 / 3)
     assert gradient.value[k] == pytest.approx(moment * 400.0, rel=1e-12)
-    assert gradient["section:arm:axial"]["speed"] == pytest.approx(moment * 800.0 * end * by_speed, rel=1e-12)
-    assert gradient["section:arm:axial"]["l"] == pytest.approx(2 * gradient.value[k] / 0.4, rel=1e-12)
+    assert gradient["section:arm:axial"]["speed"] == pytest.approx(
+        moment * 800.0 * end * by_speed, rel=1e-12
+    )
+    assert gradient["section:arm:axial"]["l"] == pytest.approx(
+        2 * gradient.value[k] / 0.4, rel=1e-12
+    )
 
 
 def test_motions_by_samples():
@@ -136,13 +177,19 @@ def test_motions_by_samples():
     f = prepare(Scene(m, laws, t=(0.0, 1.0, 101)), wanted=["effort", "section"])
     found, gradient = gaps(f)
     assert abs(gradient["effort:O"]["reach"]) > 1.0
-    told = {key: gap for key, gap in found.items() if gradient.kinds[f.quantities.index(key[0])] != PeakKind.UNTOLD}
+    told = {
+        key: gap
+        for key, gap in found.items()
+        if gradient.kinds[f.quantities.index(key[0])] != PeakKind.UNTOLD
+    }
     assert len(told) >= 14
     assert max(told.values()) <= 1e-6
 
 
 def test_a_jump_of_the_users_own():
-    """A force that sets in at an angle: the peak of the effort is where it does, and the time of that goes with two parameters."""
+    """A force that sets in at an angle: the peak of the effort is where it does, and the time of
+    that goes with two parameters.
+    """
     m, speed, _ = rotor()
     onset = m.parameter("onset", 1.0, "rad")
     arm = m.bodies["arm"]
@@ -171,7 +218,9 @@ def test_a_peak_without_bound_has_no_slope():
 
 @pytest.mark.parametrize("asked", ["times", "over"])
 def test_means_go_with_instants_that_move(asked):
-    """A torque of size * t over the time T: its mean is size T/2, its rms size T/sqrt(3) but for trapezia."""
+    """A torque of size * t over the time T: its mean is size T/2, its rms size T/sqrt(3) but for
+    trapezia.
+    """
     m, speed, _ = rotor()
     size = m.parameter("size", 7.0, "N m/s")
     m.torque("brake", m.bodies["arm"], -size * m.time)
@@ -189,7 +238,9 @@ def test_means_go_with_instants_that_move(asked):
 
 
 def shaper():
-    """A ram that cuts on its way back: the force sets in where its speed passes zero, which rounding places on either side."""
+    """A ram that cuts on its way back: the force sets in where its speed passes zero, which
+    rounding places on either side.
+    """
     m = Mechanism("shaper")
     rpm, cut = m.parameter("rpm", 22.03, "1/min"), m.parameter("cut", 111.9, "N")
     crank, rocker = m.link("crank", length=0.1191, mass=2.0), m.link("rocker", length=0.6, mass=5.0)
@@ -207,12 +258,15 @@ def shaper():
 
 @pytest.mark.parametrize("backend", ["auto", "vm", pytest.param("c", marks=pytest.mark.long)])
 def test_a_peak_at_a_jump_has_the_slopes_of_its_own_side(backend):
-    """Where the speed passes zero the tool is there or not, by rounding; the peak is of the side on which it is."""
+    """Where the speed passes zero the tool is there or not, by rounding; the peak is of the side on
+    which it is.
+    """
     f = prepare(shaper(), wanted=["reaction:foot", "effort"], backend=backend)
     for rpm in (22.03, 24.0, 26.5, 31.0):
         gradient = f.gradient(rpm=rpm)
         jumps = np.flatnonzero(gradient.kinds == PeakKind.SWITCH)
         assert "reaction:foot:fx" in [f.quantities[k] for k in jumps]
-        # Forces are linear in the cut, a resultant nearly so, and the time of the jump stands still.
+        # Forces are linear in the cut, a resultant nearly so, and the time of the jump stands
+        # still.
         above, below = (f.peaks(rpm=rpm, cut=cut).value.copy() for cut in (112.9, 110.9))
         np.testing.assert_allclose(gradient.slopes[jumps, 1], (above - below)[jumps] / 2, rtol=1e-5)

@@ -1,4 +1,6 @@
-"""Peaks between instants: against closed forms, against far finer instants, and where a quantity has a kink, a jump or a pole."""
+"""Peaks between instants: against closed forms, against far finer instants, and where a quantity
+has a kink, a jump or a pole.
+"""
 
 import math
 
@@ -43,7 +45,9 @@ def test_rates_are_those_of_differences(name):
         allowed = 1e-9 * (np.abs(rate) + np.abs(out) / span) + 1e-14 * np.abs(out).max() / e
         assert not [graph.names[k] for k in np.flatnonzero(~(np.abs(difference - rate) <= allowed))]
         moving = ~np.array([name.startswith("_") for name in graph.names])
-        assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > (0.3 if name == "screw_lift" else 0.4)
+        assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > (
+            0.3 if name == "screw_lift" else 0.4
+        )
 
 
 @pytest.mark.quick
@@ -69,7 +73,9 @@ def test_rates_are_those_of_a_closed_form():
 
 @pytest.mark.quick
 def test_peaks_of_a_turning_pendulum_are_exact():
-    """At constant speed the effort is m g l/2 cos theta: its peak at half a turn lies between the instants."""
+    """At constant speed the effort is m g l/2 cos theta: its peak at half a turn lies between the
+    instants.
+    """
     speed = 3.0
     scene = pendulum(motion.polynomial(0.1, speed), t=(0, 2.0, 14))
     solution = evaluate(scene)
@@ -97,7 +103,9 @@ def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise():
 
 
 def test_a_peak_at_the_knot_of_a_spline():
-    """Without gravity the effort is I theta'', which a cubic spline makes a polygon: its peak is the knot's, a kink."""
+    """Without gravity the effort is I theta'', which a cubic spline makes a polygon: its peak is
+    the knot's, a kink.
+    """
     times = np.linspace(0, 2, 9)
     law = motion.samples(times, np.sin(2.3 * times))
     scene = pendulum(law, gravity=0.0, t=(0, 2, 24))
@@ -107,14 +115,20 @@ def test_a_peak_at_the_knot_of_a_spline():
     solution = evaluate(inner)
     peaks = refined(inner, solution)
     k = 1 + int(np.argmax(np.abs(bends[1:-1])))
-    assert abs(solution.peak("effort:pin").value) < MASS * LENGTH**2 / 3 * abs(bends[k]) * (1 - 1e-3)
+    assert abs(solution.peak("effort:pin").value) < MASS * LENGTH**2 / 3 * abs(bends[k]) * (
+        1 - 1e-3
+    )
     assert peaks["effort:pin"].value == pytest.approx(MASS * LENGTH**2 / 3 * bends[k], rel=1e-12)
     assert peaks["effort:pin"].t == pytest.approx(times[k], abs=1e-12 * solution.t[-1])
 
 
 def test_a_jump_is_approached_from_its_higher_side():
-    """A load that grows with the angle and is gone from a radian on; its supremum is there, and is never reached."""
-    scene = pendulum(motion.polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12))
+    """A load that grows with the angle and is gone from a radian on; its supremum is there, and is
+    never reached.
+    """
+    scene = pendulum(
+        motion.polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12)
+    )
     solution = evaluate(scene)
     (peak,) = refine(scene, solution, ["load:push:fx"])
     assert solution.peak("load:push:fx").value < 6.5
@@ -140,7 +154,11 @@ def test_angles_that_a_loop_sets_keep_their_turns():
     """A rocker about the direction in which arctangents jump by a turn."""
     scene = four_bar(frame=(-0.05, 0.3), rocker=1.5 + math.pi / 2)
     coarse, fine = (vm(scene, t=(0.3, 1.6, n), wanted=["motion"]) for n in (30, 300_001))
-    name = next(str(angle) for angle in derive(scene, ["motion"]).loop_angles if str(angle) == "pose:c:angle")
+    name = next(
+        str(angle)
+        for angle in derive(scene, ["motion"]).loop_angles
+        if str(angle) == "pose:c:angle"
+    )
     assert coarse.array(name).min() < -math.pi < coarse.array(name).max() < 0
     (peak,) = refine(scene, coarse, [name])
     assert peak.value == pytest.approx(fine.peak(name).value, rel=1e-9)
@@ -150,7 +168,9 @@ def test_angles_that_a_loop_sets_keep_their_turns():
 @pytest.mark.sampled(29)
 @pytest.mark.parametrize("name", [*PLANAR, "rssr", "spatial_slider_crank"])
 def test_peaks_are_those_of_far_finer_instants(name):
-    """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left over."""
+    """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left
+    over.
+    """
     scene = load_case(CASES / name).scene
     solution = vm(scene)
     names = forces(solution)
@@ -161,7 +181,9 @@ def test_peaks_are_those_of_far_finer_instants(name):
     improved, least = [], {}
     for name in names:
         unit = solution.unit(name)
-        least[unit] = max(least.get(unit, 1e-12), np.finfo(float).eps * abs(solution.peak(name).value))
+        least[unit] = max(
+            least.get(unit, 1e-12), np.finfo(float).eps * abs(solution.peak(name).value)
+        )
     for k, name in enumerate(names):
         peak, sampled, rounding = peaks[name], solution.peak(name), least[solution.unit(name)]
         assert abs(peak.value) >= abs(sampled.value)
@@ -204,11 +226,21 @@ def test_one_instant_has_its_own_peak():
 
 def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):
     """Also from a file, and at some of the instants."""
-    solution = evaluate(slider_crank.scene, parameters={"l": 0.25}, t=(0, 0.08, 101), wanted=["section:rod", "effort"])
+    solution = evaluate(
+        slider_crank.scene,
+        parameters={"l": 0.25},
+        t=(0, 0.08, 101),
+        wanted=["section:rod", "effort"],
+    )
     save(solution, tmp_path / "x.h5")
     peaks = refine(slider_crank.scene, load(tmp_path / "x.h5"))
     assert peaks == refine(slider_crank.scene, solution)
-    fine = evaluate(slider_crank.scene, parameters={"l": 0.25}, t=(0, 0.08, 100_001), wanted=["section:rod", "effort"])
+    fine = evaluate(
+        slider_crank.scene,
+        parameters={"l": 0.25},
+        t=(0, 0.08, 100_001),
+        wanted=["section:rod", "effort"],
+    )
     for peak in peaks:
         assert peak.value == pytest.approx(fine.peak(peak.name).value, rel=1e-8)
     half = solution.during(slice(0, 50))
@@ -218,7 +250,9 @@ def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):
 def test_iterated_loops_are_followed_from_instant_to_instant():
     scene = load_case(CASES / "rrr3").scene
     coarse, fine = vm(scene, t=(0, 1, 21)), vm(scene, t=(0, 1, 2001))
-    for one, other in zip(refine(scene, coarse, forces(coarse)), refine(scene, fine, forces(fine)), strict=True):
+    for one, other in zip(
+        refine(scene, coarse, forces(coarse)), refine(scene, fine, forces(fine)), strict=True
+    ):
         assert one.value == pytest.approx(other.value, rel=1e-12), one.name
 
 
@@ -248,20 +282,31 @@ def test_the_shortfall_of_instants_falls_with_the_square_of_the_step(slider_cran
 def test_misuse_is_named(slider_crank):
     scene = slider_crank.scene
     solution = vm(scene, t=(0, 0.08, 5), wanted=["effort"])
-    with pytest.raises(UnknownNameError, match=r"unknown quantity 'effort:none' \(did you mean 'effort:O'\?\); valid: effort:O"):
+    with pytest.raises(
+        UnknownNameError,
+        match=r"unknown quantity 'effort:none' \(did you mean 'effort:O'\?\); valid: effort:O",
+    ):
         refine(scene, solution, ["effort:none"])
     with pytest.raises(DeclarationError, match="the sections of link 'rod' were not wanted"):
         refine(scene, solution, ["section:rod:bending"])
     other = Scene(scene.mechanism, {"O": motion.polynomial(0, 1.0)}, posture=scene.posture)
-    with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):
+    with pytest.raises(
+        DeclarationError,
+        match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'",
+    ):
         refine(other, solution)
     more = Mechanism("slider_crank")
     more.revolute("O", more.ground, more.link("a", length=more.parameter("z", 1.0, "m"), mass=1.0))
-    with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):
+    with pytest.raises(
+        DeclarationError,
+        match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'",
+    ):
         refine(Scene(more, {"O": motion.polynomial(0, 1.0)}), solution)
     with pytest.raises(DeclarationError, match="at least one number of instants"):
         shortfall(scene, [])
-    with pytest.raises(DeclarationError, match="no quantity is there that is determined and not zero"):
+    with pytest.raises(
+        DeclarationError, match="no quantity is there that is determined and not zero"
+    ):
         shortfall(scene, [9], ["reaction:guide:fx"])
     with pytest.raises(AssemblyError):
         shortfall(scene, [9], parameters={"r": 0.3})

@@ -1,4 +1,6 @@
-"""Peaks of mechanisms whose instants say little of them, against 100 001 instants: `refine`, and designs with and without C."""
+"""Peaks of mechanisms whose instants say little of them, against 100 001 instants: `refine`, and
+designs with and without C.
+"""
 
 import math
 
@@ -16,12 +18,20 @@ from lagrange_casadi.studies.peaks import forces
 def crank_rocker(lengths, ground, start, count):
     """One turn of a crank, from an angle on."""
     m = Mechanism("crank_rocker")
-    a, b, c = (m.link(name, length=l, mass=mass) for name, l, mass in zip("abc", lengths, (0.5, 0.7, 0.6), strict=True))
+    a, b, c = (
+        m.link(name, length=l, mass=mass)
+        for name, l, mass in zip("abc", lengths, (0.5, 0.7, 0.6), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("P", m.ground.at(ground, 0), c)
     m.revolute("Q", a.tip, b)
     m.revolute("R", b.tip, c.tip)
-    return Scene(m, {"O": polynomial(start, 8.0)}, posture={"a": start, "b": 0.3, "c": 2.5}, t=(0, math.tau / 8, count))
+    return Scene(
+        m,
+        {"O": polynomial(start, 8.0)},
+        posture={"a": start, "b": 0.3, "c": 2.5},
+        t=(0, math.tau / 8, count),
+    )
 
 
 def slider_crank(ratio, count):
@@ -36,12 +46,21 @@ def slider_crank(ratio, count):
     m.revolute("A", crank.tip, rod)
     m.revolute("B", rod.tip, slide)
     m.prismatic("guide", m.ground, slide, axis=(1, 0))
-    return Scene(m, {"O": polynomial(0.3, 10.0)}, posture={"crank": 0.3, "rod": -0.1}, t=(0, math.tau / 10, count))
+    return Scene(
+        m,
+        {"O": polynomial(0.3, 10.0)},
+        posture={"crank": 0.3, "rod": -0.1},
+        t=(0, math.tau / 10, count),
+    )
 
 
 def folding(shortage, start):
-    """A crank-rocker that all but folds: its ground is shorter by so much than that at which it would."""
-    return lambda count: crank_rocker((0.1, 0.3, 0.25), (0.3 + 0.25 - 0.1) * (1 - shortage), start, count)
+    """A crank-rocker that all but folds: its ground is shorter by so much than that at which it
+    would.
+    """
+    return lambda count: crank_rocker(
+        (0.1, 0.3, 0.25), (0.3 + 0.25 - 0.1) * (1 - shortage), start, count
+    )
 
 
 SCENES = {
@@ -75,7 +94,11 @@ def _assert_none_is_short(scene, dense):
         peaks = dict(zip(designs.quantities, np.abs(outcome.value[0]), strict=True))
         # Of conditions near a dead centre: refine's iteration and C sum in other orders.
         assert not [name for name in names if not peaks[name] >= least[name]], backend
-        assert not [name for name in names if not abs(peaks[name] - found[name]) <= 1e-9 * scale[dense.unit(name)]], backend
+        assert not [
+            name
+            for name in names
+            if not abs(peaks[name] - found[name]) <= 1e-9 * scale[dense.unit(name)]
+        ], backend
 
 
 @pytest.mark.sampled(97)
@@ -89,7 +112,12 @@ def test_no_peak_is_short(name):
 def test_random_crank_rockers(seed):
     random = np.random.default_rng(seed)
     others = np.sort(random.uniform(0.3, 0.5, 3))
-    short = min(random.uniform(0.1, 0.3), (others[0] + others[1] - others[2]) * (1 - 10 ** random.uniform(-4, -1)))
+    short = min(
+        random.uniform(0.1, 0.3),
+        (others[0] + others[1] - others[2]) * (1 - 10 ** random.uniform(-4, -1)),
+    )
     random.shuffle(others)
     start, count = random.uniform(0, math.tau), int(random.integers(30, 120))
-    assert_none_is_short(lambda count: crank_rocker((short, *others[:2]), others[2], start, count), count)
+    assert_none_is_short(
+        lambda count: crank_rocker((short, *others[:2]), others[2], start, count), count
+    )

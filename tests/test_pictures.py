@@ -34,5 +34,9 @@ def test_neither_clocks_nor_programs_nor_chance(ending):
 
 def test_every_picture_is_saved_there():
     package = Path(lagrange_casadi.__file__).parent
-    found = [path.relative_to(package).as_posix() for path in package.rglob("*.py") if ".savefig(" in path.read_text()]
+    found = [
+        path.relative_to(package).as_posix()
+        for path in package.rglob("*.py")
+        if ".savefig(" in path.read_text()
+    ]
     assert found == ["shapes/pictures.py"]

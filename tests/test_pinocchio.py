@@ -1,6 +1,8 @@
-"""Open chains against Pinocchio, where it is installed: efforts, and the six section forces of links that it has in two pieces.
+"""Open chains against Pinocchio, where it is installed: efforts, and the six section forces of
+links that it has in two pieces.
 
-Pinocchio's recursion shares nothing with the package. The numbers at the end are its own (4.1.0), and need it no more.
+Pinocchio's recursion shares nothing with the package. The numbers at the end are its own (4.1.0),
+and need it no more.
 """
 
 import numpy as np
@@ -18,31 +20,63 @@ def turned_at_random(random):
 
 
 def drawn(seed):
-    """A chain of slender and rigid links on joints that turn or slide along any axis; and as pieces for Pinocchio.
+    """A chain of slender and rigid links on joints that turn or slide along any axis; and as pieces
+    for Pinocchio.
 
-    What slides on a slender link loads it where it is, which Pinocchio's pieces do not: rigid links alone carry slides.
+    What slides on a slender link loads it where it is, which Pinocchio's pieces do not: rigid links
+    alone carry slides.
     """
     random = np.random.default_rng(seed)
     m, near, laws, pieces, reach = SpatialMechanism("chain"), None, {}, [], 0.0
     matter = {}
     m.set_gravity(*(gravity := random.normal(size=3) * 6.0))
     for k in range(int(random.integers(2, 8))):
-        length, mass, slender = random.uniform(0.1, 0.8), random.uniform(0.2, 4.0), random.random() < 0.7
+        length, mass, slender = (
+            random.uniform(0.1, 0.8),
+            random.uniform(0.2, 4.0),
+            random.random() < 0.7,
+        )
         slides = random.random() < 0.5 and (not pieces or bool(matter))
         axis, turned = random.normal(size=3), turned_at_random(random)
         axis, matter = axis / np.linalg.norm(axis), {}
         if not slender:
             spread = turned_at_random(random) @ np.diag(random.uniform(0.01, 0.1, 3)) @ np.eye(3)
             spread = spread @ spread.T
-            matter = {"centre": random.normal(size=3) * 0.1, "inertia": np.trace(spread) * np.eye(3) - spread}
-        told = {name: tuple(map(tuple, value)) if value.ndim == 2 else tuple(value) for name, value in matter.items()}
+            matter = {
+                "centre": random.normal(size=3) * 0.1,
+                "inertia": np.trace(spread) * np.eye(3) - spread,
+            }
+        told = {
+            name: tuple(map(tuple, value)) if value.ndim == 2 else tuple(value)
+            for name, value in matter.items()
+        }
         link = m.link(f"link{k}", length=length, mass=mass, **told)
         joint = m.prismatic if slides else m.revolute
         directions = (tuple(turned[:, 0]), tuple(turned[:, 1]))
-        joint(f"joint{k}", m.ground if near is None else near.tip, link, axis=tuple(axis), turned=directions)
-        laws[f"joint{k}"] = motion.harmonic(random.normal(), random.normal() * 0.5, random.uniform(0.2, 1.0), random.normal())
+        joint(
+            f"joint{k}",
+            m.ground if near is None else near.tip,
+            link,
+            axis=tuple(axis),
+            turned=directions,
+        )
+        laws[f"joint{k}"] = motion.harmonic(
+            random.normal(), random.normal() * 0.5, random.uniform(0.2, 1.0), random.normal()
+        )
         cuts = () if matter else RATIOS
-        pieces.append((axis, turned, (reach, 0.0, 0.0), mass, length, slides, matter.get("centre"), matter.get("inertia"), cuts))
+        pieces.append(
+            (
+                axis,
+                turned,
+                (reach, 0.0, 0.0),
+                mass,
+                length,
+                slides,
+                matter.get("centre"),
+                matter.get("inertia"),
+                cuts,
+            )
+        )
         near, reach = link, length
     return Scene(m, laws, t=(0.0, 1.0, 7)), pieces, gravity
 
@@ -53,8 +87,12 @@ def arm6():
     lengths, masses = (0.16, 0.42, 0.39, 0.12, 0.1, 0.08), (3.7, 8.4, 2.3, 1.2, 1.2, 0.2)
     x, z, upright = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
     reach, pieces = (0.0, *lengths), []
-    for k, (axis, turned) in enumerate(zip((z, z, z, x, z, x), (upright, *[np.eye(3)] * 5), strict=True)):
-        pieces.append((axis, turned, (reach[k], 0.0, 0.0), masses[k], lengths[k], False, None, None, RATIOS))
+    for k, (axis, turned) in enumerate(
+        zip((z, z, z, x, z, x), (upright, *[np.eye(3)] * 5), strict=True)
+    ):
+        pieces.append(
+            (axis, turned, (reach[k], 0.0, 0.0), masses[k], lengths[k], False, None, None, RATIOS)
+        )
     tool = (np.array([0.05, 0.01, 0.0]), np.diag([0.01, 0.02, 0.02]))
     pieces.append((None, np.eye(3), (lengths[-1], 0.0, 0.0), 5.0, 0.1, False, *tool, ()))
     return scene, pieces, (0.0, 0.0, -9.81)
@@ -64,18 +102,29 @@ def assert_same(scene, pieces, gravity, first=0):
     """Efforts and sections, to 1e-12 of the largest of all; links are numbered from ``first``."""
     solution, names = evaluate(scene), list(scene.motion)
     chain = peer().Chain([peer().Piece(*piece) for piece in pieces], gravity)
-    q, v, a = (np.array([getattr(solution.motion(name), kind) for name in names]) for kind in ("value", "rate", "acceleration"))
+    q, v, a = (
+        np.array([getattr(solution.motion(name), kind) for name in names])
+        for kind in ("value", "rate", "acceleration")
+    )
     found = chain.work(q, v, a)()
     size = np.abs(found).max()
-    assert np.abs(np.array([solution.effort(name) for name in names]) - found[chain.efforts]).max() <= 1e-12 * size
+    assert (
+        np.abs(np.array([solution.effort(name) for name in names]) - found[chain.efforts]).max()
+        <= 1e-12 * size
+    )
     for (k, ratio), forces in chain.sections(found).items():
         law = solution.section(f"link{k + first}").law
-        own = np.array([law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in SPACE.forces[:6]])
+        own = np.array(
+            [law.at(force, np.full((q.shape[1], 1), ratio))[:, 0] for force in SPACE.forces[:6]]
+        )
         assert np.abs(own - forces).max() <= 1e-12 * size, (k, ratio)
 
 
 def peer():
-    return pytest.importorskip("benchmarks.peers.pinocchio_arm", reason="Pinocchio is not installed: pip install '.[bench]'")
+    return pytest.importorskip(
+        "benchmarks.peers.pinocchio_arm",
+        reason="Pinocchio is not installed: pip install '.[bench]'",
+    )
 
 
 @pytest.mark.sampled(13)
@@ -89,7 +138,9 @@ def test_an_arm():
 
 
 def test_an_arm_by_stored_numbers():
-    """What Pinocchio 4.1.0 gave for the case at t = 0.7 s, by :func:`stored`: efforts, then link 2 at half its length."""
+    """What Pinocchio 4.1.0 gave for the case at t = 0.7 s, by :func:`stored`: efforts, then link 2
+    at half its length.
+    """
     scene, *_ = arm6()
     solution = evaluate(scene, t=(0.7, 0.7, 1))
     efforts = [solution.effort(name)[0] for name in scene.motion]
@@ -112,7 +163,11 @@ def stored():
     rows += ((0.0, 1.2, 0.5, 0.4), (0.7, 0.5, 1.0, 0.0), (0.0, 2.0, 0.5, 1.0))
     mean, size, often, phase = np.array(rows).T
     angle = tau * often * 0.7 + phase
-    q, v, a = mean + size * np.sin(angle), size * tau * often * np.cos(angle), -size * (tau * often) ** 2 * np.sin(angle)
+    q, v, a = (
+        mean + size * np.sin(angle),
+        size * tau * often * np.cos(angle),
+        -size * (tau * often) ** 2 * np.sin(angle),
+    )
     found = chain.work(q[:, None], v[:, None], a[:, None])()
     return [*found[chain.efforts, 0].tolist(), *chain.sections(found)[1, 0.5][:, 0].tolist()]
 

@@ -1,4 +1,6 @@
-"""What makes parts impossible: evaluations, sweeps on every backend and exported C draw the same line."""
+"""What makes parts impossible: evaluations, sweeps on every backend and exported C draw the same
+line.
+"""
 
 import numpy as np
 import pytest
@@ -36,7 +38,25 @@ MATTER = {
     "plate": lambda m, c: m.link("arm", length=0.5, mass=1.0, centre=(0.1, 0.0), inertia=c),
     "overflow": lambda m, c: m.link("arm", length=0.5, density=density.polynomial(1.0, 1.0 / c)),
 }
-VALUES = [-30.0, -6.0, -1.0, -1e-3, 0.0, 1e-3, 0.5, 1.0, 1.9, 3.0, 3.9, 4.0, 4.1, 6.0, 9.0, 40.0, 400.0]
+VALUES = [
+    -30.0,
+    -6.0,
+    -1.0,
+    -1e-3,
+    0.0,
+    1e-3,
+    0.5,
+    1.0,
+    1.9,
+    3.0,
+    3.9,
+    4.0,
+    4.1,
+    6.0,
+    9.0,
+    40.0,
+    400.0,
+]
 
 
 def accepted(scene, values):
@@ -59,7 +79,9 @@ def test_all_programs_draw_the_same_line(name, tmp_path):
     assert len(set(expected)) == 2
     assert prepared(scene, VALUES, tmp_path) == expected
     for backend in ("lanes", "c", "vm"):
-        engine = DesignEngine.of(scene, ["effort", "section:arm"] if name != "plate" else ["effort"], rung=Rung(backend))
+        engine = DesignEngine.of(
+            scene, ["effort", "section:arm"] if name != "plate" else ["effort"], rung=Rung(backend)
+        )
         status = engine.evaluate(np.array(VALUES)[:, None]).status
         assert (status != Status.IMPOSSIBLE).tolist() == expected
 
@@ -68,11 +90,17 @@ def test_a_density_that_dips_below_zero_between_its_ends(tmp_path):
     """Positive at both ends, and where a sweep looked before; exported C took it."""
     scene = arm(rod(lambda c: (1, -c, c)), ["c"])
     assert prepared(scene, [0.0, 3.9, 6.0], tmp_path) == [True, True, False]
-    with pytest.raises(ParameterError, match=r"link 'arm': density must not be negative, got -0\.5 kg/m at xi/l = 0\.5"):
+    with pytest.raises(
+        ParameterError,
+        match=r"link 'arm': density must not be negative, got -0\.5 kg/m at xi/l = 0\.5",
+    ):
         evaluate(scene, parameters={"c": 6.0})
     narrow = arm(rod(lambda c: ((c - 0.03) ** 2 - 1e-5, -2 * (c - 0.03), 1.0)), ["c"], default=-1.0)
     engine = DesignEngine.of(narrow, ["effort"])
-    assert engine.evaluate(np.array([[0.1], [-0.1]])).status.tolist() == [Status.IMPOSSIBLE, Status.OK]
+    assert engine.evaluate(np.array([[0.1], [-0.1]])).status.tolist() == [
+        Status.IMPOSSIBLE,
+        Status.OK,
+    ]
 
 
 @pytest.mark.parametrize("root", [1 / 3, 0.1, 0.7, 0.9])
@@ -82,7 +110,9 @@ def test_what_touches_zero_is_possible(root):
     assert accepted(scene, [1.0, 7.0, 1e6, 0.3]) == [True] * 4
     for value in (1.0, 3.0, 0.1, 1 / 7):
         table = density.tabulated([0.0, root, 1.0], [2 * value, value, 0.0])
-        arm(lambda m, c, table=table: m.link("arm", length=0.5, density=table), ["c"]).mechanism.values()
+        arm(
+            lambda m, c, table=table: m.link("arm", length=0.5, density=table), ["c"]
+        ).mechanism.values()
 
 
 def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
@@ -95,12 +125,19 @@ def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
     rows = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 1.0]]
     expected = [True, True, False, False]
     assert prepared(scene, rows, tmp_path) == expected
-    assert (DesignEngine.of(scene).evaluate(np.array(rows)).status == Status.OK).tolist() == expected
-    with pytest.raises(ParameterError, match="mechanism 'arm' is massless: at least one link or point mass needs a mass"):
+    assert (
+        DesignEngine.of(scene).evaluate(np.array(rows)).status == Status.OK
+    ).tolist() == expected
+    with pytest.raises(
+        ParameterError,
+        match="mechanism 'arm' is massless: at least one link or point mass needs a mass",
+    ):
         scene.mechanism.values({"a": 0.0, "b": 0.0})
     with pytest.raises(ParameterError, match="link 'arm': mass must not be negative, got -1 kg"):
         scene.mechanism.values({"a": -1.0, "b": 1.0})
-    with pytest.raises(ParameterError, match="its whole mass must be finite and positive, got inf kg"):
+    with pytest.raises(
+        ParameterError, match="its whole mass must be finite and positive, got inf kg"
+    ):
         scene.mechanism.values({"a": 1.5e308, "b": 1.5e308})
 
 
@@ -108,7 +145,11 @@ def test_what_bears_a_load_may_be_massless():
     """Forces are then those of statics: by virtual power, the drive gives what the load takes."""
     m = Mechanism("press")
     work = m.parameter("work", 80e3, "N")
-    upper, lower, ram = m.link("upper", length=0.3, mass=0.0), m.link("lower", length=0.3, mass=0.0), m.point_mass("ram", 0.0)
+    upper, lower, ram = (
+        m.link("upper", length=0.3, mass=0.0),
+        m.link("lower", length=0.3, mass=0.0),
+        m.point_mass("ram", 0.0),
+    )
     m.revolute("top", m.ground.at(0.0, 0.6), upper)
     m.revolute("knee", upper.tip, lower)
     m.revolute("elbow", lower.tip, ram)
@@ -119,4 +160,7 @@ def test_what_bears_a_load_may_be_massless():
     assert solution.certified
     taken = 80e3 * solution.motion("way").rate
     assert np.abs(0.2 * solution.effort("top") - taken).max() < 1e-12 * np.abs(taken).max()
-    assert DesignEngine.of(scene).evaluate(np.array([[80e3], [0.0]])).status.tolist() == [Status.OK] * 2
+    assert (
+        DesignEngine.of(scene).evaluate(np.array([[80e3], [0.0]])).status.tolist()
+        == [Status.OK] * 2
+    )

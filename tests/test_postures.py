@@ -1,4 +1,6 @@
-"""Postures: by directions or by joints' coordinates, and what they leave open told at once, in lines that work when pasted."""
+"""Postures: by directions or by joints' coordinates, and what they leave open told at once, in
+lines that work when pasted.
+"""
 
 import ast
 import math
@@ -19,7 +21,9 @@ CLOSED = ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_cra
 
 def moved(scene, **changes):
     """The poses of all links at the start, by name; a turn more or less is none."""
-    solution = evaluate(replace(scene, t=(scene.t[0], scene.t[0], 1), wanted=("motion",), **changes), backend="vm")
+    solution = evaluate(
+        replace(scene, t=(scene.t[0], scene.t[0], 1), wanted=("motion",), **changes), backend="vm"
+    )
     return {name: solution.pose(name) for name in scene.mechanism.links}, solution
 
 
@@ -27,7 +31,8 @@ def same(first, second):
     return all(
         abs(first[name].x - second[name].x) < 1e-9
         and abs(first[name].y - second[name].y) < 1e-9
-        and abs(math.remainder(float(first[name].angle[0] - second[name].angle[0]), math.tau)) < 1e-9
+        and abs(math.remainder(float(first[name].angle[0] - second[name].angle[0]), math.tau))
+        < 1e-9
         for name in first
     )
 
@@ -41,7 +46,9 @@ def pasted(error):
 @pytest.mark.parametrize("joint", ["A", "B", "C"])
 @pytest.mark.parametrize("rocker", [1.5, -1.5])
 def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
-    """Any joint of the loop: on the tree, closing it, at the ground; rough to 20 degrees, and in degrees."""
+    """Any joint of the loop: on the tree, closing it, at the ground; rough to 20 degrees, and in
+    degrees.
+    """
     scene = four_bar(rocker=rocker)
     poses, solution = moved(scene)
     told = float(solution.motion(joint).value[0])
@@ -52,14 +59,18 @@ def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("case", ["six_bar", "andrews_squeezer", "rrr3", "engine", "quick_return"])
 def test_all_joints_serve_as_well_as_directions(case):
-    """Loops that are iterated get the directions of their links from the joints' coordinates, one after another."""
+    """Loops that are iterated get the directions of their links from the joints' coordinates, one
+    after another.
+    """
     scene = load_case(case).scene
     poses, solution = moved(scene)
     joints = {name: joint for name, joint in scene.mechanism.joints.items() if joint.coordinate}
     posture = {}
     for k, (name, joint) in enumerate(joints.items()):
         value = float(solution.motion(name).value[0])
-        posture[name] = value if joint.slides else math.remainder(value, math.tau) + 0.03 * (-1) ** k
+        posture[name] = (
+            value if joint.slides else math.remainder(value, math.tau) + 0.03 * (-1) ** k
+        )
     assert same(moved(scene, posture=posture)[0], poses)
 
 
@@ -79,7 +90,9 @@ def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
 
 
 def test_all_loops_are_told_where_the_first_way_of_one_closes_no_other():
-    """Andrews' squeezer closes in one way of its first loop only; all three loops are told for that one."""
+    """Andrews' squeezer closes in one way of its first loop only; all three loops are told for that
+    one.
+    """
     scene = load_case("andrews_squeezer").scene
     with pytest.raises(PostureError, match=r"'P3' can be .*'P4' can be .*'P6' can be") as error:
         moved(scene, posture={})
@@ -97,7 +110,8 @@ def test_what_no_way_closes_cannot_be_assembled():
 def test_names_that_iterations_need_are_told_at_once():
     scene = load_case("rrr3").scene
     says = (
-        r"the loops closed by joint 'foot1', joint 'foot2' have no closed form; give a rough posture of lower0, lower1, lower2, "
+        r"the loops closed by joint 'foot1', joint 'foot2' have no closed form; give a rough"
+        r" posture of lower0, lower1, lower2, "
         r"platform too; posture=\{'lower0': '\.\.\. deg', .*'platform': '\.\.\. deg'\}$"
     )
     with pytest.raises(PostureError, match=says) as error:
@@ -114,7 +128,10 @@ def test_a_part_of_a_posture_leaves_the_rest_open():
 
 
 @pytest.mark.sampled(5)
-@pytest.mark.parametrize(("case", "many"), [("four_bar", 2), ("six_bar", 4), ("andrews_squeezer", 4), ("quick_return", 2)])
+@pytest.mark.parametrize(
+    ("case", "many"),
+    [("four_bar", 2), ("six_bar", 4), ("andrews_squeezer", 4), ("quick_return", 2)],
+)
 def test_all_ways_are_there_and_differ(case, many):
     scene = replace(load_case(case).scene, posture={})
     found = list(assemblies(scene))
@@ -128,7 +145,9 @@ def test_all_ways_are_there_and_differ(case, many):
 
 
 @pytest.mark.sampled(5)
-@pytest.mark.parametrize("command", [["run", "own"], ["info", "own"], ["export", "own", "--out", "c"], ["trade", "own"]])
+@pytest.mark.parametrize(
+    "command", [["run", "own"], ["info", "own"], ["export", "own", "--out", "c"], ["trade", "own"]]
+)
 def test_the_command_line_draws_the_ways(here, capfd, command):
     assert main(["new", "own", "--like", "four_bar"]) == 0
     text = (here / "own" / "case.py").read_text()
@@ -155,9 +174,13 @@ def test_where_nothing_can_be_drawn_there_is_no_file(here, capfd):
 
 def test_what_a_posture_may_tell():
     scene = four_bar()
-    with pytest.raises(UnknownNameError, match="unknown link or joint in posture 'D'; valid: a, b, c, O, A, B, C"):
+    with pytest.raises(
+        UnknownNameError, match="unknown link or joint in posture 'D'; valid: a, b, c, O, A, B, C"
+    ):
         replace(scene, posture={"D": 1.0})
-    with pytest.raises(DeclarationError, match=r"posture of 'B': 90 rad is 5156\.62 deg, more than two turns"):
+    with pytest.raises(
+        DeclarationError, match=r"posture of 'B': 90 rad is 5156\.62 deg, more than two turns"
+    ):
         replace(scene, posture={"B": 90})
 
 

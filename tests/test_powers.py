@@ -1,4 +1,6 @@
-"""Expressions as polynomials of one symbol: the coefficients of what is one, and nothing of what is none."""
+"""Expressions as polynomials of one symbol: the coefficients of what is one, and nothing of what is
+none.
+"""
 
 import casadi as ca
 import numpy as np
@@ -46,7 +48,9 @@ def test_a_polynomial_may_be_put_in(numbers, start, slope):
     for s in (-1.0, 0.0, 0.3, 2.0):
         value = sum(c * (start + slope * s) ** k for k, c in enumerate(numbers))
         size = sum(abs(c) * (abs(start) + slope * abs(s)) ** k for k, c in enumerate(numbers))
-        assert sum(c * s**k for k, c in enumerate(found)) == pytest.approx(value, abs=1e-13 * (1 + size))
+        assert sum(c * s**k for k, c in enumerate(found)) == pytest.approx(
+            value, abs=1e-13 * (1 + size)
+        )
 
 
 @pytest.mark.parametrize(

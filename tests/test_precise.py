@@ -1,4 +1,6 @@
-"""The oracle in many digits: against the double graphs, against itself in fewer digits, against closed forms."""
+"""The oracle in many digits: against the double graphs, against itself in fewer digits, against
+closed forms.
+"""
 
 import functools
 import math
@@ -22,22 +24,39 @@ INSTANTS = (0, 7, 16)
 def kind(name):
     """What is measured by one peak: a group and its member, places along x and y together."""
     group, *_, member = name.split(":")
-    return (group, "place" if member in ("x", "y") else member) if group in ("pose", "reaction", "section") else group
+    return (
+        (group, "place" if member in ("x", "y") else member)
+        if group in ("pose", "reaction", "section")
+        else group
+    )
 
 
 @functools.cache
 def solved(name):
-    """A case in doubles over its cycle, and there by index each of three instants in 50 and in 30 digits."""
+    """A case in doubles over its cycle, and there by index each of three instants in 50 and in 30
+    digits.
+    """
     scene = load_case(CASES / name).scene
     start, stop, _ = scene.t
-    solution = evaluate(scene, t=(start, start + 0.8 * (stop - start), 17), wanted=["all"], backend="vm", certificate=False)
-    return solution, {i: tuple(precise(scene, solution.t[i], digits=digits) for digits in (50, 30)) for i in INSTANTS}
+    solution = evaluate(
+        scene,
+        t=(start, start + 0.8 * (stop - start), 17),
+        wanted=["all"],
+        backend="vm",
+        certificate=False,
+    )
+    return solution, {
+        i: tuple(precise(scene, solution.t[i], digits=digits) for digits in (50, 30))
+        for i in INSTANTS
+    }
 
 
 def peaks(solution):
     found = {}
     for name in solution.names():
-        found[kind(name)] = max(found.get(kind(name), 0.0), float(np.max(np.abs(solution.array(name)))))
+        found[kind(name)] = max(
+            found.get(kind(name), 0.0), float(np.max(np.abs(solution.array(name))))
+        )
     return found | {("pose", "angle"): 1.0}
 
 
@@ -47,7 +66,9 @@ def test_double_graphs_agree_with_50_digits(name):
     solution, instants = solved(name)
     size = peaks(solution)
     for i, (exact, _) in instants.items():
-        assert {name for name in solution.names() if not name.startswith(("motion", "load", "output"))} <= set(exact)
+        assert {
+            name for name in solution.names() if not name.startswith(("motion", "load", "output"))
+        } <= set(exact)
         for quantity, value in exact.items():
             if callable(value):
                 _, link, force = quantity.split(":")
@@ -71,15 +92,24 @@ def test_30_digits_are_the_first_of_50(name):
     for more, fewer in instants.values():
         assert set(more) == set(fewer)
         for quantity, value in more.items():
-            pairs = [(value(u), fewer[quantity](u)) for u in RATIOS] if callable(value) else [(value, fewer[quantity])]
+            pairs = (
+                [(value(u), fewer[quantity](u)) for u in RATIOS]
+                if callable(value)
+                else [(value, fewer[quantity])]
+            )
             for one, two in pairs:
                 assert abs(one - two) <= 1e-25 * size.get(kind(quantity), 0.0), quantity
 
 
 def test_every_digit_of_a_reference_from_outside():
-    """The paper's mechanism in decimals, as the reference of :mod:`test_reference` has it, to the 25 digits it prints."""
+    """The paper's mechanism in decimals, as the reference of :mod:`test_reference` has it, to the
+    25 digits it prints.
+    """
     arithmetic = Digits(40)
-    r, l, m1, m2, m3, g = (arithmetic.number(SIXTY_DIGITS["parameters"][name]) for name in ("r", "l", "m1", "m2", "m3", "g"))
+    r, l, m1, m2, m3, g = (
+        arithmetic.number(SIXTY_DIGITS["parameters"][name])
+        for name in ("r", "l", "m1", "m2", "m3", "g")
+    )
     crank, rod = (
         oracle.from_density(name, length, lambda u, mass=mass: mass, arithmetic=arithmetic)
         for name, length, mass in (("crank", r, m1), ("rod", l, m2))
@@ -90,7 +120,12 @@ def test_every_digit_of_a_reference_from_outside():
         oracle.Joint("B", "revolute", ("rod", l, 0), ("slider", 0, 0)),
         oracle.Joint("guide", "prismatic", ("ground", 0, 0), ("slider", 0, 0)),
     ]
-    linkage = oracle.Oracle([crank, rod, oracle.Body("slider", m3, oriented=False)], joints, (0, -g), arithmetic=arithmetic)
+    linkage = oracle.Oracle(
+        [crank, rod, oracle.Body("slider", m3, oriented=False)],
+        joints,
+        (0, -g),
+        arithmetic=arithmetic,
+    )
     omega, epsilon = 25 * arithmetic.context.pi, arithmetic.context.pi / 100
     gaps, size = {}, {}
     for row in SIXTY_DIGITS["rows"]:
@@ -98,10 +133,17 @@ def test_every_digit_of_a_reference_from_outside():
         theta = omega * t + epsilon * t**2 / 2
         a, b = 0.1 * math.cos(theta), 0.1 * math.sin(theta)
         slope = -math.asin(b / 0.2)
-        guess = {"crank": (0, 0, theta), "rod": (a, b, slope), "slider": (a + 0.2 * math.cos(slope), 0, 0)}
+        guess = {
+            "crank": (0, 0, theta),
+            "rod": (a, b, slope),
+            "slider": (a + 0.2 * math.cos(slope), 0, 0),
+        }
         found = linkage.solve({"O": (theta, omega + epsilon * t, epsilon)}, guess)
         on_rod, on_slider = found.reactions["A"], found.reactions["B"]
-        sections = [[-force for force in found.sections["rod"](x)] for x in map(arithmetic.number, SIXTY_DIGITS["xi_over_l"])]
+        sections = [
+            [-force for force in found.sections["rod"](x)]
+            for x in map(arithmetic.number, SIXTY_DIGITS["xi_over_l"])
+        ]
         named = {
             "torque_O": [found.efforts["O"]],
             "guide_on_slider": [found.reactions["guide"][1]],
@@ -109,9 +151,14 @@ def test_every_digit_of_a_reference_from_outside():
             "slider_on_rod_B": [-force for force in on_slider[:2]],
         } | dict(zip(("R_axial", "R_shear", "R_bending"), zip(*sections, strict=True), strict=True))
         for name, values in named.items():
-            expected = [arithmetic.number(text) for text in (row[name] if isinstance(row[name], list) else [row[name]])]
+            expected = [
+                arithmetic.number(text)
+                for text in (row[name] if isinstance(row[name], list) else [row[name]])
+            ]
             size[name] = max(size.get(name, 0), *map(abs, expected))
-            gaps[name] = max(gaps.get(name, 0), *(abs(x - y) for x, y in zip(values, expected, strict=True)))
+            gaps[name] = max(
+                gaps.get(name, 0), *(abs(x - y) for x, y in zip(values, expected, strict=True))
+            )
     assert set(gaps) == {name for name in row if name not in ("t", "theta")}
     for name, gap in gaps.items():
         assert gap < 1e-24 * size[name], name
@@ -129,20 +176,26 @@ def test_drives_of_many_digits_are_taken_as_they_are():
 
 
 def test_what_is_undetermined_is_left_out():
-    """Three cranks that turn together need the torque that lifts their centres and the bar's: a closed form for all digits."""
+    """Three cranks that turn together need the torque that lifts their centres and the bar's: a
+    closed form for all digits.
+    """
     scene = parallelogram(pendulum=False)
     found = precise(scene, 0.0)
     assert set(found).isdisjoint(evaluate(scene).undetermined)
     bent = {f"section:{crank}:{force}" for crank in "abc" for force in ("shear", "bending")}
-    assert {name for name in found if name.startswith(("effort", "section", "reaction")) and found[name] != 0} == {
-        "effort:O"
-    } | bent
+    assert {
+        name
+        for name in found
+        if name.startswith(("effort", "section", "reaction")) and found[name] != 0
+    } == {"effort:O"} | bent
     digits = found["effort:O"].context
     crank, bar, length, gravity = map(digits.mpf, (0.3, 1.0, 0.2, 9.81))
     torque = (3 * crank / 2 + bar) * length * gravity * digits.cos(digits.mpf(0.7))
     assert abs(found["effort:O"] - torque) < 1e-50
     with_bob = precise(parallelogram(pendulum=True), 0.0)
-    assert {name for name in with_bob if name.startswith("section")} == {f"section:bob:{force}" for force in FORCES} | bent
+    assert {name for name in with_bob if name.startswith("section")} == {
+        f"section:bob:{force}" for force in FORCES
+    } | bent
 
 
 def test_loads_and_rows_must_be_given():
@@ -152,11 +205,20 @@ def test_loads_and_rows_must_be_given():
 
 @pytest.mark.parametrize("arithmetic", [DOUBLE, Digits(50)])
 def test_equations_that_agree_are_solved(arithmetic):
-    """Five equations of rank two for three unknowns: what they determine comes out, whatever is chosen for the rest."""
+    """Five equations of rank two for three unknowns: what they determine comes out, whatever is
+    chosen for the rest.
+    """
     first, second = [3, 1, 0], [1, -2, 0]
-    rows = [[k * a + n * b for a, b in zip(first, second, strict=True)] for k, n in ((1, 0), (0, 1), (2, 3), (1, -1), (0, 5))]
+    rows = [
+        [k * a + n * b for a, b in zip(first, second, strict=True)]
+        for k, n in ((1, 0), (0, 1), (2, 3), (1, -1), (0, 5))
+    ]
     matrix = arithmetic.array([[arithmetic.number(x) for x in row] for row in rows])
-    x, y, _ = arithmetic.solve(matrix, matrix @ arithmetic.array([arithmetic.number(1) / 3, arithmetic.number(2) / 7, 0]), 1e-9)
+    x, y, _ = arithmetic.solve(
+        matrix,
+        matrix @ arithmetic.array([arithmetic.number(1) / 3, arithmetic.number(2) / 7, 0]),
+        1e-9,
+    )
     assert abs(3 * x - 1) < 100 * arithmetic.tolerance
     assert abs(7 * y - 2) < 100 * arithmetic.tolerance
 

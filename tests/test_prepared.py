@@ -38,7 +38,9 @@ def test_series_are_those_of_evaluate(name):
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.array(output)).max()))
     for output in f.outputs:
         size = largest[solution.unit(output)]
-        np.testing.assert_allclose(found[output], solution.array(output), rtol=0, atol=1e-12 * size, err_msg=output)
+        np.testing.assert_allclose(
+            found[output], solution.array(output), rtol=0, atol=1e-12 * size, err_msg=output
+        )
 
 
 @pytest.mark.parametrize("backend", ["c", "vm"])
@@ -46,7 +48,9 @@ def test_series_are_told_where_a_peak_cannot_be(backend):
     m = Mechanism("buzz")
     m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.3, "m"), mass=1.0))
     m.output("fast", ca.sin(1e6 * m.time))
-    f = prepare(Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9), wanted=["output:fast"]), backend=backend)
+    f = prepare(
+        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9), wanted=["output:fast"]), backend=backend
+    )
     np.testing.assert_allclose(f(l=0.4)["output:fast"], np.sin(1e6 * f.t), atol=1e-9)
     if backend == "c":  # which is quick to find out
         with pytest.raises(AssemblyError, match="a peak cannot be told"):
@@ -56,7 +60,9 @@ def test_series_are_told_where_a_peak_cannot_be(backend):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_calls_are_the_rows_of_designs_to_the_last_byte(backend):
-    """Whatever was asked for before, and by name or in a mapping; parameters that are not told have their defaults."""
+    """Whatever was asked for before, and by name or in a mapping; parameters that are not told have
+    their defaults.
+    """
     scene = case("slider_crank")
     f = prepare(scene, t=few(scene), wanted=["effort", "section:rod", "motion"], backend=backend)
     rows = np.tile(list(scene.mechanism.values().values()), (3, 1))
@@ -85,7 +91,10 @@ def test_peaks_are_those_of_the_solution():
 
 
 def test_a_result_is_kept_by_copying_it():
-    """The arrays are the object's own: the next call writes into them. Another thread takes a copy of the object."""
+    """The arrays are the object's own: the next call writes into them.
+
+    Another thread takes a copy of the object.
+    """
     f = prepare(case("slider_crank"), wanted=["effort"])
     first = f(l=0.25)["effort:O"]
     kept = first.copy()
@@ -112,7 +121,11 @@ def test_threads_with_copies_of_their_own_do_not_disturb_each_other():
                 np.testing.assert_array_equal(row, alone[k])
 
 
-@pytest.mark.parametrize("asked", [{"over": ("O", 0.0, 2 * math.pi, 25)}, {"t": (0.0, "1 / rpm", 25)}], ids=["over", "times"])
+@pytest.mark.parametrize(
+    "asked",
+    [{"over": ("O", 0.0, 2 * math.pi, 25)}, {"t": (0.0, "1 / rpm", 25)}],
+    ids=["over", "times"],
+)
 def test_instants_that_go_with_the_parameters(asked):
     """A motion whose speed is a parameter: the same turn at every speed, in other times."""
     m = Mechanism("wheel")
@@ -160,7 +173,9 @@ def test_mistakes():
     with pytest.raises(DeclarationError, match="prepare: scene: expected a Scene, got"):
         prepare(scene.mechanism)
     # An evaluation after a mistake is as one before it.
-    np.testing.assert_array_equal(f(l=0.25)["effort:O"], prepare(scene, wanted=["effort"])(l=0.25)["effort:O"])
+    np.testing.assert_array_equal(
+        f(l=0.25)["effort:O"], prepare(scene, wanted=["effort"])(l=0.25)["effort:O"]
+    )
 
 
 def test_values_that_have_no_result_are_refused_as_evaluate_does():

@@ -1,4 +1,6 @@
-"""C that is printed of CasADi's functions: its bits are those of CasADi's virtual machine, and no compiler warns of it."""
+"""C that is printed of CasADi's functions: its bits are those of CasADi's virtual machine, and no
+compiler warns of it.
+"""
 
 import ctypes
 import itertools
@@ -22,15 +24,30 @@ from lagrange_casadi.errors import DeclarationError, SizeError
 
 pytestmark = pytest.mark.quick
 
-STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-ffp-contract=off", "-fPIC", "-shared"]
+STRICT = [
+    "-std=c99",
+    "-pedantic",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-Wconversion",
+    "-ffp-contract=off",
+    "-fPIC",
+    "-shared",
+]
 HEAD = "#include <math.h>\n#define casadi_real double\n"
-CALL = "void f(const double** arg, double** res);\nvoid f(const double** arg, double** res) { made(arg, res); }\n"
+CALL = (
+    "void f(const double** arg, double** res);\nvoid f(const double** arg, double** res) {"
+    " made(arg, res); }\n"
+)
 NUMBERS = (0.0, -0.0, 0.5, -3.0, 1e300, math.inf, math.nan)
 
 
 def compiled(function, folder, head=HEAD):
     """The printed function, as a function of as many numbers as it has inputs."""
-    (folder / "f.c").write_text(head + print_functions({"made": function}, "double", prefix="table") + CALL)
+    (folder / "f.c").write_text(
+        head + print_functions({"made": function}, "double", prefix="table") + CALL
+    )
     result = cc([*codegen.find_compiler("c").command, *STRICT], folder, "f.c", output="f.so")
     assert result.returncode == 0, result.stderr
     library = ctypes.CDLL(str(folder / "f.so"))
@@ -39,7 +56,9 @@ def compiled(function, folder, head=HEAD):
         cells = [ctypes.c_double(value) for value in values]
         out = (ctypes.c_double * function.nnz_out(0))(*[math.nan] * function.nnz_out(0))
         pointers = [ctypes.cast(ctypes.byref(one), ctypes.c_void_p).value for one in cells]
-        library.f((ctypes.c_void_p * len(cells))(*pointers), (ctypes.c_void_p * 1)(ctypes.addressof(out)))
+        library.f(
+            (ctypes.c_void_p * len(cells))(*pointers), (ctypes.c_void_p * 1)(ctypes.addressof(out))
+        )
         return np.array(out)
 
     return call
@@ -71,8 +90,12 @@ def test_all_operations_have_the_bits_of_the_virtual_machine(tmp_path):
 
 def test_truths_are_comparisons():
     a, b = (ca.SX.sym(name) for name in "ab")
-    truths = ca.vertcat(ca.logic_not(a), ca.logic_and(a, b), ca.logic_or(a, b), ca.if_else(a, b, 2.0))
-    text = print_functions({"truths": ca.Function("truths", [a, b], [truths])}, "double", prefix="table")
+    truths = ca.vertcat(
+        ca.logic_not(a), ca.logic_and(a, b), ca.logic_or(a, b), ca.if_else(a, b, 2.0)
+    )
+    text = print_functions(
+        {"truths": ca.Function("truths", [a, b], [truths])}, "double", prefix="table"
+    )
     assert re.search(r"!a\d|a\d+ (&&|\|\|) a\d", text) is None
 
 
@@ -94,14 +117,17 @@ def looked_up(points):
     x, y = ca.SX.sym("x"), ca.SX.sym("y")
     breaks, numbers = np.linspace(-1.0, 2.0, points), np.sin(np.arange(points - 1) * 1.7)
     found = [entries(numbers, cell(breaks, argument, ends=True)) for argument in (x, ca.sin(x) + y)]
-    return ca.Function("f", [x, y], [ca.vertcat(found[0] * found[1] + y, ca.ceil(y))], {"cse": True})
+    return ca.Function(
+        "f", [x, y], [ca.vertcat(found[0] * found[1] + y, ca.ceil(y))], {"cse": True}
+    )
 
 
 @pytest.mark.parametrize("points", [4, 5, 17, 361])
 def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
     function = looked_up(points)
     text = print_functions({"made": function}, "double", prefix="table")
-    # What rounds to whole numbers of itself is left; an entry, which is whole already, is not rounded.
+    # What rounds to whole numbers of itself is left; an entry, which is whole already, is not
+    # rounded.
     assert text.count("ceil(") == 1
     assert len(re.findall(r"a\d+ = table_", text)) == 4
     call = compiled(function, tmp_path)
@@ -114,12 +140,17 @@ def test_tables_have_the_numbers_of_the_virtual_machine(points, tmp_path):
 def test_a_number_is_read_as_the_same_number(value):
     text = literal("double")(value)
     read = float(text.replace("INFINITY", "inf").replace("NAN", "nan"))
-    assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(value)
+    assert (read == value and math.copysign(1.0, read) == math.copysign(1.0, value)) or math.isnan(
+        value
+    )
 
 
 def test_numbers_too_large_for_singles_are_refused():
     x = ca.SX.sym("x")
-    with pytest.raises(SizeError, match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38"):
+    with pytest.raises(
+        SizeError,
+        match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38",
+    ):
         print_functions({"f": ca.Function("f", [x], [1e39 * x])}, "single", prefix="table")
 
 
@@ -130,7 +161,9 @@ def test_numbers_too_large_for_singles_are_refused():
 )
 def test_what_has_no_c_is_named(make, says):
     x = ca.SX.sym("x")
-    with pytest.raises(DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"):
+    with pytest.raises(
+        DeclarationError, match=rf"function 'f' has no C: {says}; evaluate with backend 'vm'"
+    ):
         print_functions({"f": ca.Function("f", [x], [make(x)])}, "double", prefix="table")
 
 
@@ -138,7 +171,9 @@ def test_functions_that_are_called_are_written_out():
     """Of several inputs and outputs, within each other; callbacks and tables remain."""
     x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
     inner = ca.Function("inner", [x, y], [x[0] * y, ca.sin(x[1])], {"never_inline": True})
-    outer = ca.Function("outer", [y], [inner(ca.vertcat(y, 2 * y), y + 1)[1] * y], {"never_inline": True})
+    outer = ca.Function(
+        "outer", [y], [inner(ca.vertcat(y, 2 * y), y + 1)[1] * y], {"never_inline": True}
+    )
     a = ca.SX.sym("a")
     for expression, left in (
         (outer(a) + inner(ca.vertcat(a, 1), 3.0)[0], 0),

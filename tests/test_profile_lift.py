@@ -1,4 +1,6 @@
-"""From a profile to its follower's motion: closed forms, the way back from every kind of cam, noise, and what is refused."""
+"""From a profile to its follower's motion: closed forms, the way back from every kind of cam,
+noise, and what is refused.
+"""
 
 import math
 
@@ -14,7 +16,15 @@ from lagrange_casadi.motion import dwell, move, moves, polynomial
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 ROLLER = 0.012
-KINDS = ["roller", "knife", "flat", "swinging roller", "swinging flat", "swinging roller -", "swinging flat -"]
+KINDS = [
+    "roller",
+    "knife",
+    "flat",
+    "swinging roller",
+    "swinging flat",
+    "swinging roller -",
+    "swinging flat -",
+]
 
 
 def machine(kind, offset=0.008):
@@ -26,10 +36,14 @@ def machine(kind, offset=0.008):
     if kind.startswith("swinging"):
         arm = m.link("arm", length=0.12, mass=0.8)
         lead = m.revolute("lead", m.ground.at(0.12, 0.0), arm)
-        options |= {"side": -1 if kind.endswith("-") else 1} | ({} if "flat" in kind else {"point": arm.tip})
+        options |= {"side": -1 if kind.endswith("-") else 1} | (
+            {} if "flat" in kind else {"point": arm.tip}
+        )
     else:
         rod = m.link("rod", length=0.15, mass=0.8)
-        lead = m.prismatic("lead", m.ground.at(0.01 + offset, -0.02), rod, axis=(0, 1), angle="90 deg")
+        lead = m.prismatic(
+            "lead", m.ground.at(0.01 + offset, -0.02), rod, axis=(0, 1), angle="90 deg"
+        )
     return m, main, lead, options
 
 
@@ -44,7 +58,9 @@ def values_of(lift, angles):
     rows = [ca.SX(lift(x))]
     rows += [ca.jacobian(rows[-1], x)]
     rows += [ca.jacobian(rows[-1], x)]
-    return ca.Function("lift", [x], [ca.densify(ca.vertcat(*rows))])(np.asarray(angles)[None]).full()
+    return ca.Function("lift", [x], [ca.densify(ca.vertcat(*rows))])(
+        np.asarray(angles)[None]
+    ).full()
 
 
 def circle(radius, eccentric, count, phase=0.0):
@@ -70,7 +86,9 @@ def test_an_eccentric_disc_lifts_a_roller_as_a_slider_crank(turned, offset):
 
 def test_an_eccentric_disc_lifts_a_face_by_a_sine():
     m, main, lead, options = machine("flat")
-    found = profile_lift(m, main, lead, np.vstack([circle(0.05, 0.01, 360), circle(0.05, 0.01, 360)[:1]]), **options)
+    found = profile_lift(
+        m, main, lead, np.vstack([circle(0.05, 0.01, 360), circle(0.05, 0.01, 360)[:1]]), **options
+    )
     angle = np.linspace(0.0, 7.0, 301)
     value, slope, bend = values_of(found, angle)
     assert value == pytest.approx(0.01 * (1 + np.sin(angle)), abs=1e-11)
@@ -81,7 +99,9 @@ def test_an_eccentric_disc_lifts_a_face_by_a_sine():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_way_back_from_a_cam_is_as_exact_as_interpolation(kind):
-    """Twice the points have a sixteenth of the error of the lift, an eighth of the slope's, a quarter of the bend's."""
+    """Twice the points have a sixteenth of the error of the lift, an eighth of the slope's, a
+    quarter of the bend's.
+    """
     m, main, lead, options = machine(kind)
     lift = law(0.2 if kind.startswith("swinging") else 0.02)
     cam = disc_cam(m, "cam", main, lead, lift, base_radius=0.05, **options)
@@ -91,29 +111,47 @@ def test_the_way_back_from_a_cam_is_as_exact_as_interpolation(kind):
     for count in (180, 360):
         profile = cam.profile(count=count)
         found = profile_lift(m, main, lead, np.column_stack([profile.x, profile.y]), **options)
-        errors.append(np.abs(values_of(found, angles) - true).max(axis=1) / np.abs(true).max(axis=1))
+        errors.append(
+            np.abs(values_of(found, angles) - true).max(axis=1) / np.abs(true).max(axis=1)
+        )
         assert found.base_radius == pytest.approx(0.05, abs=1e-8)
     assert (errors[0] < [8e-7, 4e-5, 4e-3]).all()
     assert (errors[1] < errors[0] / [14, 7, 3.5]).all()
 
 
 def test_a_drawn_cam_runs_by_its_file(here):
-    """The forces of the cam that was declared, from the points that it has written for a workshop."""
+    """The forces of the cam that was declared, from the points that it
+    has written for a workshop.
+    """
     m, main, lead, options = machine("roller")
     made = disc_cam(m, "cam", main, lead, law(0.02), base_radius=0.05, **options)
     made.profile(count=720).save_csv("cam.csv")
-    assert read_profile("cam.csv") == pytest.approx(np.column_stack([made.profile().x, made.profile().y]), rel=1e-15)
+    assert read_profile("cam.csv") == pytest.approx(
+        np.column_stack([made.profile().x, made.profile().y]), rel=1e-15
+    )
 
     def forces(lift, base):
         m, main, lead, options = machine("roller")
-        disc_cam(m, "cam", main, lead, lift or profile_lift(m, main, lead, "cam.csv", **options), base_radius=base, **options)
+        disc_cam(
+            m,
+            "cam",
+            main,
+            lead,
+            lift or profile_lift(m, main, lead, "cam.csv", **options),
+            base_radius=base,
+            **options,
+        )
         scene = Scene(m, {"main": polynomial(0.3, 30.0)}, t=(0, 0.2, 61), posture={"lead": 0.06})
         return evaluate(scene, wanted=["effort", "output"])
 
     drawn, told = forces(None, 0.05), forces(law(0.02), 0.05)
-    assert drawn.effort("main") == pytest.approx(told.effort("main"), abs=1e-3 * np.abs(told.effort("main")).max())
+    assert drawn.effort("main") == pytest.approx(
+        told.effort("main"), abs=1e-3 * np.abs(told.effort("main")).max()
+    )
     assert drawn.output("cam_force") == pytest.approx(told.output("cam_force"), rel=1e-3)
-    assert drawn.output("cam_pressure_angle") == pytest.approx(told.output("cam_pressure_angle"), abs=1e-6)
+    assert drawn.output("cam_pressure_angle") == pytest.approx(
+        told.output("cam_pressure_angle"), abs=1e-6
+    )
 
 
 def test_smoothing_takes_the_noise_of_a_measurement_out_of_accelerations():
@@ -122,12 +160,25 @@ def test_smoothing_takes_the_noise_of_a_measurement_out_of_accelerations():
     cam = disc_cam(m, "cam", main, lead, law(0.02), base_radius=0.05, **options)
     profile = cam.profile(count=360)
     points = np.column_stack([profile.x, profile.y])
-    points *= 1 + 1e-6 * np.random.default_rng(5).normal(size=360)[:, None] / np.hypot(*points.T)[:, None]
+    points *= (
+        1 + 1e-6 * np.random.default_rng(5).normal(size=360)[:, None] / np.hypot(*points.T)[:, None]
+    )
     angles = np.linspace(0.0, math.tau, 2001)
     true = values_of(law(0.02), angles)
     size = np.abs(true[2]).max()
     off = [
-        np.sqrt(np.mean((values_of(profile_lift(m, main, lead, points, smoothing=noise, **options), angles) - true) ** 2, axis=1))
+        np.sqrt(
+            np.mean(
+                (
+                    values_of(
+                        profile_lift(m, main, lead, points, smoothing=noise, **options), angles
+                    )
+                    - true
+                )
+                ** 2,
+                axis=1,
+            )
+        )
         for noise in (0.0, 1e-6)
     ]
     assert off[0][2] > 0.1 * size
@@ -149,12 +200,35 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
             r"profile: expected points \(x, y\), finite numbers, got an array of shape \(40, 1\)",
         ),
         ("roller", circle(math.nan, 0.0, 40), "profile: expected points"),
-        ("roller", circle(0.05, 0.06, 40), r"profile: its points do not go round the cam's shaft, which is at \(0, 0\)"),
-        ("roller", np.repeat(circle(0.05, 0.0, 40), 2, axis=0), "profile: points 1 and the next lie on each other"),
-        ("roller", HOLLOW, r"profile: the follower cannot touch it near its point \d+, counted counter-clockwise: it is hollow"),
+        (
+            "roller",
+            circle(0.05, 0.06, 40),
+            r"profile: its points do not go round the cam's shaft, which is at \(0, 0\)",
+        ),
+        (
+            "roller",
+            np.repeat(circle(0.05, 0.0, 40), 2, axis=0),
+            "profile: points 1 and the next lie on each other",
+        ),
+        (
+            "roller",
+            HOLLOW,
+            (
+                r"profile: the follower cannot touch it near its point \d+, counted"
+                r" counter-clockwise: it is hollow"
+            ),
+        ),
         ("flat", HOLLOW, r"profile: the follower cannot touch it near its point \d+"),
-        ("swinging roller", circle(0.3, 0.0, 40), "profile: the follower does not reach all of it, or is too near"),
-        ("swinging flat", circle(0.2, 0.0, 40), "profile: the follower's pin is too near: the profile passes it"),
+        (
+            "swinging roller",
+            circle(0.3, 0.0, 40),
+            "profile: the follower does not reach all of it, or is too near",
+        ),
+        (
+            "swinging flat",
+            circle(0.2, 0.0, 40),
+            "profile: the follower's pin is too near: the profile passes it",
+        ),
         ("roller", circle(0.001, 0.0, 40) * 1e-3, "profile: "),
     ],
 )
@@ -166,7 +240,9 @@ def test_what_is_no_profile_is_told(kind, points, says):
 
 def test_a_follower_that_is_none_is_told():
     m, main, lead, options = machine("roller")
-    with pytest.raises(DeclarationError, match="profile: expected a revolute joint whose parent is the ground"):
+    with pytest.raises(
+        DeclarationError, match="profile: expected a revolute joint whose parent is the ground"
+    ):
         profile_lift(m, lead, main, circle(0.05, 0.0, 40), **options)
     with pytest.raises(DeclarationError, match="profile: curve: a smoothing of 1 leaves"):
         profile_lift(m, main, lead, circle(0.05, 0.01, 40), smoothing=1.0, **options)
@@ -175,10 +251,26 @@ def test_a_follower_that_is_none_is_told():
 @pytest.mark.parametrize(
     ("text", "error", "says"),
     [
-        ("x,z\n1,2\n", DeclarationError, r"p\.csv, line 1: expected one column 'y', as in x \[mm\], got x, z"),
-        ("x [in],y\n1,2\n", DeclarationError, r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um"),
-        ("# cam\nx,y\n1,2\n1,\n", DeclarationError, r"p\.csv, line 4: expected a finite number for y, got ''"),
-        ("x,y\n1,two\n", DeclarationError, r"p\.csv, line 2: expected a finite number for y, got 'two'"),
+        (
+            "x,z\n1,2\n",
+            DeclarationError,
+            r"p\.csv, line 1: expected one column 'y', as in x \[mm\], got x, z",
+        ),
+        (
+            "x [in],y\n1,2\n",
+            DeclarationError,
+            r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um",
+        ),
+        (
+            "# cam\nx,y\n1,2\n1,\n",
+            DeclarationError,
+            r"p\.csv, line 4: expected a finite number for y, got ''",
+        ),
+        (
+            "x,y\n1,two\n",
+            DeclarationError,
+            r"p\.csv, line 2: expected a finite number for y, got 'two'",
+        ),
         (None, PathError, r"p\.csv: no such file"),
     ],
 )

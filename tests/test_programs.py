@@ -1,4 +1,6 @@
-"""Compilers that hang, cannot be started, or say what is no text; and what of the cache does not load."""
+"""Compilers that hang, cannot be started, or say what is no text; and what of the cache does not
+load.
+"""
 
 import errno
 import os
@@ -52,18 +54,26 @@ def pid(tmp_path):
         assert not is_there(number)
 
 
-def test_a_compiler_that_hangs_is_stopped_with_all_it_started(tmp_path, fresh_cache, monkeypatch, pid):
+def test_a_compiler_that_hangs_is_stopped_with_all_it_started(
+    tmp_path, fresh_cache, monkeypatch, pid
+):
     fake_compiler(tmp_path, monkeypatch, f"{TELLS} {HANGS.format(pid=pid)}")
     monkeypatch.setenv(programs.VARIABLE, "0.5")
     with pytest.raises(
-        CompilerError, match=r"fake-cc did not end within 0\.5 s and was stopped; \$LAGRANGE_CASADI_COMPILER_TIMEOUT sets"
+        CompilerError,
+        match=(
+            r"fake-cc did not end within 0\.5 s and was stopped; \$LAGRANGE_CASADI_COMPILER_TIMEOUT"
+            r" sets"
+        ),
     ):
         evaluate(slider_crank(), backend="c")
     all_gone(pid)
 
 
 def test_one_that_does_not_listen_is_stopped_too(tmp_path, fresh_cache, monkeypatch, pid):
-    fake_compiler(tmp_path, monkeypatch, f"{TELLS} trap '' TERM INT HUP; {HANGS.format(pid=pid)}; sleep 1000")
+    fake_compiler(
+        tmp_path, monkeypatch, f"{TELLS} trap '' TERM INT HUP; {HANGS.format(pid=pid)}; sleep 1000"
+    )
     monkeypatch.setenv(programs.VARIABLE, "0.5")
     with pytest.raises(CompilerError, match=r"did not end within 0\.5 s"):
         evaluate(slider_crank(), backend="c")
@@ -73,7 +83,10 @@ def test_one_that_does_not_listen_is_stopped_too(tmp_path, fresh_cache, monkeypa
 def test_a_chosen_compiler_that_hangs_at_its_version_is_an_error(tmp_path, monkeypatch, pid):
     fake_compiler(tmp_path, monkeypatch, HANGS.format(pid=pid))
     monkeypatch.setenv(programs.VARIABLE, "4")
-    with pytest.raises(CompilerError, match=r"^\$CC = '.*fake-cc' did not tell its version within 0\.2 s; \$LAGRANGE_CASADI_COM"):
+    with pytest.raises(
+        CompilerError,
+        match=r"^\$CC = '.*fake-cc' did not tell its version within 0\.2 s; \$LAGRANGE_CASADI_COM",
+    ):
         codegen.find_compiler()
     all_gone(pid)
 
@@ -83,7 +96,10 @@ def test_another_that_hangs_at_its_version_is_passed_over(tmp_path, monkeypatch,
     monkeypatch.delenv("CC")
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setenv(programs.VARIABLE, "4")
-    with pytest.warns(UserWarning, match=r"the compiler cc is passed over: it did not tell its version within 0\.2 s"):
+    with pytest.warns(
+        UserWarning,
+        match=r"the compiler cc is passed over: it did not tell its version within 0\.2 s",
+    ):
         found = codegen.find_compiler()
     assert found is None or found.command != ("cc",)
     all_gone(pid)
@@ -102,8 +118,10 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
     monkeypatch.setenv(programs.VARIABLE, text)
     compiler._find_compiler.cache_clear()
     assert main(["run", str(CASE), "--no-figures", "--t", "0:0.08:9", "--backend", "c"]) == 1
-    assert capsys.readouterr().err == (
-        f"error: $LAGRANGE_CASADI_COMPILER_TIMEOUT = '{text}': expected a number of seconds above 0; without it they are 600\n"
+    assert (
+        capsys.readouterr().err
+        == f"error: $LAGRANGE_CASADI_COMPILER_TIMEOUT = '{text}': expected a number of seconds"
+        " above 0; without it they are 600\n"
     )
 
 
@@ -112,14 +130,28 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
 @pytest.mark.parametrize("script", ["{hangs}", "{tells} {hangs}"], ids=["version", "compiling"])
 def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, number, script):
     folder = tmp_path_factory.mktemp("fake")
-    fake_compiler(folder, monkeypatch, script.format(tells=TELLS, hangs=HANGS.format(pid=folder / "pid")))
+    fake_compiler(
+        folder, monkeypatch, script.format(tells=TELLS, hangs=HANGS.format(pid=folder / "pid"))
+    )
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
-    command = [sys.executable, "-m", "lagrange_casadi", "run", str(CASE), "--backend", "c", "--no-figures"]
+    command = [
+        sys.executable,
+        "-m",
+        "lagrange_casadi",
+        "run",
+        str(CASE),
+        "--backend",
+        "c",
+        "--no-figures",
+    ]
     with sweeps.process(*command) as stopped:
         sweeps.wait_for((folder / "pid").exists)
         began = time.monotonic()
         stopped.send_signal(number)
-        assert stopped.communicate(timeout=60) == ("", "error: interrupted; nothing was left half-written\n")
+        assert stopped.communicate(timeout=60) == (
+            "",
+            "error: interrupted; nothing was left half-written\n",
+        )
     assert stopped.returncode == 130
     assert time.monotonic() - began < 10.0
     all_gone(folder / "pid")
@@ -129,12 +161,16 @@ def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, nu
 def test_what_is_no_text_is_quoted_all_the_same(tmp_path, here, fresh_cache, monkeypatch, capsys):
     r"""As of a compiler that speaks Latin-1: \351 is its e with an accent."""
     fake_compiler(
-        tmp_path, monkeypatch, r"""printf 'version \351\n'; printf 'x.c:1: error: d\351fini \377\n' >&2; test "$1" = --version"""
+        tmp_path,
+        monkeypatch,
+        r"""printf 'version \351\n'; printf 'x.c:1: error: d\351fini \377\n' >&2; test "$1" = --version""",  # noqa: E501
     )
     assert main(["run", str(CASE), "--backend", "c", "--no-figures"]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert re.fullmatch(
-        r"error: .*fake-cc failed with status 1: x\.c:1: error: d\ufffdfini \ufffd \(whole message in .*\.log\)", line
+        r"error: .*fake-cc failed with status 1: x\.c:1: error: d\ufffdfini \ufffd \(whole message"
+        r" in .*\.log\)",
+        line,
     )
 
 
@@ -174,7 +210,12 @@ assert codegen.find_compiler() is not None
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("free", [0, 3])
 def test_too_few_descriptors_are_not_no_compiler(free):
-    done = subprocess.run([sys.executable, "-c", CROWDED.format(free=free)], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", CROWDED.format(free=free)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(r"(cannot start \S+: Too many open files\n){2}", done.stdout)
 
@@ -200,7 +241,9 @@ def test_a_library_that_does_not_load_is_built_again(fresh_cache):
     library.unlink()
     library.write_bytes(b"\x7fELF of another kind")
     library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
-    with pytest.warns(UserWarning, match=r"the cached library .*\.so does not load \(.*\) and is built again"):
+    with pytest.warns(
+        UserWarning, match=r"the cached library .*\.so does not load \(.*\) and is built again"
+    ):
         evaluate(slider_crank(), backend="c")
     assert library.read_bytes() == whole
 
@@ -216,7 +259,10 @@ def test_a_seal_that_cannot_be_read_is_built_again(fresh_cache, monkeypatch):
         return read(path)
 
     monkeypatch.setattr(Path, "read_bytes", refused)
-    with pytest.warns(UserWarning, match=r"the cached library .*\.so cannot be read \(Permission denied\) and is built again"):
+    with pytest.warns(
+        UserWarning,
+        match=r"the cached library .*\.so cannot be read \(Permission denied\) and is built again",
+    ):
         evaluate(slider_crank(), backend="c")
 
 

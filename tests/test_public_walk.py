@@ -1,4 +1,6 @@
-"""Every public function, class and method is called with every wrong kind: only errors of this package come, in one line."""
+"""Every public function, class and method is called with every wrong kind: only errors of this
+package come, in one line.
+"""
 
 import importlib
 import inspect
@@ -98,7 +100,7 @@ CALLED = {("select", "duty"), ("optimise", "progress"), ("sweep", "progress"), (
 
 LONG = """
 export optimise sweep tolerances size Scene.report draw Sweep.report Solution.report Solution.view Solution.animate
-""".split()
+""".split()  # noqa: E501
 """What takes long where it takes a value: left out of the quick walk."""
 
 
@@ -118,8 +120,13 @@ NUMBERS = itertools.count()
 
 
 def call(function, given):
-    """Call a function by names of arguments, what it declares under a name of its own; what it gives in turn is walked over."""
-    named = {name: f"new{next(NUMBERS)}" if isinstance(value, str) and value == "new" else value for name, value in given.items()}
+    """Call a function by names of arguments, what it declares under a name of its own; what it
+    gives in turn is walked over.
+    """
+    named = {
+        name: f"new{next(NUMBERS)}" if isinstance(value, str) and value == "new" else value
+        for name, value in given.items()
+    }
     stars = named.pop("*", ())
     found = function(*stars, **named)
     return list(found) if inspect.isgenerator(found) else found
@@ -169,10 +176,14 @@ def fault(function, given):
 
 
 def fault_of_kind(of, function, given, name, kind):
-    """What is wrong with a call where one argument is of another kind; nothing too where that is right."""
+    """What is wrong with a call where one argument is of another kind; nothing too where that is
+    right.
+    """
     said = fault(function, changed(function, given, name, KINDS[kind]()))
     if said == "is accepted":
-        callable_kind = kind in ("class", "our class") and (name in ("lift", "law", "duty", "progress") or (of, name) in CALLED)
+        callable_kind = kind in ("class", "our class") and (
+            name in ("lift", "law", "duty", "progress") or (of, name) in CALLED
+        )
         return said if kind in NEVER and not callable_kind else ""
     return "" if (of, name) in CALLED and said != "hangs" and not said.startswith("says ") else said
 
@@ -185,7 +196,10 @@ def wrong_calls(calls):
 
 
 def walked(things, chosen):
-    """The faults of wrong calls. What declares is called on a mechanism of its own, made anew after some calls."""
+    """The faults of wrong calls.
+
+    What declares is called on a mechanism of its own, made anew after some calls.
+    """
     calls, declared = public_calls.rights(things), {of for of, _ in public_calls.declarations()}
     found, fresh = {}, calls
     for number, (of, name, kind) in enumerate(chosen):
@@ -204,7 +218,11 @@ def test_right_calls_are_right(things):
 
 
 def test_wrong_kinds_are_refused(things):
-    every = [one for one in wrong_calls(public_calls.rights(things)) if one[0] not in LONG and one[2] != "long text"]
+    every = [
+        one
+        for one in wrong_calls(public_calls.rights(things))
+        if one[0] not in LONG and one[2] != "long text"
+    ]
     assert walked(things, random.Random(17).sample(every, 400)) == {}
 
 
@@ -223,7 +241,10 @@ def misfits(function, given):
         yield "too many", {"*": (None,) * 99}
     for one in each:
         if one.default is one.empty and one.name in given:
-            yield f"no {one.name}", {name: value for name, value in given.items() if name != one.name}
+            yield (
+                f"no {one.name}",
+                {name: value for name, value in given.items() if name != one.name},
+            )
 
 
 def test_calls_that_do_not_fit_are_refused(things):
@@ -250,7 +271,7 @@ direction
 multiplier output check_ending analysed mapped needs rows demands refined instants timetable block scale outside at_number made_of
 at ends tails cell_at whole holds excess of_parameters unit __getitem__ __call__ largest
 grid size draw needs count index curvature copy
-""".split()
+""".split()  # noqa: E501
 """Methods that are the package's own between its rooms, or of tuples."""
 
 
@@ -264,7 +285,11 @@ def public_things():
                 if name not in RESULTS:
                     yield f"{door}.{name}", thing
                 for method, function in inspect.getmembers(thing, inspect.isfunction):
-                    if not method.startswith("_") and method not in INNER and len(inspect.signature(function).parameters) > 1:
+                    if (
+                        not method.startswith("_")
+                        and method not in INNER
+                        and len(inspect.signature(function).parameters) > 1
+                    ):
                         yield f"{door}.{name}.{method}", inspect.unwrap(function)
             elif inspect.isfunction(thing) and name not in INNER:
                 yield f"{door}.{name}", inspect.unwrap(thing)

@@ -22,7 +22,10 @@ def test_a_folder_keeps_what_else_is_in_it(tmp_path):
     (folder / "a.png").write_text("old")
     with filling(folder) as draft:
         (draft / "a.png").write_text("new")
-    assert {path.name: path.read_text() for path in folder.iterdir()} == {"notes.txt": "mine", "a.png": "new"}
+    assert {path.name: path.read_text() for path in folder.iterdir()} == {
+        "notes.txt": "mine",
+        "a.png": "new",
+    }
     assert os.listdir(tmp_path) == ["figures"]
 
 
@@ -59,7 +62,12 @@ def test_only_an_hdf5_file_replaces_another(tmp_path):
     with h5py.File(target, "w") as file:
         file["a"] = 1.0
     before = target.read_bytes()
-    with pytest.raises(PathError, match=r"cannot write .*x\.h5: it is an HDF5 file; choose another name"), replacing(target):
+    with (
+        pytest.raises(
+            PathError, match=r"cannot write .*x\.h5: it is an HDF5 file; choose another name"
+        ),
+        replacing(target),
+    ):
         pass
     assert target.read_bytes() == before
     check_writable(target, hdf5=True)
@@ -105,7 +113,10 @@ def test_what_a_kill_has_left_goes_with_the_next_of_its_name(tmp_path, monkeypat
     others = {".x.out.notes", ".x.out.abcdefgh.00000000", ".y.out.abcdefgh"}
     for name in others:
         (tmp_path / name).mkdir()
-    with sweeps.process(sys.executable, "-c", HELD, kind) as killed, sweeps.process(sys.executable, "-c", HELD, kind) as living:
+    with (
+        sweeps.process(sys.executable, "-c", HELD, kind) as killed,
+        sweeps.process(sys.executable, "-c", HELD, kind) as living,
+    ):
         assert [killed.stdout.readline(), living.stdout.readline()] == ["ready\n"] * 2
         both = set(os.listdir(tmp_path)) - others
         assert len(both) == 2

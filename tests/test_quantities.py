@@ -40,7 +40,9 @@ def test_the_table_is_complete():
     assert all(q.long_name and q.unit for q in QUANTITIES)
 
 
-@pytest.mark.parametrize("name", ["torsion:rod", "section:rod:torsion", "reaction:O:fz", "reaction:O"])
+@pytest.mark.parametrize(
+    "name", ["torsion:rod", "section:rod:torsion", "reaction:O:fz", "reaction:O"]
+)
 def test_other_names_are_refused(name):
     with pytest.raises(KeyError):
         Output.of(name).meant(PLANE)
@@ -68,11 +70,17 @@ def test_an_output_and_its_name_are_one(output, name):
     assert Output.of(name) == output
 
 
-NAMES = st.from_regex(r"[A-Za-z]\w{0,3}(_rate|_acceleration|_coordinate)?", fullmatch=True, alphabet=st.characters(codec="ascii"))
+NAMES = st.from_regex(
+    r"[A-Za-z]\w{0,3}(_rate|_acceleration|_coordinate)?",
+    fullmatch=True,
+    alphabet=st.characters(codec="ascii"),
+)
 
 
 def drawn(part, station, power, quantity):
-    """An output of a quantity; what acts at a place, or along a link, has a name of its own, and the latter has powers."""
+    """An output of a quantity; what acts at a place, or along a link, has a name of its own, and
+    the latter has powers.
+    """
     spread = quantity.group == "spread"
     return Output(
         quantity.group,
@@ -83,14 +91,21 @@ def drawn(part, station, power, quantity):
     )
 
 
-@given(NAMES | st.just("law"), NAMES | st.just("law"), st.integers(0, 12), st.sampled_from(QUANTITIES))
+@given(
+    NAMES | st.just("law"), NAMES | st.just("law"), st.integers(0, 12), st.sampled_from(QUANTITIES)
+)
 def test_no_two_outputs_have_one_name(part, station, power, quantity):
     output = drawn(part, station, power, quantity)
     assert Output.of(str(output)) == output
     assert output.quantity is quantity
 
 
-@given(NAMES | st.just("law"), NAMES | st.just("law"), st.integers(0, 12), st.sampled_from(SPATIAL_QUANTITIES))
+@given(
+    NAMES | st.just("law"),
+    NAMES | st.just("law"),
+    st.integers(0, 12),
+    st.sampled_from(SPATIAL_QUANTITIES),
+)
 def test_no_two_outputs_have_one_name_in_space(part, station, power, quantity):
     output = drawn(part, station, power, quantity)
     assert Output.of(str(output)) == output
@@ -106,7 +121,9 @@ def test_axes_and_units_are_the_same_in_the_plane_and_in_space():
     for q in shared:
         other = SPACE.row(q.group, q.member)
         assert (other.axes, other.unit) == (q.axes, q.unit)
-    assert SPACE.row("section", "shear").sign == "never negative" != PLANE.row("section", "shear").sign
+    assert (
+        SPACE.row("section", "shear").sign == "never negative" != PLANE.row("section", "shear").sign
+    )
 
 
 @pytest.mark.parametrize("table", [PLANE, SPACE])
@@ -140,7 +157,10 @@ def test_of_what_resultants_are_the_size(output, table, components):
     assert {component.part for component in output.components(table)} == {output.part}
 
 
-@pytest.mark.parametrize("name", ["section:rod:law:mx0", "section:law:law:fz2", "section:rod:A:mz", "section:rod:bending_y"])
+@pytest.mark.parametrize(
+    "name",
+    ["section:rod:law:mx0", "section:law:law:fz2", "section:rod:A:mz", "section:rod:bending_y"],
+)
 def test_names_of_space_are_none_of_the_plane(name):
     assert str(Output.of(name)) == name
     assert Output.of(name).meant(SPACE).unit

@@ -15,8 +15,10 @@ pytestmark = pytest.mark.quick
 FIGURE_6 = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]
 """ASTM E1049-85, figure 6: the history of its rainflow example."""
 
-# rainflow 3.2.0 of PyPI, extract_cycles of figure 6: range, mean, count, indices; counts by range are the standard's.
-PUBLISHED = [(3, -0.5, 0.5, 0, 1), (4, -1.0, 0.5, 1, 2), (4, 1.0, 1.0, 4, 5), (8, 1.0, 0.5, 2, 3), (9, 0.5, 0.5, 3, 6),
+# rainflow 3.2.0 of PyPI, extract_cycles of figure 6: range, mean, count, indices; counts by range
+# are the standard's.
+PUBLISHED = [(3, -0.5, 0.5, 0, 1), (4, -1.0, 0.5, 1, 2), (4, 1.0, 1.0, 4, 5), (8, 1.0, 0.5, 2, 3),
+    (9, 0.5, 0.5, 3, 6),
              (8, 0.0, 0.5, 6, 7), (6, 1.0, 0.5, 7, 8)]  # fmt: skip
 
 HISTORIES = st.lists(st.integers(-9, 9), min_size=1, max_size=40)
@@ -27,11 +29,14 @@ def test_the_example_of_the_standard():
 
 
 def by_four_points(history):
-    """Another way for histories that repeat: of four turns in a row the inner two are a swing where the outer two hold them."""
+    """Another way for histories that repeat: of four turns in a row the inner two are a swing where
+    the outer two hold them.
+    """
     values = list(history)
     start = values.index(max(values))
     turns = [
-        ([*values[start:], *values[: start + 1]])[k] for k in reversals(np.array([*values[start:], *values[: start + 1]], float))
+        ([*values[start:], *values[: start + 1]])[k]
+        for k in reversals(np.array([*values[start:], *values[: start + 1]], float))
     ]
     found = []
     again = True
@@ -52,13 +57,17 @@ def by_four_points(history):
 
 @given(HISTORIES)
 def test_histories_that_repeat_by_another_algorithm(history):
-    assert sorted((s.size, s.mean) for s in rainflow(history, repeating=True)) == by_four_points(history)
+    assert sorted((s.size, s.mean) for s in rainflow(history, repeating=True)) == by_four_points(
+        history
+    )
 
 
 @given(HISTORIES, st.integers(0, 40))
 def test_where_a_repeating_history_begins_is_the_same(history, shift):
     turned = history[shift % len(history) :] + history[: shift % len(history)]
-    first, second = (sorted((s.size, s.mean) for s in rainflow(h, repeating=True)) for h in (history, turned))
+    first, second = (
+        sorted((s.size, s.mean) for s in rainflow(h, repeating=True)) for h in (history, turned)
+    )
     assert [size for size, _ in first] == [size for size, _ in second]
 
 
@@ -76,7 +85,9 @@ def test_every_reversal_is_used_once(history):
     way = float(np.abs(np.diff(history)).sum())
     assert sum(s.size * s.times for s in rainflow(history)) == pytest.approx(way / 2)
     closed = way + abs(history[0] - history[-1])
-    assert sum(s.size * s.times for s in rainflow(history, repeating=True)) == pytest.approx(closed / 2)
+    assert sum(s.size * s.times for s in rainflow(history, repeating=True)) == pytest.approx(
+        closed / 2
+    )
 
 
 def test_a_public_library_counts_the_same():
@@ -85,7 +96,9 @@ def test_a_public_library_counts_the_same():
     for _ in range(50):
         history = draw.normal(size=200)
         expected = [tuple(map(float, cycle)) for cycle in library.extract_cycles(history)]
-        np.testing.assert_allclose(np.array([tuple(s) for s in rainflow(history)]), np.array(expected), rtol=0, atol=1e-12)
+        np.testing.assert_allclose(
+            np.array([tuple(s) for s in rainflow(history)]), np.array(expected), rtol=0, atol=1e-12
+        )
 
 
 def test_another_library_counts_the_same_of_what_repeats():
@@ -96,8 +109,12 @@ def test_another_library_counts_the_same_of_what_repeats():
         start = int(np.argmax(history))
         closed = np.append(np.roll(history, -start), history[start])
         cycles, residue = library.find_rainflow_cycles(closed[reversals(closed)])
-        expected = sorted([*np.abs(np.diff(cycles, axis=1)).ravel().tolist(), float(np.ptp(residue))])
-        np.testing.assert_allclose(sorted(s.size for s in rainflow(history, repeating=True)), expected, rtol=0, atol=1e-12)
+        expected = sorted(
+            [*np.abs(np.diff(cycles, axis=1)).ravel().tolist(), float(np.ptp(residue))]
+        )
+        np.testing.assert_allclose(
+            sorted(s.size for s in rainflow(history, repeating=True)), expected, rtol=0, atol=1e-12
+        )
 
 
 @pytest.mark.parametrize("history", [[], [[1, 2]], [1.0, math.nan], [1.0, math.inf]])

@@ -1,4 +1,6 @@
-"""Random mechanisms whose links are made of something: deflections by sums over fine grids, and the least of strain energies."""
+"""Random mechanisms whose links are made of something: deflections by sums over fine grids, and the
+least of strain energies.
+"""
 
 import dataclasses
 import functools
@@ -33,10 +35,16 @@ def made(monkeypatch):
     shapes = itertools.cycle(SHAPES)
 
     def with_beam(link, self, *args, **given):
-        return link(self, *args, **given if "centre" in given else {"beam": beams.Beam(next(shapes), STEEL), **given})
+        return link(
+            self,
+            *args,
+            **given if "centre" in given else {"beam": beams.Beam(next(shapes), STEEL), **given},
+        )
 
     for kind in (Mechanism, SpatialMechanism):
-        monkeypatch.setattr(kind, "link", functools.partialmethod(functools.partial(with_beam, kind.link)))
+        monkeypatch.setattr(
+            kind, "link", functools.partialmethod(functools.partial(with_beam, kind.link))
+        )
 
 
 def planar(seed):
@@ -53,12 +61,19 @@ def spatial(family, seed):
 def summed(found):
     """The largest size of a deflection at every instant, by midpoint sums."""
     member, u = found.member, (np.arange(PIECES) + 0.5) / PIECES
-    f = dict(zip(member.forces, member.at(np.broadcast_to(u, (member.t.size, PIECES))), strict=True))
+    f = dict(
+        zip(member.forces, member.at(np.broadcast_to(u, (member.t.size, PIECES))), strict=True)
+    )
     cells = np.searchsorted(member.beam.course.breaks[1:-1], u, side="right")
-    p = {name: np.empty(PIECES) for name in ("iy", "iz", "iyz", "shear_y", "shear_z", "torsion", "centre_y", "centre_z")}
+    p = {
+        name: np.empty(PIECES)
+        for name in ("iy", "iz", "iyz", "shear_y", "shear_z", "torsion", "centre_y", "centre_z")
+    }
     for cell in np.unique(cells):
         for name, values in p.items():
-            values[cells == cell] = getattr(member.cross.properties(int(cell), u[cells == cell]), name)
+            values[cells == cell] = getattr(
+                member.cross.properties(int(cell), u[cells == cell]), name
+            )
 
     def across(curvature, shear):
         piece = member.law.length / PIECES
@@ -68,19 +83,27 @@ def summed(found):
 
     whole = E * (p["iy"] * p["iz"] - p["iyz"] ** 2)
     if not member.space:
-        return np.abs(across(f["bending"] * p["iy"] / whole, f["shear"] / (G * p["shear_y"]))).max(axis=1)
-    twist = (f["torsion"] + p["centre_z"] * f["shear_y"] - p["centre_y"] * f["shear_z"]) / (G * p["torsion"])
+        return np.abs(across(f["bending"] * p["iy"] / whole, f["shear"] / (G * p["shear_y"]))).max(
+            axis=1
+        )
+    twist = (f["torsion"] + p["centre_z"] * f["shear_y"] - p["centre_y"] * f["shear_z"]) / (
+        G * p["torsion"]
+    )
     about_z = (p["iyz"] * f["bending_y"] + p["iy"] * f["bending_z"]) / whole
     about_y = (p["iz"] * f["bending_y"] + p["iyz"] * f["bending_z"]) / whole
     y = across(about_z, f["shear_y"] / (G * p["shear_y"]) + p["centre_z"] * twist)
-    return np.hypot(y, across(-about_y, f["shear_z"] / (G * p["shear_z"]) - p["centre_y"] * twist)).max(axis=1)
+    return np.hypot(
+        y, across(-about_y, f["shear_z"] / (G * p["shear_z"]) - p["centre_y"] * twist)
+    ).max(axis=1)
 
 
 def bends_as_it_should(scene, given):
     links = [name for name, link in scene.mechanism.links.items() if link.beam is not None]
     solution = evaluate(scene, wanted=["deflection"], certificate=False, xi=(0, 1, 3), **given)
     for link in links:
-        if not solution.determined(f"section:{link}:bending" if not scene.mechanism.space else f"section:{link}:bending_z"):
+        if not solution.determined(
+            f"section:{link}:bending" if not scene.mechanism.space else f"section:{link}:bending_z"
+        ):
             continue
         try:
             found = solution.deflection(link)
@@ -91,17 +114,24 @@ def bends_as_it_should(scene, given):
         if size > 1e-15:
             # At a couple within the link midpoints miss half a piece.
             assert summed(found) == pytest.approx(exact, abs=2e-3 * size), link
-            assert solution.array(f"deflection:{link}:across") == pytest.approx(exact, abs=1e-5 * size), link
+            assert solution.array(f"deflection:{link}:across") == pytest.approx(
+                exact, abs=1e-5 * size
+            ), link
 
 
 def least(scene, given):
-    """The energy is the least: forces that are those of other stiffnesses differ by what its strains do no work on."""
+    """The energy is the least: forces that are those of other stiffnesses differ by what its
+    strains do no work on.
+    """
     scene = dataclasses.replace(scene, elastic=True)
     solution = evaluate(scene, wanted=["all"], **given)
     assert solution.certified
     assert not solution.undetermined
     links = [name for name, link in scene.mechanism.links.items() if link.beam is not None]
-    others = [evaluate(dataclasses.replace(scene, elastic=[link]), wanted=["all"], **given) for link in links]
+    others = [
+        evaluate(dataclasses.replace(scene, elastic=[link]), wanted=["all"], **given)
+        for link in links
+    ]
     told = [other for other in others if other.certified and not other.undetermined]
     energy, _ = work(solution, solution, links)
     for other in told:

@@ -1,4 +1,6 @@
-"""Random mechanisms whose joints rub: right by vector Newton-Euler with the law iterated around it, or refused as they jam."""
+"""Random mechanisms whose joints rub: right by vector Newton-Euler with the law iterated around it,
+or refused as they jam.
+"""
 
 import math
 from dataclasses import dataclass
@@ -27,7 +29,9 @@ _STEADY = 0.05
 
 @dataclass(frozen=True)
 class Rubbed:
-    """A random mechanism with friction: its source, where it is looked at, and the draft that the oracle is made of."""
+    """A random mechanism with friction: its source, where it is looked at, and the draft that the
+    oracle is made of.
+    """
 
     source: str
     t: tuple[float, ...]
@@ -40,19 +44,33 @@ class Rubbed:
 
 
 def rubbed(seed):
-    """Friction in up to three joints of a regular mechanism that moves, and whose reactions are all told; None for others."""
+    """Friction in up to three joints of a regular mechanism that moves, and whose reactions are all
+    told; None for others.
+    """
     drawn, rng = draw(seed), np.random.default_rng((seed, 77))
     d = drawn.draft
-    if not is_regular(drawn) or drawn.grid[2] < 2 or drawn.path.steadiness < _STEADY or "wanted" in drawn.keywords:
+    if (
+        not is_regular(drawn)
+        or drawn.grid[2] < 2
+        or drawn.path.steadiness < _STEADY
+        or "wanted" in drawn.keywords
+    ):
         return None
     times = np.linspace(*drawn.grid[:2], _INSTANTS + 2)[1:-1].tolist()
     results = [d.oracle(t).solve(d.drives(t), drawn.path.near(t)) for t in times]
     if any(result.open or result.vague for result in results):
         return None
     size, lines = d.oracle(d.start).size, []
-    joints = [j for name, j in d.joints.items() if name in d.movable() and (j.slides or all(_oriented(d, p) for p in _ends(j)))]
+    joints = [
+        j
+        for name, j in d.joints.items()
+        if name in d.movable() and (j.slides or all(_oriented(d, p) for p in _ends(j)))
+    ]
     for joint in (joints[k] for k in rng.permutation(len(joints))[:_RUBS]):
-        rates = [abs(rubbing.Rub(joint).rate(d.oracle(t).places(r))) for t, r in zip(times, results, strict=True)]
+        rates = [
+            abs(rubbing.Rub(joint).rate(d.oracle(t).places(r)))
+            for t, r in zip(times, results, strict=True)
+        ]
         if min(rates) < 1e-3 * max(rates) or min(rates) < 1e-6:
             continue
         numbers = {"mu": rng.uniform(0.0, 0.15)}
@@ -69,7 +87,9 @@ def rubbed(seed):
     if not lines:
         return None
     before, scene = drawn.source.split("scene = Scene(", 1)
-    return Rubbed("\n".join([before.rstrip(), *lines, f"scene = Scene({scene}"]), tuple(times), drawn)
+    return Rubbed(
+        "\n".join([before.rstrip(), *lines, f"scene = Scene({scene}"]), tuple(times), drawn
+    )
 
 
 def _ends(joint):
@@ -81,7 +101,9 @@ def _oriented(d, body):
 
 
 def compare(made):
-    """The largest gap of efforts, reactions and frictions over the largest of their kind; None where it jams."""
+    """The largest gap of efforts, reactions and frictions over the largest of their kind; None
+    where it jams.
+    """
     drawn, scene = made.drawn, made.scene()
     d, size = drawn.draft, drawn.draft.oracle(drawn.draft.start).size
     parameters = drawn.keywords.get("parameters")
@@ -97,8 +119,16 @@ def compare(made):
         assert solution.certified
         exact = rubbing.solve(d.oracle(t), scene.mechanism, values, d.drives(t), drawn.path.near(t))
         named = {f"effort:{name}": x for name, x in exact.efforts.items()} | exact.frictions
-        named |= {f"reaction:{name}:{k}": x for name, xs in exact.reactions.items() for k, x in zip(FORCES, xs, strict=True)}
-        largest = max(abs(x) / (size if name.endswith(":mz") else 1.0) for name, x in named.items() if name.startswith("reaction"))
+        named |= {
+            f"reaction:{name}:{k}": x
+            for name, xs in exact.reactions.items()
+            for k, x in zip(FORCES, xs, strict=True)
+        }
+        largest = max(
+            abs(x) / (size if name.endswith(":mz") else 1.0)
+            for name, x in named.items()
+            if name.startswith("reaction")
+        )
         assert exact.frictions
         fastest = max(1.0, *(abs(y.d) for q in exact.q.values() for y in q))
         for name, x in named.items():
@@ -134,12 +164,15 @@ DENSE = 4001
 
 
 def keeps_peaks(made, monkeypatch):
-    """Peaks between instants are those of many instants, found in few panels, though what frictions compare is all rounding."""
+    """Peaks between instants are those of many instants, found in few panels, though what frictions
+    compare is all rounding.
+    """
     scene, panels = made.scene(), []
     parameters, (start, stop, _) = made.drawn.keywords.get("parameters"), made.drawn.grid
     try:
         solution, dense = (
-            evaluate(scene, parameters=parameters, t=(start, stop, n), certificate=False) for n in (made.drawn.grid[2], DENSE)
+            evaluate(scene, parameters=parameters, t=(start, stop, n), certificate=False)
+            for n in (made.drawn.grid[2], DENSE)
         )
     except AssemblyError as error:
         if "jams" not in str(error):
@@ -151,11 +184,14 @@ def keeps_peaks(made, monkeypatch):
     peaks = refine(scene, solution, names)
     assert len(panels) < search.PANELS / 8
     largest = {
-        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit) for unit in map(dense.unit, names)
+        unit: max(abs(dense.peak(name).value) for name in names if dense.unit(name) == unit)
+        for unit in map(dense.unit, names)
     }
     for peak in peaks:
         size, many = largest[peak.unit], abs(dense.peak(peak.name).value)
-        assert many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size, f"{peak}, {many}\n{made.source}"
+        assert many - 1e-9 * size <= abs(peak.value) <= many * 1.01 + 1e-2 * size, (
+            f"{peak}, {many}\n{made.source}"
+        )
 
 
 @pytest.mark.parametrize("seed", [46, 80])
@@ -164,9 +200,13 @@ def test_peaks_are_found_where_comparisons_are_rounding(seed, monkeypatch):
 
 
 def test_designs_tell_peaks_where_an_acceleration_is_rounding():
-    """Designs know no rounding: their graph has no kink at an acceleration that is zero by the shape of the mechanism."""
+    """Designs know no rounding: their graph has no kink at an acceleration that is zero by the
+    shape of the mechanism.
+    """
     scene = rubbed(46).scene()
-    found = DesignEngine.of(scene, ["effort"], rung=Rung("vm")).evaluate([list(scene.mechanism.values().values())])
+    found = DesignEngine.of(scene, ["effort"], rung=Rung("vm")).evaluate(
+        [list(scene.mechanism.values().values())]
+    )
     assert found.status.tolist() == [Status.OK]
 
 

@@ -1,7 +1,8 @@
-"""Random mechanisms of any pattern that can be declared: right by the oracle, or refused in words; never else.
+"""Random mechanisms of any pattern that can be declared: right by the oracle, or refused in words;
+never else.
 
-Each seed is a mechanism of its own. One that fails is printed as Python to paste, with what is wrong; ``random_verdict`` says what
-right means.
+Each seed is a mechanism of its own. One that fails is printed as Python to paste, with what is
+wrong; ``random_verdict`` says what right means.
 """
 
 import functools
@@ -26,7 +27,11 @@ def verdict(seed):
     """By the default backend for every fourth mechanism, else without a compiler."""
     drawn = draw(seed)
     found = judge(drawn, **({"backend": "vm"} if seed % 4 else {}))
-    told = "" if found.kind in ("right", "refused") else "\n".join([drawn.describe(), *found.details[:20]])
+    told = (
+        ""
+        if found.kind in ("right", "refused")
+        else "\n".join([drawn.describe(), *found.details[:20]])
+    )
     return found, told
 
 
@@ -63,12 +68,18 @@ def test_few_regular_mechanisms_of_many_are_refused():
 def doubts(seeds, what):
     """What is said of right results, by seed."""
     found = [verdict(seed)[0] for seed in seeds]
-    return {v.seed: notes for v in found if v.kind == "right" and (notes := [note for note in v.notes if what in note])}
+    return {
+        v.seed: notes
+        for v in found
+        if v.kind == "right" and (notes := [note for note in v.notes if what in note])
+    }
 
 
 def all_are_certified(seeds):
     condemned = doubts(seeds, CONDEMNED)
-    assert not condemned, "\n".join(f"{seed}: {'; '.join(notes)}" for seed, notes in condemned.items())
+    assert not condemned, "\n".join(
+        f"{seed}: {'; '.join(notes)}" for seed, notes in condemned.items()
+    )
 
 
 def test_right_results_are_certified():
@@ -82,7 +93,9 @@ def test_many_right_results_are_certified():
 
 def nothing_unique_is_withheld(seeds):
     withheld = doubts(seeds, WITHHELD)
-    assert not withheld, "\n".join(f"{seed}: {'; '.join(notes)}" for seed, notes in withheld.items())
+    assert not withheld, "\n".join(
+        f"{seed}: {'; '.join(notes)}" for seed, notes in withheld.items()
+    )
 
 
 def test_nothing_that_is_unique_is_withheld():
@@ -138,7 +151,11 @@ def test_what_is_printed_runs():
 
 @pytest.fixture(scope="module")
 def right():
-    whole = (d for d in map(draw, REGULAR) if d.draft.limited and "wanted" not in d.keywords and is_regular(d))
+    whole = (
+        d
+        for d in map(draw, REGULAR)
+        if d.draft.limited and "wanted" not in d.keywords and is_regular(d)
+    )
     drawn = min(whole, key=lambda d: len(d.draft.bodies))
     solution = evaluate(drawn.scene(), **drawn.keywords, backend="vm", certificate=False)
     assert compare(drawn, solution).kind == "right"
@@ -151,10 +168,18 @@ def test_a_small_fault_in_any_quantity_is_found(right):
     drawn, solution = right
     seen = 0
     for name, values in list(solution.series.items())[::3]:
-        kinds = {n: np.max(np.abs(v)) for n, v in solution.series.items() if n.split(":")[0] == name.split(":")[0]}
+        kinds = {
+            n: np.max(np.abs(v))
+            for n, v in solution.series.items()
+            if n.split(":")[0] == name.split(":")[0]
+        }
         if name.startswith("load:") or name.endswith(":station") or not max(kinds.values()):
             continue
-        if name.startswith("section:") and name[-1] in "12" and drawn.draft.bodies[name.split(":")[1]].mass < 0.05:
+        if (
+            name.startswith("section:")
+            and name[-1] in "12"
+            and drawn.draft.bodies[name.split(":")[1]].mass < 0.05
+        ):
             continue  # what these are multiplied by is the link's mass
         if np.min(solution.series.get(f"{name.rpartition(':')[0]}:station", 1.0)) <= 0.0:
             continue  # no section of the link sees it
@@ -169,10 +194,15 @@ def test_what_is_not_finite_is_found(right):
     drawn, solution = right
     name = next(name for name in solution.series if name.startswith("reaction:"))
     nothing = {Output.of(name): np.full_like(solution.t, np.nan)}
-    assert compare(drawn, replace(solution, outputs={**solution.outputs, **nothing})).kind == "wrong"
+    assert (
+        compare(drawn, replace(solution, outputs={**solution.outputs, **nothing})).kind == "wrong"
+    )
 
 
 def test_another_motion_is_found(right):
     drawn, solution = right
-    late = {output: np.roll(values, 1) if solution.t.size > 2 else values[::-1] for output, values in solution.outputs.items()}
+    late = {
+        output: np.roll(values, 1) if solution.t.size > 2 else values[::-1]
+        for output, values in solution.outputs.items()
+    }
     assert compare(drawn, replace(solution, outputs=late)).kind == "wrong"

@@ -1,4 +1,6 @@
-"""Laws of motion inverted: to their last bits where they can be, refused by their reason where they cannot."""
+"""Laws of motion inverted: to their last bits where they can be, refused by their reason where they
+cannot.
+"""
 
 import math
 
@@ -21,7 +23,12 @@ TURN = math.tau
 def reached(law, start, stop, speeds=(10.0,), around=0.0, count=181):
     """The way of a law with the parameter w, and the times of equal steps along it."""
     law, p = Reaching.of(Laws.of({"J": law}, ca.vertcat(W)), "J"), np.array(speeds, float)[:, None]
-    way = law.way(*(np.full(len(p), float(x)) for x in (start, stop)), p, np.full(len(p), float(around)), looks=65)
+    way = law.way(
+        *(np.full(len(p), float(x)) for x in (start, stop)),
+        p,
+        np.full(len(p), float(around)),
+        looks=65,
+    )
     coordinates = np.tile(np.linspace(start, stop, count), (len(p), 1))
     return law, way, coordinates, law.times(way, coordinates, p)
 
@@ -32,7 +39,9 @@ def test_a_steady_law_takes_one_subtraction_and_one_division():
     np.testing.assert_array_equal(t, (coordinates - 0.1) / np.array([[10.0], [3.7]]))
 
 
-@pytest.mark.parametrize(("rate", "start", "stop"), [(10.0, 0.0, 5.0), (-10.0, TURN, 0.0), (-0.25, 3.0, -40.0)])
+@pytest.mark.parametrize(
+    ("rate", "start", "stop"), [(10.0, 0.0, 5.0), (-10.0, TURN, 0.0), (-0.25, 3.0, -40.0)]
+)
 def test_a_drive_may_turn_backwards(rate, start, stop):
     _, way, _, t = reached(motion.polynomial(0.0, W), start, stop, (rate,))
     assert way.missed.tolist() == [Missed.REACHED]
@@ -46,13 +55,18 @@ RISING = {
     "uneven": motion.expression(lambda t: W * t + 0.3 * ca.sin(W * t)),
     "nearly turning back": motion.expression(lambda t: W * t - 0.999 * ca.sin(W * t)),
     "steep": motion.expression(lambda t: 1.0 - ca.exp(-W * t) + 30.0 * t),
-    "sampled": motion.samples(np.linspace(-0.1, 2.0, 40), 4.0 * np.linspace(-0.1, 2.0, 40) + 0.1 * np.sin(np.linspace(0, 9, 40))),
+    "sampled": motion.samples(
+        np.linspace(-0.1, 2.0, 40),
+        4.0 * np.linspace(-0.1, 2.0, 40) + 0.1 * np.sin(np.linspace(0, 9, 40)),
+    ),
 }
 
 
 @pytest.mark.parametrize("name", RISING)
 def test_any_other_law_is_met_to_its_last_bits(name):
-    """At every coordinate the law gives that coordinate back, in the order of time, for each design by itself."""
+    """At every coordinate the law gives that coordinate back, in the order of time, for each design
+    by itself.
+    """
     speeds = (0.7, 3.0, 25.0)
     law, way, coordinates, t = reached(RISING[name], 0.05, TURN, speeds)
     assert not law.steady
@@ -94,7 +108,12 @@ def test_a_dwell_at_an_end_is_met_where_it_begins():
         (motion.polynomial(0.0, 1.0, W), 5.0, 0.0, Missed.OTHER_WAY),
         (motion.harmonic(0.0, 1.0, W), 0.0, 1.01, Missed.TURNS_BACK),
         (motion.expression(lambda t: W * t + 1.2 * ca.sin(W * t)), 0.0, 9.0, Missed.TURNS_BACK),
-        (motion.expression(lambda t: W * t + 0.02 * ca.sin(100 * W * t)), 0.0, 9.0, Missed.TURNS_BACK),
+        (
+            motion.expression(lambda t: W * t + 0.02 * ca.sin(100 * W * t)),
+            0.0,
+            9.0,
+            Missed.TURNS_BACK,
+        ),
         (motion.expression(lambda t: ca.tanh(W * t)), 0.0, 1.5, Missed.NEVER),
         (motion.samples([0, 1, 2, 3], [0, 1, 2, 3.5]), 0.0, 3.6, Missed.ENDS),
     ],
@@ -107,7 +126,12 @@ def test_what_a_law_does_not_do_is_told_by_its_reason(law, start, stop, why):
 
 def test_of_many_designs_each_has_its_own_reason():
     _, way, _, t = reached(motion.polynomial(0.0, W), 0.0, 1.0, (2.0, 0.0, -2.0, math.nan))
-    assert way.missed.tolist() == [Missed.REACHED, Missed.STANDS_STILL, Missed.OTHER_WAY, Missed.NEVER]
+    assert way.missed.tolist() == [
+        Missed.REACHED,
+        Missed.STANDS_STILL,
+        Missed.OTHER_WAY,
+        Missed.NEVER,
+    ]
     assert np.isfinite(t).all(axis=1).tolist() == [True, False, False, False]
 
 
@@ -126,4 +150,6 @@ def test_any_ripple_that_does_not_turn_back_is_inverted(ripple, waves, speed, st
     law, found, coordinates, t = reached(law, start, start + sign * way, (speed,), count=33)
     assert found.missed.tolist() == [Missed.REACHED]
     assert (np.diff(t) > 0.0).all()
-    np.testing.assert_allclose(law.at(t, np.array([[speed]]))[0], coordinates, rtol=0, atol=1e-13 * (1 + abs(start) + way))
+    np.testing.assert_allclose(
+        law.at(t, np.array([[speed]]))[0], coordinates, rtol=0, atol=1e-13 * (1 + abs(start) + way)
+    )

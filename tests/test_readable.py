@@ -34,10 +34,17 @@ def test_a_unit_goes_with_the_largest_value(unit, size, factor, told):
 
 
 def test_pages_take_the_same_steps():
-    text = resources.files("lagrange_casadi.report").joinpath("assets/units.js").read_text(encoding="utf-8")
+    text = (
+        resources.files("lagrange_casadi.report")
+        .joinpath("assets/units.js")
+        .read_text(encoding="utf-8")
+    )
     steps = re.findall(r'^  \[([\d.e-]+), "(.*)", ([\d.e-]+)\],$', text, re.MULTILINE)
     assert tuple((float(least), prefix, float(factor)) for least, prefix, factor in steps) == STEPS
-    assert tuple(re.findall(r'"([^"]+)"', re.search(r"PREFIXED = new Set\(\[(.*)\]\)", text)[1])) == PREFIXED
+    assert (
+        tuple(re.findall(r'"([^"]+)"', re.search(r"PREFIXED = new Set\(\[(.*)\]\)", text)[1]))
+        == PREFIXED
+    )
 
 
 def test_numbers_are_told_without_what_rounding_leaves():

@@ -19,7 +19,15 @@ def divisions(function):
 def example():
     x, p = ca.SX.sym("x", 3), ca.SX.sym("p", 2)
     length = ca.sqrt(x[0] + p[0])
-    out = ca.vertcat(x[1] / length, x[2] / length, 1 / length, x[0] / (p[0] * p[1]), x[1] / ca.sin(x[2]), ca.atan2(x[0], x[1]), 2)
+    out = ca.vertcat(
+        x[1] / length,
+        x[2] / length,
+        1 / length,
+        x[0] / (p[0] * p[1]),
+        x[1] / ca.sin(x[2]),
+        ca.atan2(x[0], x[1]),
+        2,
+    )
     return ca.Function("f", [x, p], [out], ["x", "p"], ["out"])
 
 
@@ -54,17 +62,25 @@ def test_a_function_that_calls_others_stays_as_it_is():
 
 
 def test_plain_divisions_come_back_and_are_differentiated_rightly():
-    """With divisors below zero, where copysign would not be, and with a copysign of its own, which stays."""
+    """With divisors below zero, where copysign would not be, and with a copysign of its own, which
+    stays.
+    """
     x, p = ca.SX.sym("x", 3), ca.SX.sym("p", 2)
     out = ca.vertcat(x[1] / x[0], x[2] / x[0], x[0] / p[0], ca.copysign(1 / p[1], x[1]))
     plain = ca.Function("f", [x, p], [out], ["x", "p"], ["out"])
     shared = share_reciprocals(plain, "p")
     again = differentiable(shared)
-    signs = [sum(f.instruction_id(k) == ca.OP_COPYSIGN for k in range(f.n_instructions())) for f in (plain, shared, again)]
+    signs = [
+        sum(f.instruction_id(k) == ca.OP_COPYSIGN for k in range(f.n_instructions()))
+        for f in (plain, shared, again)
+    ]
     assert signs == [1, 4, 1]
     values = [-0.3, 0.7, -1.1], [-2.0, 3.0]
     np.testing.assert_allclose(again(*values).full(), plain(*values).full(), rtol=4e-16)
-    slopes = [ca.Function("slopes", [x, p], [ca.jacobian(f(x, p), x)])(*values).full() for f in (again, plain)]
+    slopes = [
+        ca.Function("slopes", [x, p], [ca.jacobian(f(x, p), x)])(*values).full()
+        for f in (again, plain)
+    ]
     np.testing.assert_allclose(*slopes, rtol=1e-15)
 
 

@@ -1,4 +1,6 @@
-"""Motions from files of controllers: columns, units, smoothing, cycles, and what is refused of them."""
+"""Motions from files of controllers: columns, units, smoothing, cycles, and what is refused of
+them.
+"""
 
 import math
 
@@ -13,7 +15,12 @@ from lagrange_casadi.motion import dwell, move, moves, read_samples, samples
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
-CYCLE = [move("60 deg", time=0.4, law="modified_sine"), dwell(0.2), move(0.0, time=0.5, law="s_curve"), dwell(0.1)]
+CYCLE = [
+    move("60 deg", time=0.4, law="modified_sine"),
+    dwell(0.2),
+    move(0.0, time=0.5, law="s_curve"),
+    dwell(0.1),
+]
 
 
 def derivatives(law, t):
@@ -22,7 +29,10 @@ def derivatives(law, t):
     rows = [law(x)]
     rows += [ca.jacobian(rows[-1], x)]
     rows += [ca.jacobian(rows[-1], x)]
-    return [row.full().ravel() for row in ca.Function("law", [x], [ca.densify(row) for row in rows])(np.asarray(t)[None])]
+    return [
+        row.full().ravel()
+        for row in ca.Function("law", [x], [ca.densify(row) for row in rows])(np.asarray(t)[None])
+    ]
 
 
 def write(path, heads, rows, delimiter=",", comma=False):
@@ -43,7 +53,9 @@ def write(path, heads, rows, delimiter=",", comma=False):
 )
 def test_columns_are_read_in_their_units(here, heads, delimiter, comma, options):
     t, angle = np.linspace(0.0, 900.0, 91), 90.0 * np.sin(np.linspace(0.0, 5.0, 91))
-    path = write(here / "axis.csv", heads, np.column_stack([t, 7.0 + 0 * t, angle]), delimiter, comma)
+    path = write(
+        here / "axis.csv", heads, np.column_stack([t, 7.0 + 0 * t, angle]), delimiter, comma
+    )
     law = read_samples(path, unit="deg", time_unit="ms", **options)
     expected = samples(t / 1000.0, np.radians(np.round(angle, 13)))
     at = np.linspace(0.0, 0.9, 37)
@@ -56,21 +68,29 @@ def test_parameters_scale_shift_and_stretch(here):
     t = np.linspace(0.0, 1.0, 60)
     path = write(here / "axis.csv", ["t", "x"], np.column_stack([t, 50.0 * t**3]))
     m = Mechanism("slide")
-    ratio, offset, stretch = m.parameter("ratio", 1.0), m.parameter("offset", 0.0, "m"), m.parameter("stretch", 1.0)
+    ratio, offset, stretch = (
+        m.parameter("ratio", 1.0),
+        m.parameter("offset", 0.0, "m"),
+        m.parameter("stretch", 1.0),
+    )
     m.prismatic("X", m.ground, m.point_mass("p", 2.0), axis=(1, 0))
     law = read_samples(path, unit="mm", ratio=ratio, offset=offset, stretch=stretch)
     scene = Scene(m, {"X": law}, t=(0, 1, 11))
     found = evaluate(scene, parameters={"ratio": 3.0, "offset": 0.2, "stretch": 2.0}, t=(0, 2, 21))
     assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
     assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
-    with pytest.raises(DeclarationError, match="what is put into its curve is beyond the curve's ends"):
+    with pytest.raises(
+        DeclarationError, match="what is put into its curve is beyond the curve's ends"
+    ):
         evaluate(scene, t=(0, 2, 21))
 
 
 @pytest.mark.parametrize("smoothing", [0.001, "estimated"])
 @pytest.mark.parametrize("points", [None, 150])
 def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points):
-    """0.001 deg of noise at a millisecond; what is left is a hundredth, in the root mean square, of what it makes."""
+    """0.001 deg of noise at a millisecond; what is left is a hundredth, in the root mean square, of
+    what it makes.
+    """
     true = moves(CYCLE, cyclic=True)
     t = np.arange(1201) / 1000.0
     clean = derivatives(true, t)
@@ -78,7 +98,10 @@ def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points)
     noisy[-1] = noisy[0]
     path = write(here / "axis.csv", ["t", "q"], np.column_stack([t, noisy]))
     options = {"unit": "deg", "periodic": True}
-    rough, smooth = read_samples(path, **options), read_samples(path, smoothing=smoothing, points=points, **options)
+    rough, smooth = (
+        read_samples(path, **options),
+        read_samples(path, smoothing=smoothing, points=points, **options),
+    )
     errors = [np.sqrt(np.mean((derivatives(law, t)[2] - clean[2]) ** 2)) for law in (rough, smooth)]
     assert errors[0] > 2.0 * np.abs(clean[2]).max()
     assert errors[1] < 0.01 * errors[0]
@@ -90,20 +113,30 @@ def test_smoothing_takes_the_noise_out_of_accelerations(here, smoothing, points)
 
 
 def test_a_cycle_goes_on_smoothly_over_its_seam(here):
-    """With the row that closes it, and without it but with the period; an axis that advances by a turn a cycle."""
+    """With the row that closes it, and without it but with the period; an axis that advances by a
+    turn a cycle.
+    """
     t = np.linspace(0.0, 0.8, 81)
     wave, turning = 10.0 * np.sin(2 * np.pi * t / 0.8), t / 0.8 + 0.05 * np.sin(2 * np.pi * t / 0.8)
     whole = write(here / "whole.csv", ["t", "q"], np.column_stack([t, wave]))
     part = write(here / "part.csv", ["t", "q"], np.column_stack([t, wave])[:-1])
     turns = write(here / "turns.csv", ["t", "q"], np.column_stack([t, turning]))
     at = np.linspace(-1.0, 3.0, 401)
-    exact = [10e-3 * np.sin(2 * np.pi * at / 0.8), -10e-3 * (2 * np.pi / 0.8) ** 2 * np.sin(2 * np.pi * at / 0.8)]
-    for law in (read_samples(whole, unit="mm", periodic=True), read_samples(part, unit="mm", period=0.8)):
+    exact = [
+        10e-3 * np.sin(2 * np.pi * at / 0.8),
+        -10e-3 * (2 * np.pi / 0.8) ** 2 * np.sin(2 * np.pi * at / 0.8),
+    ]
+    for law in (
+        read_samples(whole, unit="mm", periodic=True),
+        read_samples(part, unit="mm", period=0.8),
+    ):
         value, _, bend = derivatives(law, at)
         assert value == pytest.approx(exact[0], abs=1e-8)
         assert bend == pytest.approx(exact[1], abs=1e-3)
     value, rate, _ = derivatives(read_samples(turns, unit="turn", periodic=True, advance=1.0), at)
-    assert value == pytest.approx(2 * np.pi * (at / 0.8 + 0.05 * np.sin(2 * np.pi * at / 0.8)), abs=1e-6)
+    assert value == pytest.approx(
+        2 * np.pi * (at / 0.8 + 0.05 * np.sin(2 * np.pi * at / 0.8)), abs=1e-6
+    )
     assert rate.mean() == pytest.approx(2 * np.pi / 0.8, rel=1e-4)
 
 
@@ -114,9 +147,24 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
     ("rows", "options", "error", "says"),
     [
         (RAMP, {"value": "w"}, UnknownNameError, r"axis\.csv: unknown column 'w'; valid: t, q"),
-        (RAMP, {"value": 3}, DeclarationError, r"axis\.csv: column 3 is none of the 2 there are, numbered from 1"),
-        (RAMP, {"unit": "grad"}, UnknownNameError, r"axis\.csv: unknown unit 'grad'.*; valid: rad, deg"),
-        (RAMP, {"time_unit": "min"}, UnknownNameError, r"axis\.csv: unknown time unit 'min'; valid: s, ms, us"),
+        (
+            RAMP,
+            {"value": 3},
+            DeclarationError,
+            r"axis\.csv: column 3 is none of the 2 there are, numbered from 1",
+        ),
+        (
+            RAMP,
+            {"unit": "grad"},
+            UnknownNameError,
+            r"axis\.csv: unknown unit 'grad'.*; valid: rad, deg",
+        ),
+        (
+            RAMP,
+            {"time_unit": "min"},
+            UnknownNameError,
+            r"axis\.csv: unknown time unit 'min'; valid: s, ms, us",
+        ),
         (
             RAMP,
             {"periodic": True},
@@ -129,14 +177,44 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
             DeclarationError,
             r"its rows last 0\.7 s, but the period is 0\.5 s; expected the rows of one period",
         ),
-        (RAMP, {"advance": 1.0}, DeclarationError, "advance is of a periodic motion; expected periodic=True"),
-        (RAMP, {"smoothing": -1.0}, DeclarationError, r"smoothing must be the noise \[rad\], a number that is not negative"),
+        (
+            RAMP,
+            {"advance": 1.0},
+            DeclarationError,
+            "advance is of a periodic motion; expected periodic=True",
+        ),
+        (
+            RAMP,
+            {"smoothing": -1.0},
+            DeclarationError,
+            r"smoothing must be the noise \[rad\], a number that is not negative",
+        ),
         (RAMP, {"smoothing": "auto"}, DeclarationError, "or 'estimated', got 'auto'"),
-        (RAMP, {"smoothing": 1e3}, DeclarationError, r"axis\.csv: curve: a smoothing of 1000 leaves but a straight line"),
-        (RAMP, {"points": 3}, DeclarationError, "points: expected a whole number of at least 5, got 3"),
+        (
+            RAMP,
+            {"smoothing": 1e3},
+            DeclarationError,
+            r"axis\.csv: curve: a smoothing of 1000 leaves but a straight line",
+        ),
+        (
+            RAMP,
+            {"points": 3},
+            DeclarationError,
+            "points: expected a whole number of at least 5, got 3",
+        ),
         (RAMP[:4], {}, DeclarationError, "expected at least 5 rows of numbers, got 4"),
-        ([*RAMP, [0.7, 1.0]], {}, DeclarationError, r"axis\.csv, line 10: times must rise, but 0\.7000000000000 follows 0\.7"),
-        ([*RAMP, [0.9, math.nan]], {}, DeclarationError, r"axis\.csv, line 10: expected a finite number, got 'nan'"),
+        (
+            [*RAMP, [0.7, 1.0]],
+            {},
+            DeclarationError,
+            r"axis\.csv, line 10: times must rise, but 0\.7000000000000 follows 0\.7",
+        ),
+        (
+            [*RAMP, [0.9, math.nan]],
+            {},
+            DeclarationError,
+            r"axis\.csv, line 10: expected a finite number, got 'nan'",
+        ),
     ],
 )
 def test_misuse_is_named(here, rows, options, error, says):
@@ -148,7 +226,9 @@ def test_misuse_is_named(here, rows, options, error, says):
 def test_a_first_row_that_is_no_head_is_not_passed_over(here, cell):
     with pytest.raises(DeclarationError, match=r"axis\.csv, line 1: expected a finite number, got"):
         read_samples(write(here / "axis.csv", ["0", cell], RAMP))
-    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).told.startswith(f"{len(RAMP)} samples of ")
+    assert read_samples(write(here / "axis.csv", ["", "0"], RAMP), value=2).told.startswith(
+        f"{len(RAMP)} samples of "
+    )
 
 
 def test_files_that_cannot_be_read(here):
@@ -158,7 +238,9 @@ def test_files_that_cannot_be_read(here):
     with pytest.raises(DeclarationError, match=r"empty\.csv: it has no rows"):
         read_samples(here / "empty.csv")
     (here / "short.csv").write_text("t;q\n0;1\n1;2\n# why\n2;\n")
-    with pytest.raises(DeclarationError, match=r"short\.csv, line 5: expected a finite number, got ''"):
+    with pytest.raises(
+        DeclarationError, match=r"short\.csv, line 5: expected a finite number, got ''"
+    ):
         read_samples(here / "short.csv")
 
 
@@ -171,11 +253,14 @@ def scene():
     m = Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=0.6, mass=2.0))
     return Scene(m, {"J": read_samples(Path(__file__).parent / "axis.csv", unit="deg")}, t=(0, 0.7, 11))
-"""
+"""  # noqa: E501
 
 
 def test_info_tells_what_a_motion_is_from(here, capsys):
     write(here / "axis.csv", ["t", "q"], RAMP)
     (here / "arm.py").write_text(CASE)
     assert main(["info", "arm.py"]) == 0
-    assert "  drive J: 8 samples of axis.csv from 0 to 0.7 s, at most 0 deg off; from 0 rad" in capsys.readouterr().out
+    assert (
+        "  drive J: 8 samples of axis.csv from 0 to 0.7 s, at most 0 deg off; from 0 rad"
+        in capsys.readouterr().out
+    )

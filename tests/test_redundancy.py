@@ -19,39 +19,60 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 def test_reactions_that_are_not_unique_are_named():
     solution = evaluate(parallelogram())
-    open_ = {name.rpartition(":")[0] for name in solution.undetermined if name.startswith("reaction")}
+    open_ = {
+        name.rpartition(":")[0] for name in solution.undetermined if name.startswith("reaction")
+    }
     assert open_ == {f"reaction:{joint}" for joint in "OPQABC"}
     assert np.isnan(solution.reaction("A").fx).all()
     # The cranks turn together, the bar moves without turning: the torque is what all of them need.
     rate = 2.0
-    torque = 3 * (0.3 * 0.1 * 9.81 * np.cos(0.7 + rate * solution.t)) + 1.0 * 0.2 * 9.81 * np.cos(0.7 + rate * solution.t)
+    torque = 3 * (0.3 * 0.1 * 9.81 * np.cos(0.7 + rate * solution.t)) + 1.0 * 0.2 * 9.81 * np.cos(
+        0.7 + rate * solution.t
+    )
     np.testing.assert_allclose(solution.effort("O"), torque, atol=1e-12)
 
 
 def test_single_precision_closes_what_is_too_many():
-    """Near no dead centre its last corrections are rounding, and not the slow convergence that they look like."""
-    exact, single = (evaluate(parallelogram(), precision=precision) for precision in ("double", "single"))
-    np.testing.assert_allclose(single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O"))))
+    """Near no dead centre its last corrections are rounding, and not the slow convergence that they
+    look like.
+    """
+    exact, single = (
+        evaluate(parallelogram(), precision=precision) for precision in ("double", "single")
+    )
+    np.testing.assert_allclose(
+        single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O")))
+    )
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("scene", [parallelogram(), load_case("bricard").scene], ids=["plane", "space"])
+@pytest.mark.parametrize(
+    "scene", [parallelogram(), load_case("bricard").scene], ids=["plane", "space"]
+)
 def test_steps_that_are_counted_leave_equations_that_are_too_many_as_little_closed_as_others(scene):
-    """Two steps give what closed loops do; one is worth less, and says so. What does not fit by more is refused all the same."""
+    """Two steps give what closed loops do; one is worth less, and says so.
+
+    What does not fit by more is refused all the same.
+    """
     t = (0.0, 1.0, 401)
     exact = evaluate(scene, wanted=["effort"], t=t)
     (effort,) = exact.names()
     size = np.abs(exact.array(effort)).max()
     for steps, near in ((1, 1e-3), (2, 1e-7)):
         found = evaluate(scene, wanted=["effort"], t=t, newton=steps)
-        assert np.abs(found.array(effort) - exact.array(effort)).max() <= min(near * size, 2 * found.errors[effort])
+        assert np.abs(found.array(effort) - exact.array(effort)).max() <= min(
+            near * size, 2 * found.errors[effort]
+        )
         designs = DesignEngine.of(scene, ["effort"], t, rung=Rung("c", newton=steps))
-        assert designs.evaluate(np.array([list(scene.mechanism.values().values())])).status.tolist() == [Status.OK]
+        assert designs.evaluate(
+            np.array([list(scene.mechanism.values().values())])
+        ).status.tolist() == [Status.OK]
 
 
 @pytest.mark.parametrize("steps", [1, 5])
 def test_counted_steps_do_not_hide_a_misfit(steps):
-    with pytest.raises((MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"):
+    with pytest.raises(
+        (MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"
+    ):
         evaluate(parallelogram(third=1.02), newton=steps)
 
 
@@ -66,7 +87,9 @@ def test_a_unique_reaction_stays_where_others_are_not():
 
 
 def test_an_over_constrained_mechanism_that_does_not_fit_is_refused():
-    with pytest.raises((MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"):
+    with pytest.raises(
+        (MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"
+    ):
         evaluate(parallelogram(third=1.02))
 
 
@@ -92,13 +115,19 @@ def test_a_static_structure_needs_no_drive():
     m.force("tip", beam.tip, y=-10.0)
     solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5)))
     xi = 2.0 * solution.xi
-    np.testing.assert_allclose(solution.section("beam").bending[0], -10 * (2 - xi) - 3 / 2 * 9.81 * (2 - xi) ** 2 / 2, rtol=1e-14)
+    np.testing.assert_allclose(
+        solution.section("beam").bending[0],
+        -10 * (2 - xi) - 3 / 2 * 9.81 * (2 - xi) ** 2 / 2,
+        rtol=1e-14,
+    )
     assert solution.reaction("wall").mz[0] == pytest.approx(10 * 2 + 3 * 9.81 * 1)
     assert solution.reaction("wall").fy[0] == pytest.approx(10 + 3 * 9.81)
 
 
 def test_two_gears_between_the_same_wheels_share_their_couple():
-    """Each one's multiplier is open; what they do together, and so every reaction and the drive, is not."""
+    """Each one's multiplier is open; what they do together, and so every reaction and the drive, is
+    not.
+    """
 
     def wheels(*meshes):
         m = Mechanism("wheels")
@@ -132,7 +161,9 @@ def test_a_weld_that_misses_by_half_a_turn_does_not_fit():
 
 
 def three_cranks(default=math.pi / 2, **keywords):
-    """Three equal cranks side by side carry one bar; what each end of it bears is open, but for the postures in which it is not."""
+    """Three equal cranks side by side carry one bar; what each end of it bears is open, but for the
+    postures in which it is not.
+    """
     m = Mechanism("three_cranks")
     a, b, c = (m.link(name, length=0.2, mass=0.3) for name in "abc")
     bar = m.link("bar", length=1.0, mass=1.0)
@@ -140,14 +171,25 @@ def three_cranks(default=math.pi / 2, **keywords):
         m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
         m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
     angle = m.parameter("angle", default, "rad")
-    return Scene(m, {"G0": polynomial(angle)}, posture={"a": 1.5, "b": 1.5, "c": 1.5, "bar": 0.0}, t=(0, 0, 1), **keywords)
+    return Scene(
+        m,
+        {"G0": polynomial(angle)},
+        posture={"a": 1.5, "b": 1.5, "c": 1.5, "bar": 0.0},
+        t=(0, 0, 1),
+        **keywords,
+    )
 
 
 @pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
 def test_what_is_open_is_decided_for_the_parameters_that_are_evaluated(backend):
-    """Upright cranks share the bar's weight in a way of their own each; leaning ones share its thrust too."""
+    """Upright cranks share the bar's weight in a way of their own each; leaning ones share its
+    thrust too.
+    """
     scene = three_cranks()
-    upright, leaning = (evaluate(scene, parameters={"angle": angle}, backend=backend) for angle in (math.pi / 2, 1.0))
+    upright, leaning = (
+        evaluate(scene, parameters={"angle": angle}, backend=backend)
+        for angle in (math.pi / 2, 1.0)
+    )
     opened = {name for name in leaning.undetermined if name.startswith("reaction")}
     assert opened > {name for name in upright.undetermined if name.startswith("reaction")}
     for joint in ("B0", "B1", "B2"):
@@ -167,8 +209,12 @@ def test_what_is_open_is_decided_for_the_parameters_that_are_evaluated(backend):
         pytest.param(["reaction:B0", "effort"], "lanes", marks=pytest.mark.long),
     ],
 )
-def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(wanted, backend, tmp_path):
-    """The defaults lean: alone they would say that nothing is there; upright cranks have it all the same."""
+def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(
+    wanted, backend, tmp_path
+):
+    """The defaults lean: alone they would say that nothing is there; upright cranks have it all the
+    same.
+    """
     scene = three_cranks(default=1.0, wanted=wanted)
     upright = evaluate(scene, parameters={"angle": math.pi / 2}).peak("reaction:B0:fx")
     f = prepare(scene, backend=backend)
@@ -189,16 +235,23 @@ def test_what_is_unique_is_not_withheld():
     solution = evaluate(three_cranks(), parameters={"angle": 1.0}, xi=(0, 1, 5))
     for link in "bc":
         section = solution.section(link)
-        assert [solution.determined(f"section:{link}:{force}") for force in ("axial", "shear", "bending")] == [False, True, True]
+        assert [
+            solution.determined(f"section:{link}:{force}")
+            for force in ("axial", "shear", "bending")
+        ] == [False, True, True]
         u, weight = solution.xi, 0.3 * 9.81 * math.cos(1.0)
-        np.testing.assert_allclose(section.bending[0], weight * 0.2 * u * (u - 1) / 2 * -1, atol=1e-14)
+        np.testing.assert_allclose(
+            section.bending[0], weight * 0.2 * u * (u - 1) / 2 * -1, atol=1e-14
+        )
         assert np.isnan(section.axial).all()
         assert f"section:{link}:shear" in solution.errors
         assert f"section:{link}:axial" not in solution.errors
 
 
 def test_a_sweep_decides_for_each_design():
-    """The same columns for all designs; where one is open for a design there is no number, and the file says that this may be."""
+    """The same columns for all designs; where one is open for a design there is no number, and the
+    file says that this may be.
+    """
     scene = three_cranks()
     for rung in (Rung("vm"), Rung("c"), Rung("lanes"), Rung("c", precision="single")):
         designs = DesignEngine.of(scene, rung=rung)
@@ -210,4 +263,6 @@ def test_a_sweep_decides_for_each_design():
             if name.count(":") > 1 or name.startswith("effort"):
                 assert np.isfinite(upright) == one.determined(name), (rung, name)
                 assert np.isfinite(leaning) == both.determined(name), (rung, name)
-        assert any(np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values())
+        assert any(
+            np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values()
+        )

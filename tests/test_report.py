@@ -1,4 +1,6 @@
-"""A report's page: it holds the solution's numbers to the last bit, no name of a user is markup, and it is whole or not there."""
+"""A report's page: it holds the solution's numbers to the last bit, no name of a user is markup,
+and it is whole or not there.
+"""
 
 import functools
 import json
@@ -20,7 +22,10 @@ from lagrange_casadi.report import instants, page, write_report
 from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
 from lagrange_casadi.shapes.shapes import joint_shapes, shapes
 
-ASSETS = {path.name: path.read_text() for path in resources.files("lagrange_casadi.report").joinpath("assets").iterdir()}
+ASSETS = {
+    path.name: path.read_text()
+    for path in resources.files("lagrange_casadi.report").joinpath("assets").iterdir()
+}
 
 
 @pytest.mark.parametrize("name", ["four_bar", "excavator", "rssr"])
@@ -38,14 +43,19 @@ def test_charts_hold_the_solution_to_the_last_bit(name):
             assert (places is None) == (series["places"] is None)
 
 
-LAWS = {name: functools.partial(solved, name) for name in ("quick_return", "excavator", "engine", "rssr", "delta")}
+LAWS = {
+    name: functools.partial(solved, name)
+    for name in ("quick_return", "excavator", "engine", "rssr", "delta")
+}
 LAWS["couples of slices"] = lambda: evaluate(wound(), backend="vm")
 
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("what", [*LAWS, "loads along a link", "loads along a link in space"])
 def test_the_section_law_of_a_page_is_that_of_the_solution(what):
-    """Summed up as the viewer does: terms, and what acts beyond a section at stations, which may slide."""
+    """Summed up as the viewer does: terms, and what acts beyond a section at stations, which may
+    slide.
+    """
     solution = LAWS[what]() if what in LAWS else snowed(what.endswith("space"))
     found, array = held(page(solution))
     assert [entry["link"] for entry in found["sections"]] == list(solution.links_with_sections)
@@ -57,9 +67,15 @@ def test_the_section_law_of_a_page_is_that_of_the_solution(what):
                 station = array(acting["station"])[:, None]
                 push = array(acting[force["acting"]])[:, None] + 0.0 * xi
                 if force["arm"]:
-                    push = push + force["arm"] * entry["length"] * array(acting[force["across"]])[:, None] * (station - xi)
-                values = values + np.where((xi < station) | ((xi >= 1.0) & (station >= 1.0)), push, 0.0)
-            forces[force["name"]] = np.hypot(*(forces[part] for part in force["parts"])) if force["parts"] else values
+                    push = push + force["arm"] * entry["length"] * array(acting[force["across"]])[
+                        :, None
+                    ] * (station - xi)
+                values = values + np.where(
+                    (xi < station) | ((xi >= 1.0) & (station >= 1.0)), push, 0.0
+                )
+            forces[force["name"]] = (
+                np.hypot(*(forces[part] for part in force["parts"])) if force["parts"] else values
+            )
             expected = law.on_grid(force["name"], xi)
             scale = max(law.bound(force["name"], xi), 1e-300)
             np.testing.assert_allclose(forces[force["name"]], expected, rtol=0, atol=1e-12 * scale)
@@ -70,17 +86,36 @@ def test_rows_are_the_solutions_peaks_means_and_errors(name):
     solution = solved(name)
     found, _ = held(page(solution))
     rows = {row["name"]: row for row in found["rows"]}
-    assert {str(output) for output in solution.quantities() if output.group in ("effort", "reaction", "section")} <= rows.keys()
+    assert {
+        str(output)
+        for output in solution.quantities()
+        if output.group in ("effort", "reaction", "section")
+    } <= rows.keys()
     for name, row in rows.items():
         peak, own = solution.peak(name), solution.statistics(name)
-        assert [row["peak"][key] for key in ("value", "t", "xi", "over")] == [peak.value + 0.0, peak.t, peak.xi, peak.over]
-        assert (row["mean"], row["rms"], row["smallest"]["value"]) == (own.mean, own.rms, own.smallest.value + 0.0)
-        assert row["error"] == pytest.approx(solution.errors[name]) if name in solution.errors else True
+        assert [row["peak"][key] for key in ("value", "t", "xi", "over")] == [
+            peak.value + 0.0,
+            peak.t,
+            peak.xi,
+            peak.over,
+        ]
+        assert (row["mean"], row["rms"], row["smallest"]["value"]) == (
+            own.mean,
+            own.rms,
+            own.smallest.value + 0.0,
+        )
+        assert (
+            row["error"] == pytest.approx(solution.errors[name])
+            if name in solution.errors
+            else True
+        )
 
 
 def test_sensitivities_are_charted_in_their_units():
     scene = load_case("slider_crank").scene
-    solution = evaluate(scene, wanted=["motion", "effort", "sensitivity:l"], t=(0, 0.08, 5), backend="vm")
+    solution = evaluate(
+        scene, wanted=["motion", "effort", "sensitivity:l"], t=(0, 0.08, 5), backend="vm"
+    )
     found, array = held(page(solution))
     series = {one["name"]: one for one in found["series"] if one["group"] == "sensitivity"}
     assert series["sensitivity:l:effort:O"]["unit"] == "N m/m"
@@ -94,7 +129,11 @@ def test_what_is_open_is_said_and_has_no_number():
     found, _ = held(page(solution))
     assert found["undetermined"] == list(solution.undetermined)
     told = {row["name"] for row in found["rows"] if row["open"]}
-    assert told == {row["name"] for row in found["rows"] if not solution.determined(row["name"])} != set()
+    assert (
+        told
+        == {row["name"] for row in found["rows"] if not solution.determined(row["name"])}
+        != set()
+    )
     assert not told & {series["name"] for series in found["series"]}
 
 
@@ -104,7 +143,9 @@ def test_a_page_of_801_instants_is_under_three_megabytes():
     assert len(text.encode()) < 3_000_000
 
 
-def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(monkeypatch, tmp_path, capsys):
+def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(
+    monkeypatch, tmp_path, capsys
+):
     solution = solved("four_bar", 401)
     monkeypatch.setattr(instants, "MOST", 2000)
     monkeypatch.setattr(instants, "LEAST", 30)
@@ -119,7 +160,10 @@ def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(m
         assert row["smallest"]["t"] in shown
     save(solution, tmp_path / "bar.h5")
     assert main(["report", str(tmp_path / "bar.h5"), "--out", str(tmp_path / "bar.html")]) == 0
-    note = f"note: pictures and charts show {told['shown']} of 401 instants, which is as many as fit; tables are of all\n"
+    note = (
+        f"note: pictures and charts show {told['shown']} of 401 instants, which is as many as fit;"
+        " tables are of all\n"
+    )
     assert capsys.readouterr().err == note
 
 
@@ -142,9 +186,13 @@ def test_no_name_is_markup():
 
 
 def test_the_viewer_makes_no_markup_of_texts_and_asks_for_nothing():
-    assert {f"{name}.js" for name in (*LIVE_SCRIPTS, *SCRIPTS, *SWEEP_SCRIPTS)} == {name for name in ASSETS if name.endswith(".js")}
+    assert {f"{name}.js" for name in (*LIVE_SCRIPTS, *SCRIPTS, *SWEEP_SCRIPTS)} == {
+        name for name in ASSETS if name.endswith(".js")
+    }
     for name, text in ASSETS.items():
-        assert not re.search(r"(inner|outer)HTML|insertAdjacentHTML|document\.write|\beval\(|new Function", text), name
+        assert not re.search(
+            r"(inner|outer)HTML|insertAdjacentHTML|document\.write|\beval\(|new Function", text
+        ), name
         assert not re.search(r"\bfetch\(|\bimport\b|XMLHttp|WebSocket|sendBeacon", text), name
         addresses = set(re.findall(r"https?://[^\"'\s]+", text))
         assert addresses <= {"http://www.w3.org/2000/svg"}, name
@@ -161,20 +209,37 @@ def test_every_kind_of_joint_and_a_spring_are_in_a_page():
     solution = every_kind()
     found, array = held(page(solution))
     kinds = {joint["kind"] for joint in found["joints"]}
-    assert {"revolute", "prismatic", "cylindrical", "screw", "planar", "slot", "universal", "spherical", "free", "weld"} == kinds
+    assert {
+        "revolute",
+        "prismatic",
+        "cylindrical",
+        "screw",
+        "planar",
+        "slot",
+        "universal",
+        "spherical",
+        "free",
+        "weld",
+    } == kinds
     assert [load["kind"] for load in found["loads"]] == ["spring"]
     assert [path["name"] for path in found["paths"]] == ["end"]
-    (universal,) = [joint for joint in joint_shapes(solution.description) if joint.kind == "universal"]
+    (universal,) = [
+        joint for joint in joint_shapes(solution.description) if joint.kind == "universal"
+    ]
     assert abs(np.linalg.norm(universal.second) - 1.0) < 1e-12
     for body in found["bodies"]:
         pose = np.array([array(k) for k in body["pose"]])
         axes = pose[3:].T.reshape(-1, 3, 3)
-        np.testing.assert_allclose(axes @ axes.transpose(0, 2, 1), np.broadcast_to(np.eye(3), axes.shape), atol=1e-12)
+        np.testing.assert_allclose(
+            axes @ axes.transpose(0, 2, 1), np.broadcast_to(np.eye(3), axes.shape), atol=1e-12
+        )
 
 
 def test_without_motion_it_says_what_to_want(tmp_path, capsys):
     solution = press(wanted=("effort",))
-    with pytest.raises(DeclarationError, match="there is no motion of 'crank', 'rod', 'ram'; want motion too"):
+    with pytest.raises(
+        DeclarationError, match="there is no motion of 'crank', 'rod', 'ram'; want motion too"
+    ):
         page(solution)
     save(solution, tmp_path / "press.h5")
     assert main(["report", str(tmp_path / "press.h5"), "--out", str(tmp_path / "press.html")]) == 2
@@ -187,7 +252,9 @@ def test_a_file_that_is_there_is_replaced_whole_or_not_at_all(tmp_path, monkeypa
     target.write_text("before")
     solution = press()
     with monkeypatch.context() as patch:
-        patch.setattr("os.replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        patch.setattr(
+            "os.replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device"))
+        )
         with pytest.raises(Exception, match="No space left"):
             solution.report(target)
     assert target.read_text() == "before"
@@ -206,7 +273,23 @@ def test_the_command_takes_a_file_or_a_case(tmp_path, monkeypatch, capsys):
     save(solution, "press.h5")
     assert main(["report", "press.h5"]) == 0
     assert capsys.readouterr().out == "wrote press.html: open it in a browser\n"
-    assert main(["report", "four_bar", "--t", "0:1:5", "--out", "bar.html", "--want", "effort", "--set", "a=0.11"]) == 0
+    assert (
+        main(
+            [
+                "report",
+                "four_bar",
+                "--t",
+                "0:1:5",
+                "--out",
+                "bar.html",
+                "--want",
+                "effort",
+                "--set",
+                "a=0.11",
+            ]
+        )
+        == 0
+    )
     found, _ = held((tmp_path / "bar.html").read_text())
     assert found["instants"]["total"] == 5
     assert {series["group"] for series in found["series"]} >= {"effort", "motion"}
@@ -232,7 +315,9 @@ def test_a_damaged_file_is_refused(tmp_path, capsys):
 
 def test_a_certificate_that_fails_is_in_the_page_and_in_the_status(tmp_path, capsys):
     solution = press()
-    wrong = replace(solution, certificate={**solution.certificate, "balance": np.full(solution.t.size, 0.5)})
+    wrong = replace(
+        solution, certificate={**solution.certificate, "balance": np.full(solution.t.size, 0.5)}
+    )
     save(wrong, tmp_path / "press.h5")
     assert main(["report", str(tmp_path / "press.h5"), "--out", str(tmp_path / "press.html")]) == 1
     assert "the certificate fails: balance 0.5" in capsys.readouterr().err

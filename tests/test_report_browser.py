@@ -1,4 +1,6 @@
-"""Reports in a real browser, from files and without a network: they open, move, and show the file's numbers to the digits shown."""
+"""Reports in a real browser, from files and without a network: they open, move, and show the file's
+numbers to the digits shown.
+"""
 
 import csv
 import io
@@ -31,7 +33,10 @@ def page(tmp_path_factory):
             solution.report(path)
             one.size(1400, 900)
             one.open(path)
-            one.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+            one.run(
+                "navigator.clipboard.writeText = (text) => { window.copied = text; return"
+                " Promise.resolve(); }"
+            )
             assert one.complaints == []
             return one
 
@@ -39,14 +44,19 @@ def page(tmp_path_factory):
 
 
 def quiet(one):
-    """Nothing was complained of, and nothing asked for but the file itself and pictures that it holds."""
+    """Nothing was complained of, and nothing asked for but the file itself and pictures that it
+    holds.
+    """
     assert one.complaints == []
     first, *others = one.asked
     assert first.startswith("file://")
     assert all(address.startswith("data:") for address in others)
 
 
-TABLE = "[...document.querySelectorAll('.table')].find((one) => one.querySelector('h2').textContent === '{}')"
+TABLE = (
+    "[...document.querySelectorAll('.table')].find((one) => one.querySelector('h2').textContent ==="
+    " '{}')"
+)
 
 
 def copied(one, caption):
@@ -57,15 +67,27 @@ def copied(one, caption):
 
 def shown(one, caption):
     """The texts of a table: its heads, and its rows."""
-    cells = "[...row.cells].map((cell) => (cell.querySelector('.go') ? cell.lastChild : cell).textContent)"
-    heads, *rows = one.run(f"[...{TABLE.format(caption)}.querySelectorAll('tr')].map((row) => {cells})")
+    cells = (
+        "[...row.cells].map((cell) => (cell.querySelector('.go') ? cell.lastChild :"
+        " cell).textContent)"
+    )
+    heads, *rows = one.run(
+        f"[...{TABLE.format(caption)}.querySelectorAll('tr')].map((row) => {cells})"
+    )
     return heads, [[text.translate({0x2212: "-", 0xA0: " "}) for text in row] for row in rows]
 
 
 def number(text):
     """What a shown value is, its unit left out."""
     mantissa, exponent = re.fullmatch(r"(-?[\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: .*)?", text).groups()
-    return float(mantissa + (f"e{exponent.translate(str.maketrans('⁻⁰¹²³⁴⁵⁶⁷⁸⁹', '-0123456789'))}" if exponent else ""))
+    return float(
+        mantissa
+        + (
+            f"e{exponent.translate(str.maketrans('⁻⁰¹²³⁴⁵⁶⁷⁸⁹', '-0123456789'))}"
+            if exponent
+            else ""
+        )
+    )
 
 
 def to_digits(value, digits):
@@ -76,13 +98,31 @@ def to_digits(value, digits):
 def test_tables_show_the_files_numbers_to_the_digits_shown(page, name):
     solution = solved(name)
     one = page(solution)
-    one.run("document.querySelector('.switch').click(); document.querySelector('.tools input[type=checkbox]')?.click()")
+    one.run(
+        "document.querySelector('.switch').click(); document.querySelector('.tools"
+        " input[type=checkbox]')?.click()"
+    )
     heads, rows = shown(one, "Peaks")
     assert heads == ["part", "quantity", "largest in size", "may be off by", "t", "ξ/l"]
-    told = [o for o in solution.quantities() if o.group in ("effort", "reaction", "section", "output") and solution.determined(o)]
-    expected = {(o.part, solution.unit(o), to_digits(solution.peak(o).value, 6), to_digits(solution.peak(o).t, 5)) for o in told}
+    told = [
+        o
+        for o in solution.quantities()
+        if o.group in ("effort", "reaction", "section", "output") and solution.determined(o)
+    ]
+    expected = {
+        (
+            o.part,
+            solution.unit(o),
+            to_digits(solution.peak(o).value, 6),
+            to_digits(solution.peak(o).t, 5),
+        )
+        for o in told
+    }
     assert len(expected) > 10
-    assert expected <= {(row[0], row[2].partition(" ")[2].replace("·", " "), number(row[2]), number(row[4])) for row in rows}
+    assert expected <= {
+        (row[0], row[2].partition(" ")[2].replace("·", " "), number(row[2]), number(row[4]))
+        for row in rows
+    }
     _, rows = shown(one, "Over the cycle")
     over_time = [o for o in told if o.group != "section"]
     assert {(o.part, to_digits(solution.statistics(o).mean, 6)) for o in over_time} <= {
@@ -98,11 +138,17 @@ def test_a_table_is_copied_with_all_digits_and_sorted_by_a_press(page):
     assert len(rows) > 10
     for row in rows:
         peak = solution.peak(row["name"])
-        assert (float(row["largest in size"]), float(row["t [s]"]), row["unit"]) == (peak.value, peak.t, peak.unit)
+        assert (float(row["largest in size"]), float(row["t [s]"]), row["unit"]) == (
+            peak.value,
+            peak.t,
+            peak.unit,
+        )
         assert row["xi/l"] == "" if peak.xi is None else float(row["xi/l"]) == peak.xi
     one.run(f"{TABLE.format('Peaks')}.querySelectorAll('thead button')[2].click()")
     sizes = [abs(float(row["largest in size"])) for row in copied(one, "Peaks")]
-    assert sizes == sorted(sizes, reverse=True) != [abs(float(row["largest in size"])) for row in rows]
+    assert (
+        sizes == sorted(sizes, reverse=True) != [abs(float(row["largest in size"])) for row in rows]
+    )
     for row in copied(one, "Over the cycle"):
         assert float(row["smallest"]) == solution.statistics(row["name"]).smallest.value
 
@@ -110,7 +156,11 @@ def test_a_table_is_copied_with_all_digits_and_sorted_by_a_press(page):
 def test_readable_units_are_the_same_numbers(page):
     solution = solved("excavator")
     one = page(solution)
-    efforts = {part: value.split(" ") for part, quantity, value, *_ in shown(one, "Peaks")[1] if quantity == "effort"}
+    efforts = {
+        part: value.split(" ")
+        for part, quantity, value, *_ in shown(one, "Peaks")[1]
+        if quantity == "effort"
+    }
     assert len(efforts) == 3
     for part, (value, unit) in efforts.items():
         assert unit == "kN"
@@ -122,15 +172,24 @@ def test_it_plays_pauses_steps_and_scrubs(page):
     instant = "Number(document.querySelector('.transport input').value)"
     assert one.run(instant) == 0
     one.run("document.querySelector('.play').click()")
-    assert one.run(f"new Promise((done) => {{ const look = () => {instant} > 3 ? done(true) : setTimeout(look, 20); look(); }})")
+    assert one.run(
+        f"new Promise((done) => {{ const look = () => {instant} > 3 ? done(true) : setTimeout(look,"
+        " 20); look(); })"
+    )
     one.run("document.querySelector('.play').click()")
     at = one.run(instant)
     one.press("ArrowRight")
     assert one.run(instant) == at + 1
     one.press(" ", " ")
     one.press(" ", " ")
-    one.run("{ const bar = document.querySelector('.transport input'); bar.value = 50; bar.dispatchEvent(new Event('input')); }")
-    assert one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')") == "t = 314 ms"
+    one.run(
+        "{ const bar = document.querySelector('.transport input'); bar.value = 50;"
+        " bar.dispatchEvent(new Event('input')); }"
+    )
+    assert (
+        one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
+        == "t = 314 ms"
+    )
     quiet(one)
 
 
@@ -139,16 +198,25 @@ def told(one):
     plain = {0x2212: "-", 0xA0: " "}
     head = one.run("document.querySelector('.tip .head').textContent").translate(plain)
     texts = [
-        text.translate(plain) for text in one.run("[...document.querySelectorAll('.tip dl > *')].map((one) => one.textContent)")
+        text.translate(plain)
+        for text in one.run(
+            "[...document.querySelectorAll('.tip dl > *')].map((one) => one.textContent)"
+        )
     ]
-    return head, {name: (number(value), value.partition(" ")[2]) for name, value in zip(texts[::2], texts[1::2], strict=True)}
+    return head, {
+        name: (number(value), value.partition(" ")[2])
+        for name, value in zip(texts[::2], texts[1::2], strict=True)
+    }
 
 
 def hovered(one, kind, across, down):
     """The same, with the pointer over a plot."""
     plot = f"document.querySelector('.{kind}')"
     one.run(f"{plot}.scrollIntoView({{ block: 'center' }})")
-    left, top, width, height = (one.run(f"{plot}.getBoundingClientRect().{side}") for side in ("left", "top", "width", "height"))
+    left, top, width, height = (
+        one.run(f"{plot}.getBoundingClientRect().{side}")
+        for side in ("left", "top", "width", "height")
+    )
     one.point(left + across * width, top + down * height)
     return told(one)
 
@@ -181,16 +249,27 @@ def test_a_section_map_tells_the_solutions_forces(page, name):
 
 
 def test_a_map_of_stress_tells_the_solutions_stress_and_where_it_is_largest(page):
-    solution = evaluate(strong.slider(), wanted=["all", "stress:rod"], backend="vm", certificate=False)
+    solution = evaluate(
+        strong.slider(), wanted=["all", "stress:rod"], backend="vm", certificate=False
+    )
     one = page(solution)
-    card = "[...document.querySelectorAll('.card')].find((one) => one.querySelectorAll('select')[1]?.value === 'stress')"
-    one.run(f"{{ const list = {card}.querySelector('select'); list.value = 'rod'; list.dispatchEvent(new Event('change')); }}")
+    card = (
+        "[...document.querySelectorAll('.card')].find((one) =>"
+        " one.querySelectorAll('select')[1]?.value === 'stress')"
+    )
+    one.run(
+        f"{{ const list = {card}.querySelector('select'); list.value = 'rod';"
+        " list.dispatchEvent(new Event('change')); }"
+    )
     stress = solution.stress("rod")
     peak = stress.peak("von_mises")
     words = one.run(f"{card}.querySelector('.told-peak').textContent").translate({0xA0: " "})
     place = f"ξ/l = {peak.xi:.3g}, t = {to_digits(1e3 * peak.t, 5):g} ms, {peak.fibre}"
     assert words == f"largest: {to_digits(peak.value / 1e6, 5):g} MPa at {place}"
-    one.run(f"document.querySelectorAll('.map').forEach((map) => map.closest('.card') === {card} || map.closest('.card').remove())")
+    one.run(
+        f"document.querySelectorAll('.map').forEach((map) => map.closest('.card') === {card} ||"
+        " map.closest('.card').remove())"
+    )
     head, lines = hovered(one, "map", 0.5, 0.4)
     i, xi = instant_of(solution, head), float(re.search(r"ξ/l = ([\d.]+)", head)[1])
     value, unit = lines["von Mises' stress"]
@@ -202,16 +281,25 @@ def test_a_map_of_stress_tells_the_solutions_stress_and_where_it_is_largest(page
 def test_a_polar_plot_tells_a_bearings_load_in_ground_axes_and_on_a_body(page):
     solution = solved("slider_crank")
     one = page(solution)
-    joint = one.run("document.querySelector('.polar').closest('.card').querySelector('select').value")
+    joint = one.run(
+        "document.querySelector('.polar').closest('.card').querySelector('select').value"
+    )
     reaction = solution.reaction(joint)
     head, lines = hovered(one, "polar", 0.45, 0.5)
     i = instant_of(solution, head)
-    assert {name: lines[name][0] for name in ("fx", "fy")} == pytest.approx({"fx": reaction.fx[i], "fy": reaction.fy[i]}, rel=1e-4)
+    assert {name: lines[name][0] for name in ("fx", "fy")} == pytest.approx(
+        {"fx": reaction.fx[i], "fy": reaction.fy[i]}, rel=1e-4
+    )
     one.run(
-        "{ const ways = document.querySelector('.polar').closest('.card').querySelectorAll('select')[1];"
+        "{ const ways ="
+        " document.querySelector('.polar').closest('.card').querySelectorAll('select')[1];"
         " ways.value = '1'; ways.dispatchEvent(new Event('change')); }"
     )
-    body = one.run("document.querySelector('.polar').getAttribute('aria-label')").split(" on ")[1].split(",")[0]
+    body = (
+        one.run("document.querySelector('.polar').getAttribute('aria-label')")
+        .split(" on ")[1]
+        .split(",")[0]
+    )
     head, lines = hovered(one, "polar", 0.45, 0.5)
     i = instant_of(solution, head)
     turned = (reaction.fx[i] + 1j * reaction.fy[i]) * np.exp(-1j * solution.pose(body).angle[i])
@@ -225,7 +313,10 @@ def test_a_mechanism_in_space_is_turned_and_seen_from_the_front(page):
     one = page(solved("rssr"))
     picture = "document.querySelector('.picture').toDataURL()"
     seen = [one.run(picture)]
-    left, top = (one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}") for side in ("left", "top"))
+    left, top = (
+        one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}")
+        for side in ("left", "top")
+    )
     one.point(left + 200, top + 100, "mousePressed", button="left", clickCount=1)
     one.point(left + 260, top + 120, button="left", buttons=1)
     one.point(left + 260, top + 120, "mouseReleased", button="left", clickCount=1)
@@ -242,12 +333,22 @@ def test_a_mechanism_in_space_is_turned_and_seen_from_the_front(page):
 def test_two_fingers_move_and_zoom(page):
     one = page(press())
     picture = "document.querySelector('.picture').toDataURL()"
-    left, top = (one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}") for side in ("left", "top"))
+    left, top = (
+        one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}")
+        for side in ("left", "top")
+    )
     before = one.run(picture)
     for kind, *spots in (("Start", 100, 200), ("Move", 80, 240), ("Move", 60, 280), ("End",)):
-        one.call("Input.dispatchTouchEvent", type=f"touch{kind}", touchPoints=[{"x": left + x, "y": top + 120} for x in spots])
+        one.call(
+            "Input.dispatchTouchEvent",
+            type=f"touch{kind}",
+            touchPoints=[{"x": left + x, "y": top + 120} for x in spots],
+        )
     assert one.run(picture) != before
-    one.run("[...document.querySelectorAll('.views button')].find((one) => one.textContent === 'Fit').click()")
+    one.run(
+        "[...document.querySelectorAll('.views button')].find((one) => one.textContent ==="
+        " 'Fit').click()"
+    )
     assert one.run(picture) == before
     quiet(one)
 
@@ -255,9 +356,16 @@ def test_two_fingers_move_and_zoom(page):
 def test_names_are_texts_and_never_markup(page):
     one = page(hostile())
     assert one.run("window.told === undefined && document.images.length === 0")
-    assert one.run("document.title") == one.run("document.querySelector('h1').textContent") == HOSTILE[0]
+    assert (
+        one.run("document.title")
+        == one.run("document.querySelector('h1').textContent")
+        == HOSTILE[0]
+    )
     for name in HOSTILE:
-        assert one.run(f"[...document.querySelectorAll('tbody th')].some((cell) => cell.lastChild.textContent === {name!r})")
+        assert one.run(
+            "[...document.querySelectorAll('tbody th')].some((cell) => cell.lastChild.textContent"
+            f" === {name!r})"
+        )
     quiet(one)
 
 
@@ -266,7 +374,13 @@ def test_names_are_texts_and_never_markup(page):
 def test_nothing_is_wider_than_the_window_and_it_prints(page, tmp_path, width):
     one = page(press())
     one.size(width, 800)
-    assert one.run("new Promise((done) => requestAnimationFrame(() => done(document.documentElement.scrollWidth)))") <= width
+    assert (
+        one.run(
+            "new Promise((done) => requestAnimationFrame(() =>"
+            " done(document.documentElement.scrollWidth)))"
+        )
+        <= width
+    )
     if width == 1000:
         for paper in ((8.27, 11.69), (8.5, 11.0)):
             assert one.printed(tmp_path / "report.pdf", *paper).startswith(b"%PDF")
@@ -276,8 +390,14 @@ def test_nothing_is_wider_than_the_window_and_it_prints(page, tmp_path, width):
 def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
     solution = solved("slider_crank")
     one = page(solution)
-    one.run("[...document.querySelectorAll('.tile')].find((tile) => tile.textContent.includes('bending')).click()")
-    peak = max((solution.peak(f"section:{link}:bending") for link in ("crank", "rod")), key=lambda peak: abs(peak.value))
+    one.run(
+        "[...document.querySelectorAll('.tile')].find((tile) =>"
+        " tile.textContent.includes('bending')).click()"
+    )
+    peak = max(
+        (solution.peak(f"section:{link}:bending") for link in ("crank", "rod")),
+        key=lambda peak: abs(peak.value),
+    )
     readout = one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
     assert readout == f"t = {to_digits(1e3 * peak.t, 5):g} ms"
     assert f"ξ/l = {peak.xi:.3g}" in one.run("document.querySelector('.ratio').textContent")
@@ -286,7 +406,9 @@ def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
 
 @pytest.mark.parametrize(("width", "height", "scheme"), [(1400, 900, "light"), (1000, 700, "dark")])
 def test_the_largest_moment_in_the_rod_is_found_by_keyboard_alone(page, width, height, scheme):
-    """By its words, and by the list of links of the map: value, instant and section are told, and shown."""
+    """By its words, and by the list of links of the map: value, instant and section are told, and
+    shown.
+    """
     solution = solved("slider_crank")
     peak = solution.peak("section:rod:bending")
     one = page(solution)
@@ -297,10 +419,15 @@ def test_the_largest_moment_in_the_rod_is_found_by_keyboard_alone(page, width, h
         one.press(letter, letter)
     _, rows = shown(one, "Peaks")
     assert [row[:2] for row in rows] == [["rod", "bending moment"]]
-    assert (number(rows[0][2]), rows[0][4]) == (to_digits(peak.value, 6), f"{to_digits(1e3 * peak.t, 5):g} ms")
+    assert (number(rows[0][2]), rows[0][4]) == (
+        to_digits(peak.value, 6),
+        f"{to_digits(1e3 * peak.t, 5):g} ms",
+    )
     one.press("Enter", "\r")
     when = f"t = {to_digits(1e3 * peak.t, 5):g} ms"
-    assert one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')") == when
+    assert (
+        one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')") == when
+    )
     # The nearest of the ratios that the link is evaluated at.
     near = solution.xi[np.abs(solution.xi - peak.xi).argmin()]
     assert f"ξ/l = {near:.3g}" in one.run("document.querySelector('.ratio').textContent")
@@ -308,7 +435,9 @@ def test_the_largest_moment_in_the_rod_is_found_by_keyboard_alone(page, width, h
         "{ const list = document.querySelector('.map').closest('.card').querySelector('select');"
         " list.value = 'rod'; list.dispatchEvent(new Event('change')); }"
     )
-    told = one.run("document.querySelector('.told-peak').textContent").translate({0x2212: "-", 0xA0: " "})
+    told = one.run("document.querySelector('.told-peak').textContent").translate(
+        {0x2212: "-", 0xA0: " "}
+    )
     assert told == f"largest: {to_digits(peak.value, 5)} N·m at ξ/l = {peak.xi:.3g}, {when}"
     one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
     quiet(one)
@@ -329,7 +458,7 @@ PRESSES = """(async () => {
   await each('select', (one) => change(one, one.options[Math.min(1, one.options.length - 1)].value));
   await each('input[type=range]', (one) => { change(one, one.min); change(one, one.max); });
   return document.querySelectorAll('.card').length;
-})()"""
+})()"""  # noqa: E501
 """Every button and list of a page, once or twice."""
 
 
@@ -337,14 +466,20 @@ def changed(change, left_open=()):
     """The press with other arrays."""
     whole = press()
     outputs = {output: change(output, values) for output, values in whole.outputs.items()}
-    return replace(whole, outputs=outputs, errors={}, left_open=tuple(o for o in outputs if o.group in left_open))
+    return replace(
+        whole,
+        outputs=outputs,
+        errors={},
+        left_open=tuple(o for o in outputs if o.group in left_open),
+    )
 
 
 FORCES = ("effort", "reaction", "law", "station", "output")
 ODD = {
     "no forces": lambda: changed(lambda o, v: np.zeros_like(v) if o.group in FORCES else v),
     "forces that are open": lambda: changed(
-        lambda o, v: np.full_like(v, np.nan) if o.group in ("reaction", "law") else v, ("reaction", "law")
+        lambda o, v: np.full_like(v, np.nan) if o.group in ("reaction", "law") else v,
+        ("reaction", "law"),
     ),
     "one instant": lambda: press(t=(0.1, 0.1, 1)),
     "motion alone": lambda: press(wanted=("motion",)),
@@ -365,21 +500,36 @@ def test_what_is_the_same_but_for_rounding_is_a_level_line(page):
     """No steps of an axis are so small that doubles cannot count them."""
 
     def jittered(output, values):
-        return np.where(np.arange(values.size) % 2, np.nextafter(values, np.inf), values) if output.member == "rate" else values
+        return (
+            np.where(np.arange(values.size) % 2, np.nextafter(values, np.inf), values)
+            if output.member == "rate"
+            else values
+        )
 
     one = page(changed(jittered))
     lists = "document.querySelector('.cards .card').querySelectorAll('select')"
     for k in (0, 1):
-        one.run(f"{{ const list = {lists}[{k}]; list.value = 'motion:O_rate'; list.dispatchEvent(new Event('change')); }}")
-    ticks = one.run("[...document.querySelectorAll('.card:first-child .axes text')].map((text) => text.textContent)")
+        one.run(
+            f"{{ const list = {lists}[{k}]; list.value = 'motion:O_rate'; list.dispatchEvent(new"
+            " Event('change')); }"
+        )
+    ticks = one.run(
+        "[...document.querySelectorAll('.card:first-child .axes text')].map((text) =>"
+        " text.textContent)"
+    )
     assert "10" in ticks or "100" in ticks
     assert len(ticks) < 40
     quiet(one)
 
 
 def test_a_certificate_says_no_more_than_was_checked(page):
-    """Where motion alone was wanted, nothing is said of forces; where a residual fails, that comes first."""
-    told = "[document.querySelector('.badge').textContent, document.querySelector('.verdict').textContent]"
+    """Where motion alone was wanted, nothing is said of forces; where a residual fails, that comes
+    first.
+    """
+    told = (
+        "[document.querySelector('.badge').textContent,"
+        " document.querySelector('.verdict').textContent]"
+    )
     assert page(press()).run(told) == ["✓ certified", "Checked independently, and right"]
     badge, verdict = page(press(wanted=("motion", "effort"))).run(told)
     assert badge == "✓ motion certified"

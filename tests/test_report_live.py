@@ -1,4 +1,6 @@
-"""Live pages in a browser: what their engine finds for other parameters is what the package finds; what has no result says so."""
+"""Live pages in a browser: what their engine finds for other parameters is what the package finds;
+what has no result says so.
+"""
 
 import csv
 import io
@@ -55,12 +57,15 @@ INNER = """(() => {
       ]),
     ]),
   };
-})()"""
+})()"""  # noqa: E501
 """What a page shows of a design, all digits of it."""
 
 
 def near(found, expected, scale, what):
-    found, expected = (np.array([np.nan if x is None else x for x in values], float) for values in (found, expected))
+    found, expected = (
+        np.array([np.nan if x is None else x for x in values], float)
+        for values in (found, expected)
+    )
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * scale, err_msg=str(what))
 
 
@@ -74,7 +79,10 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
     given = scene.mechanism.parameters.values()
     values = {one.name: one.default * (1 + 0.05 * rng.uniform(-1, 1)) for one in given}
     moving = {name: value * (1 + 0.01 * rng.uniform(-1, 1)) for name, value in values.items()}
-    text = page(evaluate(scene, wanted=wanted, backend="vm", **asked), Live.of(scene, scene.timing(**asked), wanted, "run"))
+    text = page(
+        evaluate(scene, wanted=wanted, backend="vm", **asked),
+        Live.of(scene, scene.timing(**asked), wanted, "run"),
+    )
     alive.opened(chromium, tmp_path / "live.html", text)
     found = chromium.run(INNER % json.dumps(list(values.values())))
     assert isinstance(found, dict), found
@@ -85,7 +93,9 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
         near(found["over"], true.over.values, 1.0, "over")
     largest = {}
     for one in expected["series"]:
-        largest[one["unit"]] = max(largest.get(one["unit"], 0.0), np.nanmax(np.abs(array(one["values"]))))
+        largest[one["unit"]] = max(
+            largest.get(one["unit"], 0.0), np.nanmax(np.abs(array(one["values"])))
+        )
     for one, (name, values, places) in zip(expected["series"], found["series"], strict=True):
         assert name == one["name"]
         if one["group"] == "certificate":
@@ -97,9 +107,13 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
             law = true.section(one["part"]).law
             force = name.rpartition(":")[2]
             # At a station that is off by rounding, either side may be meant.
-            about = [np.clip(np.array(places)[:, None] + off, 0.0, 1.0) for off in (-1e-10, 0.0, 1e-10)]
+            about = [
+                np.clip(np.array(places)[:, None] + off, 0.0, 1.0) for off in (-1e-10, 0.0, 1e-10)
+            ]
             there = np.stack([law.at(force, u)[:, 0] for u in about])
-            assert np.abs(there - exact).min(axis=0).max() <= 1e-8 * max(np.abs(exact).max(), 1e-3 * largest[one["unit"]])
+            assert np.abs(there - exact).min(axis=0).max() <= 1e-8 * max(
+                np.abs(exact).max(), 1e-3 * largest[one["unit"]]
+            )
     for body, columns in zip(expected["bodies"], found["poses"], strict=True):
         for number, column in zip(body["pose"], columns, strict=True):
             near(column, array(number), 1.0, body["name"])
@@ -116,7 +130,12 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
             law = true.section(link).law
             for ratio, column in zip((0.0, 0.21, 0.5, 1.0), columns, strict=True):
                 exact = law.on_grid(force, np.array([ratio]))[:, 0]
-                near(column, exact, max(law.bound(force, np.linspace(0, 1, 5)), 1e-3 * largest["N"]), (link, force))
+                near(
+                    column,
+                    exact,
+                    max(law.bound(force, np.linspace(0, 1, 5)), 1e-3 * largest["N"]),
+                    (link, force),
+                )
     parts = [expected[name] for name in ("bodies", "joints", "loads", "paths")]
     for mine, others in zip(found["picture"], parts, strict=True):
         for one, other in zip(mine, others, strict=True):
@@ -124,9 +143,15 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
                 alike(one[key], other[key], (other["name"], key))
             for plate, exact in zip(one.get("plates", ()), other.get("plates", ()), strict=True):
                 alike(sorted(plate), sorted(exact), other["name"])
-    # While a slider moves, not all is looked for: every end of the cycle is the same, to the last bit.
-    rows_of = "(() => {{ window.page.live.engine.show({}, {}); return window.page.contents.rows; }})()"
-    quick, whole = (chromium.run(rows_of.format(json.dumps(list(moving.values())), asked)) for asked in ("false", "true"))
+    # While a slider moves, not all is looked for: every end of the cycle is the same, to the last
+    # bit.
+    rows_of = (
+        "(() => {{ window.page.live.engine.show({}, {}); return window.page.contents.rows; }})()"
+    )
+    quick, whole = (
+        chromium.run(rows_of.format(json.dumps(list(moving.values())), asked))
+        for asked in ("false", "true")
+    )
     assert quick == whole
     assert quick != found["rows"]
     assert chromium.complaints == []
@@ -137,15 +162,26 @@ def alike(one, other, what):
     number = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
     texts = [json.dumps(json.loads(json.dumps(value)), sort_keys=True) for value in (one, other)]
     assert len({number.sub("#", text) for text in texts}) == 1, (what, texts)
-    np.testing.assert_allclose(*([float(x) for x in number.findall(text)] for text in texts), rtol=0, atol=1e-12, err_msg=str(what))
+    np.testing.assert_allclose(
+        *([float(x) for x in number.findall(text)] for text in texts),
+        rtol=0,
+        atol=1e-12,
+        err_msg=str(what),
+    )
 
 
-TABLE = "[...document.querySelectorAll('.table')].find((one) => one.querySelector('h2').textContent === 'Peaks')"
+TABLE = (
+    "[...document.querySelectorAll('.table')].find((one) => one.querySelector('h2').textContent ==="
+    " 'Peaks')"
+)
 
 
 def peaks(one):
     one.run(f"{TABLE}.querySelector('.copy').click()")
-    return {row["name"]: row["largest in size"] for row in csv.DictReader(io.StringIO(one.run("window.copied")))}
+    return {
+        row["name"]: row["largest in size"]
+        for row in csv.DictReader(io.StringIO(one.run("window.copied")))
+    }
 
 
 def put(one, name, value):
@@ -153,8 +189,8 @@ def put(one, name, value):
     labels = "[...document.querySelectorAll('.sliders label')]"
     own = f"{labels}.find((one) => one.textContent.startsWith('{name}'))"
     one.run(
-        f"(async () => {{ const field = {own}.querySelector('[type=number]'); field.value = {value!r};"
-        " for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind));"
+        f"(async () => {{ const field = {own}.querySelector('[type=number]'); field.value ="
+        f" {value!r}; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind));"
         " await new Promise((done) => setTimeout(done, 250)); })()"
     )
 
@@ -163,11 +199,27 @@ def put(one, name, value):
 def crank(chromium, tmp_path_factory):
     """The page that the command line writes, as it is."""
     path = tmp_path_factory.mktemp("live") / "crank.html"
-    assert main(["report", str(CASES / "slider_crank"), "--live", "--t", "0:0.08:41", "--out", str(path)]) == 0
+    assert (
+        main(
+            [
+                "report",
+                str(CASES / "slider_crank"),
+                "--live",
+                "--t",
+                "0:0.08:41",
+                "--out",
+                str(path),
+            ]
+        )
+        == 0
+    )
 
     def opened():
         chromium.open(path)
-        chromium.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+        chromium.run(
+            "navigator.clipboard.writeText = (text) => { window.copied = text; return"
+            " Promise.resolve(); }"
+        )
         alive.wait(chromium, "document.querySelectorAll('.sliders label').length === 5")
         return chromium
 
@@ -180,7 +232,12 @@ def test_sliders_change_all_that_is_read_and_back_again(crank):
     badge = "document.querySelector('.badge').textContent"
     assert one.run(badge) == "✓ certified"
     put(one, "l", 0.3125)
-    true = evaluate(load_case(CASES / "slider_crank").scene, parameters={"l": 0.3125}, t=(0, 0.08, 41), backend="vm")
+    true = evaluate(
+        load_case(CASES / "slider_crank").scene,
+        parameters={"l": 0.3125},
+        t=(0, 0.08, 41),
+        backend="vm",
+    )
     changed = peaks(one)
     assert {name: float(value) for name, value in changed.items()} == pytest.approx(
         {name: true.peak(name).value for name in changed}, rel=1e-12, abs=1e-12
@@ -229,11 +286,13 @@ DRAG = """(async () => {
     await new Promise((done) => setTimeout(done, 400));
   }
   return [...seen, shown(), moved];
-})()"""
+})()"""  # noqa: E501
 
 
 def test_a_slider_that_rests_leaves_all_of_its_design(crank):
-    """Charts, maps and the picture follow in turn while it moves; at rest none is left behind, whatever the way was."""
+    """Charts, maps and the picture follow in turn while it moves; at rest none is left behind,
+    whatever the way was.
+    """
     slow, at_once, other, moved = crank().run(DRAG)
     assert moved
     assert all(moved)
@@ -246,11 +305,17 @@ def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):
     one = crank()
     put(one, "l", 0.05)
     told = one.run("document.querySelector('.alive .alarm').textContent")
-    assert told.startswith("There is no such design: a loop cannot be closed: its links do not reach, at t = ")
-    assert one.run("[...document.querySelectorAll('.tile b')].every((tile) => tile.textContent === '\\u2013')")
+    assert told.startswith(
+        "There is no such design: a loop cannot be closed: its links do not reach, at t = "
+    )
+    assert one.run(
+        "[...document.querySelectorAll('.tile b')].every((tile) => tile.textContent === '\\u2013')"
+    )
     assert set(peaks(one).values()) <= {"NaN", "0"}
     put(one, "l", -1.0)
-    assert "a parameter is not finite, or out of its range" in one.run("document.querySelector('.alive .alarm').textContent")
+    assert "a parameter is not finite, or out of its range" in one.run(
+        "document.querySelector('.alive .alarm').textContent"
+    )
     put(one, "l", 0.2)
     assert one.run("document.querySelector('.alive .alarm').hidden")
     assert one.complaints == []
@@ -264,5 +329,9 @@ def test_what_cannot_come_alive_is_told_in_one_line(tmp_path, capsys, monkeypatc
         scene.report(tmp_path / "fixed.html", live=True)
     monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
     assert main(["report", "slider_crank", "--live", "--out", str(tmp_path / "crank.html")]) == 2
-    assert capsys.readouterr().err == "error: a live report needs ziglang; install it with: pip install 'lagrange_casadi[live]'\n"
+    assert (
+        capsys.readouterr().err
+        == "error: a live report needs ziglang; install it with: pip install"
+        " 'lagrange_casadi[live]'\n"
+    )
     assert not list(tmp_path.iterdir())

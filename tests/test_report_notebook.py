@@ -1,4 +1,6 @@
-"""What notebooks show of a solution: a drawing where the poses put it, its peaks, and the page of its report in a frame."""
+"""What notebooks show of a solution: a drawing where the poses put it, its peaks, and the page of
+its report in a frame.
+"""
 
 import html
 import re
@@ -19,11 +21,18 @@ from lagrange_casadi.shapes.views import upright, view
 
 
 def circles(text):
-    return np.array([[float(x), float(y)] for x, y in re.findall(r'<circle cx="([-\d.]+)" cy="([-\d.]+)"', text)])
+    return np.array(
+        [
+            [float(x), float(y)]
+            for x, y in re.findall(r'<circle cx="([-\d.]+)" cy="([-\d.]+)"', text)
+        ]
+    )
 
 
 def matched(drawn, places):
-    """How far drawn points are from places on the sheet, after the best scale and shift: the drawing's y runs downward."""
+    """How far drawn points are from places on the sheet, after the best scale and shift: the
+    drawing's y runs downward.
+    """
     drawn = drawn * [1.0, -1.0]
     a, b = drawn - drawn.mean(axis=0), places - places.mean(axis=0)
     return np.abs(a - b * (np.sum(a * b) / np.sum(b * b))).max()
@@ -32,15 +41,26 @@ def matched(drawn, places):
 def test_joints_are_drawn_where_they_are_in_the_plane():
     solution = solved("four_bar")
     joints = solution.description["joints"].values()
-    poses = [(solution.pose(j["child"]["body"]), complex(j["child"]["x"], j["child"]["y"])) for j in joints]
-    places = [pose.x[0] + 1j * pose.y[0] + local * np.exp(1j * pose.angle[0]) for pose, local in poses]
-    assert matched(circles(still(solution)), np.array([[place.real, place.imag] for place in places])) < 0.1
+    poses = [
+        (solution.pose(j["child"]["body"]), complex(j["child"]["x"], j["child"]["y"]))
+        for j in joints
+    ]
+    places = [
+        pose.x[0] + 1j * pose.y[0] + local * np.exp(1j * pose.angle[0]) for pose, local in poses
+    ]
+    assert (
+        matched(circles(still(solution)), np.array([[place.real, place.imag] for place in places]))
+        < 0.1
+    )
 
 
 def test_joints_are_drawn_where_they_are_in_space():
     solution = every_kind()
     one = view(upright(solution.description["gravity"]), -60, 25)
-    places = [one.on_page(place_of(solution, joint["child"])[0]) for joint in solution.description["joints"].values()]
+    places = [
+        one.on_page(place_of(solution, joint["child"])[0])
+        for joint in solution.description["joints"].values()
+    ]
     assert matched(circles(still(solution)), np.array(places)) < 0.1
 
 
@@ -55,7 +75,10 @@ def test_a_solution_is_shown_with_its_largest_peaks():
     text = solved("excavator")._repr_html_()
     assert text.count("<svg") == 1
     assert text.count("<tr>") == 13
-    largest = max((solved("excavator").peak(f"section:{link}:bending") for link in ("boom", "stick")), key=lambda p: abs(p.value))
+    largest = max(
+        (solved("excavator").peak(f"section:{link}:bending") for link in ("boom", "stick")),
+        key=lambda p: abs(p.value),
+    )
     assert f"{largest.value:.5g} N m" in text
     assert "certified" in text
     assert text == solved("excavator")._repr_html_()
@@ -74,7 +97,10 @@ def test_a_view_is_the_report_in_a_frame_that_reaches_nothing_else():
     assert html.unescape(srcdoc) == page(solution)
     assert 'sandbox="allow-scripts allow-modals"' in found._repr_html_()
     assert 'height="500"' in found._repr_html_()
-    assert repr(found) == "<View of press: a notebook shows it; solution.report('press.html') writes it>"
+    assert (
+        repr(found)
+        == "<View of press: a notebook shows it; solution.report('press.html') writes it>"
+    )
     for height in (0, -1, 2.5, True, "tall"):
         with pytest.raises(DeclarationError, match=r"expected a (whole number|height in points)"):
             solution.view(height)

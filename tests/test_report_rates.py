@@ -1,4 +1,6 @@
-"""How much of a picture's time the page's thread works: a large mechanism that plays, and a slider that moves all the while."""
+"""How much of a picture's time the page's thread works: a large mechanism that plays, and a slider
+that moves all the while.
+"""
 
 import alive
 import pytest
@@ -37,12 +39,18 @@ DRAG = """(async () => {
 
 
 def work(one, script, pictures=60):
-    """What the thread of a page works for a picture of the screen [ms], by its own clock of processor time."""
+    """What the thread of a page works for a picture of the screen [ms], by its own clock of
+    processor time.
+    """
     one.call("Performance.enable", timeDomain="threadTicks")
     one.run(script % 20)
 
     def task():
-        return next(m["value"] for m in one.call("Performance.getMetrics")["metrics"] if m["name"] == "TaskDuration")
+        return next(
+            m["value"]
+            for m in one.call("Performance.getMetrics")["metrics"]
+            if m["name"] == "TaskDuration"
+        )
 
     before = task()
     one.run(script % pictures)
@@ -61,7 +69,9 @@ def chain():
     return Scene(m, motion, t=(0, 1, INSTANTS))
 
 
-def test_a_chain_of_thirty_links_and_two_thousand_instants_plays_at_thirty_pictures_a_second(chromium, tmp_path):
+def test_a_chain_of_thirty_links_and_two_thousand_instants_plays_at_thirty_pictures_a_second(
+    chromium, tmp_path
+):
     path = tmp_path / "chain.html"
     evaluate(chain(), wanted=["all"], certificate=False).report(path)
     chromium.open(path)

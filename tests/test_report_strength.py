@@ -52,9 +52,13 @@ def test_a_page_of_what_has_no_beam_has_no_rows():
 def unaimed_bar():
     """A flat bar that spins freely about its line, between a crank and a rocker."""
     m = SpatialMechanism("bar")
-    rod = m.link("rod", between=((0, 0, 0), (1, 0, 0)), beam=beams.Beam(beams.rectangle(0.03, 0.01), STEEL))
+    rod = m.link(
+        "rod", between=((0, 0, 0), (1, 0, 0)), beam=beams.Beam(beams.rectangle(0.03, 0.01), STEEL)
+    )
     crank = m.link("crank", between=((0, -0.2, 0), (0, 0, 0)), mass=0.4)
-    rocker = m.link("rocker", between=((1, -0.2, 0), (1, 0, 0)), beam=beams.Beam(beams.round_bar(0.02), STEEL))
+    rocker = m.link(
+        "rocker", between=((1, -0.2, 0), (1, 0, 0)), beam=beams.Beam(beams.round_bar(0.02), STEEL)
+    )
     m.revolute("O", m.ground, crank, at=(0, -0.2, 0), axis=(0, 0, 1))
     bearings.fit(m, m.revolute("Q", m.ground, rocker, at=(1, -0.2, 0), axis=(0, 0, 1)), PIN)
     m.spherical("A", crank, rod, at=(0, 0, 0))
@@ -64,7 +68,9 @@ def unaimed_bar():
 
 def lacking(*numbers):
     """A slider-crank of a material that lacks some numbers."""
-    return press(beams.rectangle(0.02, 0.012), material=STEEL.but(**dict.fromkeys(numbers)), t=(0, 0.2, 5))
+    return press(
+        beams.rectangle(0.02, 0.012), material=STEEL.but(**dict.fromkeys(numbers)), t=(0, 0.2, 5)
+    )
 
 
 def twisted():
@@ -101,7 +107,9 @@ def test_what_is_open_is_told_by_its_name(scene):
     parts = {name for name, body in solution.description["bodies"].items() if "beam" in body}
     parts |= {name for name, joint in solution.description["joints"].items() if "fitted" in joint}
     assert {row["part"] for row in rows} == parts
-    assert {row["part"] for row in rows if row["open"] and row["part"] in OPEN[scene]} == OPEN[scene]
+    assert {row["part"] for row in rows if row["open"] and row["part"] in OPEN[scene]} == OPEN[
+        scene
+    ]
     for row in rows:
         assert row["open"] == (row["factor"] is row["used"] is None and row["against"] == "")
     for part in OPEN[scene]:
@@ -115,17 +123,27 @@ def test_what_is_open_is_told_by_its_name(scene):
 def undrawn(monkeypatch):
     """Figures take long to draw, and none is looked at."""
     for command in ("plot", "run"):
-        monkeypatch.setattr(importlib.import_module(f"lagrange_casadi.cli.{command}"), "draw_with_progress", lambda *_: None)
+        monkeypatch.setattr(
+            importlib.import_module(f"lagrange_casadi.cli.{command}"),
+            "draw_with_progress",
+            lambda *_: None,
+        )
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_commands_tell_of_it(tmp_path, capsys):
     file = str(tmp_path / "x.h5")
     save(evaluate(unaimed_bar()), file)
-    for command in (["info", file], ["plot", file, "--out", str(tmp_path / "figures")], ["report", file, "--out", f"{file}.html"]):
+    for command in (
+        ["info", file],
+        ["plot", file, "--out", str(tmp_path / "figures")],
+        ["report", file, "--out", f"{file}.html"],
+    ):
         assert main(command) == 0
         out, err = capsys.readouterr()
-        assert (out + err).count("note: no factor of safety of 'rod' is told: link 'rod' is a bar that spins freely") == 1
+        assert (out + err).count(
+            "note: no factor of safety of 'rod' is told: link 'rod' is a bar that spins freely"
+        ) == 1
 
 
 def test_a_way_to_fail_that_is_open_has_a_row_too():
@@ -136,7 +154,9 @@ def test_a_way_to_fail_that_is_open_has_a_row_too():
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("command", [["--want", "section", "--want", "motion"], ["--no-figures"]])
 def test_a_run_tells_of_it(command, tmp_path, capsys, monkeypatch):
-    """Once where figures are drawn and strength was not asked for; else it is said where strength is told."""
+    """Once where figures are drawn and strength was not asked for; else it is said where strength
+    is told.
+    """
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "machine"
     folder.mkdir()

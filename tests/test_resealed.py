@@ -1,4 +1,6 @@
-"""Damage that a new seal hides is seen by HDF5: no crash or hang passes unnoticed, and no reader raises what is not ours."""
+"""Damage that a new seal hides is seen by HDF5: no crash or hang passes unnoticed, and no reader
+raises what is not ours.
+"""
 
 import os
 import random
@@ -30,17 +32,41 @@ def searched(out, **keywords):
     duration = m.parameter("T", 1.0, "s", low=0.01)
     m.revolute("O", m.ground, m.link("rod", length=0.3, mass=1.0))
     scene = Scene(m, {"O": polynomial(0.0, 1.0, duration)}, t=(0, duration, 11), wanted=["effort"])
-    return optimise(scene, minimise="peak:effort:O", over={"T": (0.5, 2.0)}, starts=3, screen=8, backend="vm", out=out, **keywords)
+    return optimise(
+        scene,
+        minimise="peak:effort:O",
+        over={"T": (0.5, 2.0)},
+        starts=3,
+        screen=8,
+        backend="vm",
+        out=out,
+        **keywords,
+    )
 
 
 def source(kind, folder, slider_crank, monkeypatch):
     """A file that is whole."""
     path = folder / "x.h5"
     if kind == "run":
-        save(evaluate(slider_crank.scene, t=(0, 0.08, 5), xi=(0, 1, 3), wanted=("effort", "section:rod"), backend="vm"), path)
+        save(
+            evaluate(
+                slider_crank.scene,
+                t=(0, 0.08, 5),
+                xi=(0, 1, 3),
+                wanted=("effort", "section:rod"),
+                backend="vm",
+            ),
+            path,
+        )
     elif kind == "sweep":
         sweeps.use(monkeypatch)
-        sweep(sweeps.scene(), {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]}, out=path, xi=(0, 1, 3), keep="histories")
+        sweep(
+            sweeps.scene(),
+            {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]},
+            out=path,
+            xi=(0, 1, 3),
+            keep="histories",
+        )
     elif kind == "search":
         searched(path)
     else:
@@ -63,7 +89,9 @@ def test_damage_that_is_sealed_anew_is_noticed(tmp_path, slider_crank, monkeypat
     program, folder = Path(__file__).with_name("resealing.py"), tmp_path / "damaged"
     folder.mkdir()
     command = [sys.executable, str(program), str(file), SEED, str(count)]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600 + 3 * count, check=False)
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=600 + 3 * count, check=False
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     found = [line.partition(" ")[2] for line in done.stdout.splitlines()]
     assert len(found) == count
@@ -80,7 +108,11 @@ def attributes(file):
         places = ["/"]
         whole.visit(places.append)
         for place in places:
-            found |= {(place, name): value for name, value in whole[place].attrs.items() if name not in (*LISTS, "CLASS", "NAME")}
+            found |= {
+                (place, name): value
+                for name, value in whole[place].attrs.items()
+                if name not in (*LISTS, "CLASS", "NAME")
+            }
     return found
 
 
@@ -96,7 +128,9 @@ def another(value):
 
 @pytest.mark.parametrize("kind", ["run", "sweep", "search"])
 @pytest.mark.parametrize("count", [FEW, pytest.param(None, marks=pytest.mark.long)])
-def test_every_attribute_is_compared_with_something(tmp_path, slider_crank, monkeypatch, kind, count):
+def test_every_attribute_is_compared_with_something(
+    tmp_path, slider_crank, monkeypatch, kind, count
+):
     """Each alone is changed; those that may be believed are listed, with the reason."""
     file = source(kind, tmp_path, slider_crank, monkeypatch)
     whole, once, believed = file.read_bytes(), ONCE[kind_of(file)], []
@@ -119,9 +153,15 @@ CHANGES = {
     "run": [
         lambda file: file["t"].write_direct(np.full(5, np.nan)),
         lambda file: renamed(file["section/rod/law/m0"].attrs, "error_estimate", "error_es+imate"),
-        lambda file: file.attrs.__setitem__("parameters", file.attrs["parameters"].replace("0.2", "0.3")),
-        lambda file: file.attrs.__setitem__("parameters", file.attrs["parameters"].replace(' "', ' `"')),
-        lambda file: file.attrs.__setitem__("mechanism", file.attrs["mechanism"].replace('"body": "slider"', '"body": "sli`er"')),
+        lambda file: file.attrs.__setitem__(
+            "parameters", file.attrs["parameters"].replace("0.2", "0.3")
+        ),
+        lambda file: file.attrs.__setitem__(
+            "parameters", file.attrs["parameters"].replace(' "', ' `"')
+        ),
+        lambda file: file.attrs.__setitem__(
+            "mechanism", file.attrs["mechanism"].replace('"body": "slider"', '"body": "sli`er"')
+        ),
         lambda file: file["t"].attrs.__setitem__("units", "ms"),
     ],
     "sweep": [lambda file: file["grid/l"].write_direct(np.array([0.2, np.nan]))],
@@ -129,7 +169,9 @@ CHANGES = {
         lambda file: file["starts/1/start"].write_direct(np.array([0.0])),
         lambda file: file["starts/0"].attrs.__setitem__("objective", 1.6),
         lambda file: file["starts/2"].attrs.__setitem__("ending", "conv\x01rged"),
-        lambda file: file["history"].attrs.__setitem__("columns", ["start", "ocjective", "excess", "result", "T"]),
+        lambda file: file["history"].attrs.__setitem__(
+            "columns", ["start", "ocjective", "excess", "result", "T"]
+        ),
         lambda file: file["optima/designs"].write_direct(np.array([[0.6]])),
         lambda file: renamed(file["starts/1"].attrs, "objective", "ocjective"),
     ],

@@ -1,4 +1,6 @@
-"""No part's name is reserved: a machine whose names are those that files and C give to other things."""
+"""No part's name is reserved: a machine whose names are those that files and C give to other
+things.
+"""
 
 import numpy as np
 import pytest
@@ -9,7 +11,13 @@ from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
 
-PLAIN = {"law": "hinge", "O_rate": "knee", "pull_2": "push", "law_rate": "size", "rod_acceleration": "bob"}
+PLAIN = {
+    "law": "hinge",
+    "O_rate": "knee",
+    "pull_2": "push",
+    "law_rate": "size",
+    "rod_acceleration": "bob",
+}
 STATIONS = PLAIN | {"pull_3": "pull_2"}
 
 
@@ -45,26 +53,37 @@ def test_outputs_are_those_of_a_machine_with_plain_names(solutions):
     assert named.certified
     assert len(named.series) == len(plain.series)
     for output, values in named.outputs.items():
-        part, station = PLAIN.get(output.part, output.part), STATIONS.get(output.station, output.station)
-        np.testing.assert_array_equal(values, plain.outputs[Output(output.group, part, output.member, station)])
+        part, station = (
+            PLAIN.get(output.part, output.part),
+            STATIONS.get(output.station, output.station),
+        )
+        np.testing.assert_array_equal(
+            values, plain.outputs[Output(output.group, part, output.member, station)]
+        )
 
 
 def test_a_coordinate_and_a_rate_are_told_apart(solutions):
     named, plain = solutions
     np.testing.assert_array_equal(named.series["motion:O_rate"], np.full(41, 5.0))
-    np.testing.assert_array_equal(named.series["motion:O_rate.coordinate"], plain.motion("knee").value)
+    np.testing.assert_array_equal(
+        named.series["motion:O_rate.coordinate"], plain.motion("knee").value
+    )
     np.testing.assert_array_equal(named.motion("O_rate").rate, plain.motion("knee").rate)
     assert named.unit("motion:O_rate") == "rad/s"
     assert named.unit("motion:O_rate.coordinate") == "rad"
 
 
 def test_what_acts_twice_hides_no_other_load(solutions):
-    """A spring between two places of one link is two stations: the second is not called as a load is."""
+    """A spring between two places of one link is two stations: the second is not called as a load
+    is.
+    """
     named, _ = solutions
     stations = {output.station for output in named.outputs if output.station}
     assert stations == {"law", "pull", "pull_2", "pull_3"}
     np.testing.assert_allclose(
-        np.hypot(named.series["section:rod:pull_2:n"], named.series["section:rod:pull_2:f"]), 7.0, rtol=1e-14
+        np.hypot(named.series["section:rod:pull_2:n"], named.series["section:rod:pull_2:f"]),
+        7.0,
+        rtol=1e-14,
     )
 
 
@@ -80,11 +99,28 @@ def test_files_and_peaks_know_them(scenes, solutions, tmp_path):
 
 
 def test_sweeps_know_them(scenes, solutions, tmp_path):
-    sweep(scenes[0], {"law_rate": (0.25, 0.35, 3)}, out=tmp_path / "s.h5", workers=1, xi=(0.0, 1.0, 5), keep="histories")
+    sweep(
+        scenes[0],
+        {"law_rate": (0.25, 0.35, 3)},
+        out=tmp_path / "s.h5",
+        workers=1,
+        xi=(0.0, 1.0, 5),
+        keep="histories",
+    )
     swept = Sweep.open(tmp_path / "s.h5")
     named, _ = solutions
-    np.testing.assert_allclose(swept["history:section:rod:law:n0"][1], named.series["section:rod:law:n0"], rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(swept["history:section:rod:law:n"][1], named.series["section:rod:law:n"], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        swept["history:section:rod:law:n0"][1],
+        named.series["section:rod:law:n0"],
+        rtol=1e-9,
+        atol=1e-9,
+    )
+    np.testing.assert_allclose(
+        swept["history:section:rod:law:n"][1],
+        named.series["section:rod:law:n"],
+        rtol=1e-9,
+        atol=1e-9,
+    )
 
 
 def test_exported_c_knows_them(scenes, tmp_path):
@@ -92,4 +128,6 @@ def test_exported_c_knows_them(scenes, tmp_path):
     solution = solve(scenes[0], "double")
     found = by_c99(tmp_path / "c", told, instants(solution.t, "double"))
     compare(found, expected(scenes[0], told, solution), told, made, solution)
-    assert {"O_rate", "motion_O_rate_coordinate"} <= {member.name for member in (*made.inputs, *made.outputs)}
+    assert {"O_rate", "motion_O_rate_coordinate"} <= {
+        member.name for member in (*made.inputs, *made.outputs)
+    }

@@ -1,4 +1,6 @@
-"""Laws from rest to rest: the coefficients that books print, and the laws again, integrated from how books draw accelerations."""
+"""Laws from rest to rest: the coefficients that books print, and the laws again, integrated from
+how books draw accelerations.
+"""
 
 import itertools
 import math
@@ -9,13 +11,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.declare.rest_laws import LAWS, Limits, rest_law, s_curve, s_curve_within, trapezoid, trapezoid_within
+from lagrange_casadi.declare.rest_laws import (
+    LAWS,
+    Limits,
+    rest_law,
+    s_curve,
+    s_curve_within,
+    trapezoid,
+    trapezoid_within,
+)
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.quick
 
 PRINTED = {
-    # Norton, Cam Design and Manufacturing Handbook, 2nd edition, table 3-5, and VDI 2143, part 1: to the digits that are printed.
+    # Norton, Cam Design and Manufacturing Handbook, 2nd edition, table 3-5, and VDI 2143, part 1:
+    # to the digits that are printed.
     "cycloidal": (2.000, 6.283, 39.5),
     "modified_sine": (1.760, 5.528, 69.5),
     "modified_trapezoid": (2.000, 4.888, 61.4),
@@ -32,7 +43,10 @@ def derivatives(law, u):
     rows = [law.shape(x)]
     for _ in range(3):
         rows.append(ca.jacobian(rows[-1], x))
-    return [row.full().ravel() for row in ca.Function("law", [x], [ca.densify(row) for row in rows])(np.asarray(u)[None])]
+    return [
+        row.full().ravel()
+        for row in ca.Function("law", [x], [ca.densify(row) for row in rows])(np.asarray(u)[None])
+    ]
 
 
 @pytest.mark.parametrize("name", PRINTED)
@@ -56,31 +70,44 @@ def test_coefficients_are_the_largest_values(name):
     if math.isfinite(law.begins[1]):
         assert found[3][0] == pytest.approx(law.begins[1], abs=1e-9)
     middle = np.linspace(0.0123, 0.4987, 97)
-    assert derivatives(law, middle)[0] + derivatives(law, 1 - middle)[0] == pytest.approx(1.0, abs=1e-14)
+    assert derivatives(law, middle)[0] + derivatives(law, 1 - middle)[0] == pytest.approx(
+        1.0, abs=1e-14
+    )
 
 
 def accelerations(name):
-    """The places between which an acceleration is smooth, and the acceleration but for its scale, as books draw it."""
+    """The places between which an acceleration is smooth, and the acceleration but for its scale,
+    as books draw it.
+    """
     wave = lambda u: np.sin(4 * np.pi * u)  # noqa: E731
     return {
         "cycloidal": ((0, 1), lambda u: np.sin(2 * np.pi * u)),
         "modified_sine": (
             (0, 1 / 8, 7 / 8, 1),
-            lambda u: np.where((u < 1 / 8) | (u > 7 / 8), wave(u), np.sin(4 * np.pi * u / 3 + np.pi / 3)),
+            lambda u: np.where(
+                (u < 1 / 8) | (u > 7 / 8), wave(u), np.sin(4 * np.pi * u / 3 + np.pi / 3)
+            ),
         ),
         "modified_trapezoid": (
             (0, 1 / 8, 3 / 8, 5 / 8, 7 / 8, 1),
             lambda u: np.select(
-                [u < 1 / 8, u < 3 / 8, u < 5 / 8, u < 7 / 8], [wave(u), 1.0, np.cos(4 * np.pi * (u - 3 / 8)), -1.0], wave(u)
+                [u < 1 / 8, u < 3 / 8, u < 5 / 8, u < 7 / 8],
+                [wave(u), 1.0, np.cos(4 * np.pi * (u - 3 / 8)), -1.0],
+                wave(u),
             ),
         ),
         "polynomial_345": ((0, 1), lambda u: u * (1 - u) * (1 - 2 * u)),
         "polynomial_4567": ((0, 1), lambda u: (u * (1 - u)) ** 2 * (1 - 2 * u)),
         "simple_harmonic": ((0, 1), lambda u: np.cos(np.pi * u)),
-        "trapezoid": ((0, 1 / 3, 2 / 3, 1), lambda u: np.select([u < 1 / 3, u < 2 / 3], [1.0, 0.0], -1.0)),
+        "trapezoid": (
+            (0, 1 / 3, 2 / 3, 1),
+            lambda u: np.select([u < 1 / 3, u < 2 / 3], [1.0, 0.0], -1.0),
+        ),
         "s_curve": (
             (0, 1 / 12, 3 / 12, 4 / 12, 8 / 12, 9 / 12, 11 / 12, 1),
-            lambda u: np.interp(u, np.array([0, 1, 3, 4, 8, 9, 11, 12]) / 12, [0, 1, 1, 0, 0, -1, -1, 0]),
+            lambda u: np.interp(
+                u, np.array([0, 1, 3, 4, 8, 9, 11, 12]) / 12, [0, 1, 1, 0, 0, -1, -1, 0]
+            ),
         ),
     }[name]
 
@@ -102,12 +129,20 @@ def test_laws_are_their_accelerations_integrated_twice(name):
     places = np.array([0.02, 0.11, 0.2, 0.37, 0.49, 0.58, 0.71, 0.86, 0.97])
     found = derivatives(rest_law("move", name), places)
     for k, u in enumerate(places):
-        expected = [integral(lambda x, u=u: (u - x) * bend(x), u), integral(bend, u), float(bend(np.array(u)))]
-        assert [row[k] for row in found[:3]] == pytest.approx([x / whole for x in expected], rel=0, abs=2e-13)
+        expected = [
+            integral(lambda x, u=u: (u - x) * bend(x), u),
+            integral(bend, u),
+            float(bend(np.array(u))),
+        ]
+        assert [row[k] for row in found[:3]] == pytest.approx(
+            [x / whole for x in expected], rel=0, abs=2e-13
+        )
 
 
 def slowest_top(way, v, a, j):
-    """The top speed and the time of the fastest move within limits, by halving the speed at which no time is left to cruise."""
+    """The top speed and the time of the fastest move within limits, by halving the speed at which
+    no time is left to cruise.
+    """
 
     def ramp(top):
         return top / a + a / j if top >= a * a / j else 2 * math.sqrt(top / j)
@@ -115,7 +150,11 @@ def slowest_top(way, v, a, j):
     low, high = 0.0, v
     if v * ramp(v) > way:
         for _ in range(200):
-            low, high = ((low + high) / 2, high) if (low + high) / 2 * ramp((low + high) / 2) < way else (low, (low + high) / 2)
+            low, high = (
+                ((low + high) / 2, high)
+                if (low + high) / 2 * ramp((low + high) / 2) < way
+                else (low, (low + high) / 2)
+            )
     return high, way / high + ramp(high)
 
 
@@ -140,7 +179,9 @@ def test_s_curves_within_limits_are_the_fastest(powers):
             assert after - before == pytest.approx(sharp, rel=1e-9)
 
 
-@pytest.mark.parametrize(("way", "time"), [(2.0, 2.0 / 0.5 + 0.5 / 2.0), (0.1, 2 * math.sqrt(0.1 / 2.0))])
+@pytest.mark.parametrize(
+    ("way", "time"), [(2.0, 2.0 / 0.5 + 0.5 / 2.0), (0.1, 2 * math.sqrt(0.1 / 2.0))]
+)
 def test_trapezoids_within_limits(way, time):
     """With a stretch of top speed, and as a triangle without one."""
     limits = Limits(0.5, 2.0)
@@ -154,7 +195,10 @@ def test_trapezoids_within_limits(way, time):
         (lambda: trapezoid(0.6), r"trapezoid: share must be above 0 and at most 0\.5, got 0\.6"),
         (lambda: trapezoid(0.0), "trapezoid: share must be above 0"),
         (lambda: s_curve(0.3, 1.5), "s_curve: rounding must be above 0 and at most 1, got 1.5"),
-        (lambda: s_curve("a"), "s_curve: share: expected a number, or an expression in parameters, got 'a'"),
+        (
+            lambda: s_curve("a"),
+            "s_curve: share: expected a number, or an expression in parameters, got 'a'",
+        ),
         (lambda: rest_law("move 'up'", 3), "move 'up': law: expected a name, trapezoid"),
     ],
 )
@@ -164,5 +208,8 @@ def test_misuse_is_named(make, says):
 
 
 def test_unknown_laws_are_told_with_the_nearest():
-    with pytest.raises(UnknownNameError, match=r"move 'up': unknown law 'polynomial_34' \(did you mean 'polynomial_345'\?\)"):
+    with pytest.raises(
+        UnknownNameError,
+        match=r"move 'up': unknown law 'polynomial_34' \(did you mean 'polynomial_345'\?\)",
+    ):
         rest_law("move 'up'", "polynomial_34")

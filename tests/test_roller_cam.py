@@ -1,4 +1,6 @@
-"""The case of a roller cam: closed forms of its contact, its profile, and the smallest spring that holds the contact."""
+"""The case of a roller cam: closed forms of its contact, its profile, and the smallest spring that
+holds the contact.
+"""
 
 import numpy as np
 import pytest
@@ -11,9 +13,13 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 MASS, OFFSET, ROLLER = 0.5, 0.006, 0.012
 
 
-@pytest.mark.parametrize("values", [{}, {"lift": 0.015, "base": 0.06, "stiffness": 20e3, "speed": 40.0}])
+@pytest.mark.parametrize(
+    "values", [{}, {"lift": 0.015, "base": 0.06, "stiffness": 20e3, "speed": 40.0}]
+)
 def test_the_contact_is_that_of_closed_forms(values):
-    """Norton's pressure angle; the spring, the weight and inertia over its cosine; their moment on the shaft."""
+    """Norton's pressure angle; the spring, the weight and inertia over its cosine; their moment on
+    the shaft.
+    """
     solution = evaluate(load_case(CASES / "roller_cam").scene, parameters=values)
     assert solution.certified
     given = {"base": 0.045, "stiffness": 12e3, "speed": 60.0, "lift": 0.02} | values
@@ -25,9 +31,15 @@ def test_the_contact_is_that_of_closed_forms(values):
     tangent = (motion.rate / given["speed"] - OFFSET) / place
     force = solution.output("contact_force")
     assert force == pytest.approx(pushed * np.hypot(1.0, tangent), rel=1e-10)
-    assert solution.output("contact_pressure_angle") == pytest.approx(np.arctan(np.abs(tangent)), abs=1e-11)
-    assert solution.reaction("guide").fx == pytest.approx(pushed * tangent, rel=0, abs=1e-10 * pushed.max())
-    assert solution.effort("shaft") == pytest.approx(pushed * motion.rate / given["speed"], rel=0, abs=1e-11 * pushed.max())
+    assert solution.output("contact_pressure_angle") == pytest.approx(
+        np.arctan(np.abs(tangent)), abs=1e-11
+    )
+    assert solution.reaction("guide").fx == pytest.approx(
+        pushed * tangent, rel=0, abs=1e-10 * pushed.max()
+    )
+    assert solution.effort("shaft") == pytest.approx(
+        pushed * motion.rate / given["speed"], rel=0, abs=1e-11 * pushed.max()
+    )
     assert force.min() > 0.0
 
 
@@ -40,6 +52,8 @@ def test_accelerations_are_those_of_the_laws():
     assert acceleration.max() == pytest.approx(2 * np.pi * 0.02 / up**2 * 60.0**2, rel=2e-3)
     turn = solution.motion("shaft").value % (2 * np.pi)
     falling = (turn > np.radians(120.0)) & (turn < np.radians(270.0))
-    assert -acceleration[falling].min() == pytest.approx(2 * np.pi * 0.02 / back**2 * 60.0**2, rel=2e-3)
+    assert -acceleration[falling].min() == pytest.approx(
+        2 * np.pi * 0.02 / back**2 * 60.0**2, rel=2e-3
+    )
     (peak,) = refine(scene, solution, ["output:contact_hertz"])
     assert 3e8 < peak.value < 1.5e9  # what hardened steel bears

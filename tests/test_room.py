@@ -10,7 +10,10 @@ from lagrange_casadi.errors import SizeError
 
 pytestmark = pytest.mark.quick
 
-MEMINFO = "MemTotal:       64000000 kB\nMemFree:          100000 kB\nMemAvailable:   32000000 kB\nSwapFree:        1000000 kB\n"
+MEMINFO = (
+    "MemTotal:       64000000 kB\nMemFree:          100000 kB\nMemAvailable:   32000000"
+    " kB\nSwapFree:        1000000 kB\n"
+)
 STAT = "anon 900\ninactive_file 4000000\ntotal_inactive_file 6000000\n"
 
 
@@ -25,7 +28,9 @@ def system(monkeypatch):
         return files[str(path)]
 
     monkeypatch.setattr(Path, "read_text", read)
-    monkeypatch.setattr("os.sysconf", lambda name: {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 10_000_000}[name])
+    monkeypatch.setattr(
+        "os.sysconf", lambda name: {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 10_000_000}[name]
+    )
     return files
 
 
@@ -69,7 +74,10 @@ def test_so_has_one_whose_group_has_another_path_outside(system):
 @pytest.mark.parametrize(
     ("shape", "says"),
     [
-        ((3, 10**9), r"no room for it: 3 x 1 000 000 000 values are 24 GB, and this machine has 10 GB free"),
+        (
+            (3, 10**9),
+            r"no room for it: 3 x 1 000 000 000 values are 24 GB, and this machine has 10 GB free",
+        ),
         ((10**400,), r"no room for it: 1[ 0]+ values are inf GB, and this machine has 10 GB free"),
     ],
 )

@@ -1,4 +1,6 @@
-"""Axes with the rounding of CAD: an over-constrained loop closes all the same, and says by how much its axes were moved."""
+"""Axes with the rounding of CAD: an over-constrained loop closes all the same, and says by how much
+its axes were moved.
+"""
 
 import numpy as np
 import pytest
@@ -29,7 +31,9 @@ def swinging(noise, **options):
 
 @pytest.mark.parametrize("noise", [1e-13, 1e-9, 1e-7])
 def test_forces_are_those_of_exact_axes_but_for_the_rounding(noise):
-    exact, told = (evaluate(swinging(size), wanted=["effort"], backend="vm") for size in (0.0, noise))
+    exact, told = (
+        evaluate(swinging(size), wanted=["effort"], backend="vm") for size in (0.0, noise)
+    )
     assert told.certified
     for joint in ("swing", "O"):
         force = exact.effort(joint)
@@ -52,8 +56,16 @@ def cranking(noise):
 
     m = SpatialMechanism("cranking")
     crank, rod = m.link("crank", length=0.08, mass=0.12), m.link("rod", length=0.3, mass=0.5)
-    slider = m.link("slider", length=0.05, mass=2.0, centre=(0.0, 0.0, 0.0), inertia=(1e-4, 1e-4, 1e-4))
-    m.revolute("A", m.ground.at(0.0, 0.1, 0.12), crank, axis=off(1, 0, 0), turned=(off(0, 0, 1), off(0, -1, 0)))
+    slider = m.link(
+        "slider", length=0.05, mass=2.0, centre=(0.0, 0.0, 0.0), inertia=(1e-4, 1e-4, 1e-4)
+    )
+    m.revolute(
+        "A",
+        m.ground.at(0.0, 0.1, 0.12),
+        crank,
+        axis=off(1, 0, 0),
+        turned=(off(0, 0, 1), off(0, -1, 0)),
+    )
     m.spherical("B", crank.tip, rod)
     m.universal("C", slider.at(*off(0, 0, 0)), rod.tip, axis=off(1, 0, 0), second=off(0, 1, 0))
     m.prismatic("guide", m.ground, slider, axis=off(1, 0, 0))
@@ -63,14 +75,20 @@ def cranking(noise):
 
 @pytest.mark.parametrize("noise", [1e-15, 1e-14, 1e-13])
 def test_a_closed_form_holds_only_what_its_equations_hold(noise):
-    """What rounding puts into an equation is taken out; the closed form has it by the same rounding, and must lose it too."""
-    exact, told = (evaluate(cranking(size), wanted=["effort"], backend="vm") for size in (0.0, noise))
+    """What rounding puts into an equation is taken out; the closed form has it by the same
+    rounding, and must lose it too.
+    """
+    exact, told = (
+        evaluate(cranking(size), wanted=["effort"], backend="vm") for size in (0.0, noise)
+    )
     assert told.certified
     force = exact.effort("A")
     assert np.max(np.abs(told.effort("A") - force)) < 20 * noise * np.max(np.abs(force))
 
 
-@pytest.mark.parametrize("rounding", [-1e-9, 2e-3, np.nan, np.inf, None, True, "1e-6", "a lot", [1e-6]])
+@pytest.mark.parametrize(
+    "rounding", [-1e-9, 2e-3, np.nan, np.inf, None, True, "1e-6", "a lot", [1e-6]]
+)
 def test_a_tolerance_that_is_none_is_refused(rounding):
     with pytest.raises(DeclarationError, match="rounding"):
         swinging(0.0, rounding=rounding)
@@ -88,7 +106,14 @@ def test_a_second_axis_is_made_exact(off):
     """Its part across the first is taken, of a joint and of the child's axes; the first stays."""
     m = SpatialMechanism("cross")
     turned = ((0.0, 0.0, 1.0), (-1.0, 0.0, off))
-    joint = m.universal("C", m.ground, m.link("rod", length=0.3, mass=0.5), axis=(1, 0, 0), second=(off, 1, 0), turned=turned)
+    joint = m.universal(
+        "C",
+        m.ground,
+        m.link("rod", length=0.3, mass=0.5),
+        axis=(1, 0, 0),
+        second=(off, 1, 0),
+        turned=turned,
+    )
     for first, second in (joint.directions[:2], joint.turned):
         assert abs(np.dot(first, second)) < 1e-12
         assert np.linalg.norm(second) == pytest.approx(1.0, abs=1e-15)
@@ -98,4 +123,6 @@ def test_a_second_axis_is_made_exact(off):
 def test_a_second_axis_that_is_off_by_more_is_refused():
     m = SpatialMechanism("cross")
     with pytest.raises(DeclarationError, match="right angles"):
-        m.universal("C", m.ground, m.link("rod", length=0.3, mass=0.5), axis=(1, 0, 0), second=(2e-6, 1, 0))
+        m.universal(
+            "C", m.ground, m.link("rod", length=0.3, mass=0.5), axis=(1, 0, 0), second=(2e-6, 1, 0)
+        )

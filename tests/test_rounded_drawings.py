@@ -1,4 +1,6 @@
-"""Mechanisms in space as a drawing rounds them: forces are right but for the rounding, and what was meant stays."""
+"""Mechanisms in space as a drawing rounds them: forces are right but for the rounding, and what was
+meant stays.
+"""
 
 import casadi as ca
 import numpy as np
@@ -8,7 +10,19 @@ from drawings import drawing, drawn, drawn_twin
 from spatial_draft import orientation
 from spatial_twin import planar, twin
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, load, load_case, prepare, save, sweep, tolerances
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    evaluate,
+    export,
+    load,
+    load_case,
+    prepare,
+    save,
+    sweep,
+    tolerances,
+)
 from lagrange_casadi.errors import AssemblyError, ParameterError
 from lagrange_casadi.motion import polynomial
 
@@ -23,7 +37,9 @@ LAST = 1e-12
 
 NOISES = [10.0**-k for k in range(16, 6, -1)]
 CLOSING = ("arm", "scara", "sleigh")
-"""Planar cases without a loop; the motion of the last one keeps to its blade, to less than the rounding."""
+"""Planar cases without a loop; the motion of the last one keeps to its blade, to less than the
+rounding.
+"""
 
 
 def assert_near(found, exact, noise):
@@ -44,16 +60,24 @@ def vm(scene, count=5):
     return evaluate(scene, wanted=["effort"], t=(*scene.span, count), backend="vm")
 
 
-@pytest.mark.parametrize("noise", [1e-14, 3e-7, *(pytest.param(noise, marks=pytest.mark.long) for noise in (1e-12, 1e-9))])
+@pytest.mark.parametrize(
+    "noise",
+    [1e-14, 3e-7, *(pytest.param(noise, marks=pytest.mark.long) for noise in (1e-12, 1e-9))],
+)
 def test_a_screw_in_a_loop_keeps_its_turns(noise):
-    """Each step of the motor is more than a half turn: a loop that is iterated from one instant to the next would lose some."""
+    """Each step of the motor is more than a half turn: a loop that is iterated from one instant to
+    the next would lose some.
+    """
     exact, found = (
-        evaluate(scene, wanted=["effort"], backend="vm") for scene in (drawn("screw_lift", 0.0), drawn("screw_lift", noise))
+        evaluate(scene, wanted=["effort"], backend="vm")
+        for scene in (drawn("screw_lift", 0.0), drawn("screw_lift", noise))
     )
     assert_near(found, exact, noise)
 
 
-@pytest.mark.parametrize("name", ["cardan_shaft", "five_link_suspension", pytest.param("delta", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "name", ["cardan_shaft", "five_link_suspension", pytest.param("delta", marks=pytest.mark.long)]
+)
 def test_given_places_and_axes_of_parameters_may_be_rounded(name):
     assert_near(vm(drawn(name, 1e-7)), vm(drawn(name, 0.0)), 1e-7)
 
@@ -77,7 +101,11 @@ def test_planar_cases_in_space(name, turned):
     R = orientation(np.random.default_rng(PLANAR.index(name))) if turned else np.eye(3)
     exact = evaluate(twin(scene, flat, R), wanted=["effort"], backend="vm")
     for noise in NOISES[::3]:
-        assert_near(evaluate(drawn_twin(scene, flat, R, noise), wanted=["effort"], backend="vm"), exact, noise)
+        assert_near(
+            evaluate(drawn_twin(scene, flat, R, noise), wanted=["effort"], backend="vm"),
+            exact,
+            noise,
+        )
 
 
 def four_bar(noise=0.0, tilt=None, *, hard=False, seed=1):
@@ -86,21 +114,41 @@ def four_bar(noise=0.0, tilt=None, *, hard=False, seed=1):
     tilt = m.parameter("tilt", 0.0, "rad") if tilt is None else tilt
     mass = m.parameter("mass", 0.5, "kg", low=0.0)
     m.set_gravity(0.0, -9.81, -3.0)
-    sine, cosine = (ca.sin(tilt), ca.cos(tilt)) if isinstance(tilt, ca.SX) else (float(np.sin(tilt)), float(np.cos(tilt)))
+    sine, cosine = (
+        (ca.sin(tilt), ca.cos(tilt))
+        if isinstance(tilt, ca.SX)
+        else (float(np.sin(tilt)), float(np.cos(tilt)))
+    )
     normal, across = (0.0, -sine, cosine), (0.0, cosine, sine)
     ground = (0.3, 0.05 * cosine, 0.05 * sine)
     if hard:
         places = [(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.3, 0.3, 0.0), (0.3, 0.05, 0.0)]
-        links = [m.link(n, between=places[k : k + 2], mass=mass) for k, n in enumerate(("crank", "rod", "rocker"))]
-        for n, pair, at in zip("OABC", [(m.ground, links[0]), links[:2], links[1:], (m.ground, links[2])], places, strict=True):
+        links = [
+            m.link(n, between=places[k : k + 2], mass=mass)
+            for k, n in enumerate(("crank", "rod", "rocker"))
+        ]
+        for n, pair, at in zip(
+            "OABC",
+            [(m.ground, links[0]), links[:2], links[1:], (m.ground, links[2])],
+            places,
+            strict=True,
+        ):
             m.revolute(n, *pair, at=at, axis=(0.0, 0.0, 1.0))
         return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 7), wanted=["effort"])
-    crank, rod, rocker = (m.link(n, length=l, mass=mass) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+    crank, rod, rocker = (
+        m.link(n, length=l, mass=mass) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25))
+    )
     m.revolute("O", m.ground, crank, axis=normal, turned=((1.0, 0.0, 0.0), across))
     m.revolute("A", crank.tip, rod, axis=(0.0, 0.0, 1.0))
     m.revolute("C", m.ground.at(*ground), rocker, axis=normal, turned=((1.0, 0.0, 0.0), across))
     m.revolute("B", rod.tip, rocker.tip, axis=(0.0, 0.0, 1.0))
-    return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 7), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+    return Scene(
+        m,
+        {"O": polynomial(0.0, 10.0)},
+        t=(0.0, 0.6, 7),
+        posture={"A": 0.7, "C": 1.5},
+        wanted=["effort"],
+    )
 
 
 def hung(noise):
@@ -114,7 +162,13 @@ def hung(noise):
     m.spherical("B", bar, slide, at=(0.4, 0.5, 0.3))
     m.prismatic("S", m.ground, slide, at=(0.4, 0.5, 0.3), axis=(0.1, 1.0, 0.0))
     off = [noise * x for x in (0.3, -0.7, 0.9)]
-    m.spring("pull", m.ground.at(0.1, 0.2, 1.0), m.at(bar, 0.4 + off[0], 0.25 + off[1], 0.2 + off[2]), stiffness=300.0, length=0.5)
+    m.spring(
+        "pull",
+        m.ground.at(0.1, 0.2, 1.0),
+        m.at(bar, 0.4 + off[0], 0.25 + off[1], 0.2 + off[2]),
+        stiffness=300.0,
+        length=0.5,
+    )
     return Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 0.3, 5), wanted=["effort"])
 
 
@@ -139,23 +193,35 @@ def test_hard_points(noise):
 
 @pytest.mark.parametrize("tilt", [1e-5, 1e-7, -3e-10])
 def test_a_tilt_that_was_meant_is_not_moved_where_loops_close(tilt):
-    """Not as a number, and not as a parameter: the effort changes with it as it does with a large one."""
+    """Not as a number, and not as a parameter: the effort changes with it as it does with a large
+    one.
+    """
     level, steep = vm(four_bar(tilt=0.0)).effort("O"), vm(four_bar(tilt=1e-3)).effort("O")
     by = (steep - level) / 1e-3
     number = vm(four_bar(tilt=tilt))
     parameter = evaluate(four_bar(), parameters={"tilt": tilt}, t=(0.0, 0.6, 5), backend="vm")
     for found in (number, parameter):
         assert not rounded(found)
-        assert found.effort("O") - level == pytest.approx(tilt * by, abs=1e-2 * abs(tilt) * np.max(np.abs(by)) + 1e-14)
+        assert found.effort("O") - level == pytest.approx(
+            tilt * by, abs=1e-2 * abs(tilt) * np.max(np.abs(by)) + 1e-14
+        )
 
 
 def pressing(noise, tilt=None):
-    """The four-bar on a base that turns about an axis that is tilted as was meant; the loop alone is rounded."""
+    """The four-bar on a base that turns about an axis that is tilted as was meant; the loop alone
+    is rounded.
+    """
     m = drawing(noise, exact=("swing",))("pressing")
     tilt = m.parameter("tilt", 0.0, "rad") if tilt is None else tilt
-    mass, length = m.parameter("mass", 0.5, "kg", low=0.0), m.parameter("length", 0.1, "m", low=0.02, high=0.15)
+    mass, length = (
+        m.parameter("mass", 0.5, "kg", low=0.0),
+        m.parameter("length", 0.1, "m", low=0.02, high=0.15),
+    )
     base = m.link("base", length=0.5, mass=3.0)
-    crank, rod, rocker = (m.link(n, length=l, mass=mass) for n, l in (("crank", length), ("rod", 0.35), ("rocker", 0.25)))
+    crank, rod, rocker = (
+        m.link(n, length=l, mass=mass)
+        for n, l in (("crank", length), ("rod", 0.35), ("rocker", 0.25))
+    )
     m.revolute("swing", m.ground, base, axis=(0.0, tilt, 1.0))
     m.revolute("O", base, crank)
     m.revolute("A", crank.tip, rod)
@@ -173,9 +239,13 @@ def test_a_tilt_that_was_meant_stays_beside_a_loop_that_was_rounded(tilt):
     found = vm(pressing(noise, tilt))
     assert "swing" not in found.description["rounded"]
     assert_near(found, vm(pressing(0.0, tilt)), noise)
-    by_parameter = evaluate(pressing(noise), parameters={"tilt": tilt}, t=(0.0, 0.6, 5), backend="vm").effort("swing")
+    by_parameter = evaluate(
+        pressing(noise), parameters={"tilt": tilt}, t=(0.0, 0.6, 5), backend="vm"
+    ).effort("swing")
     without = evaluate(pressing(noise), t=(0.0, 0.6, 5), backend="vm").effort("swing")
-    assert by_parameter - without == pytest.approx(tilt * by, abs=1e-2 * tilt * np.max(np.abs(by)) + 1e-13)
+    assert by_parameter - without == pytest.approx(
+        tilt * by, abs=1e-2 * tilt * np.max(np.abs(by)) + 1e-13
+    )
 
 
 def test_derivatives_are_those_of_exact_axes():
@@ -186,7 +256,9 @@ def test_derivatives_are_those_of_exact_axes():
     assert rounded(found)
     for name in names:
         for joint in ("swing", "O"):
-            one, other = (solution.sensitivities.array(f"effort:{joint}", name) for solution in (exact, found))
+            one, other = (
+                solution.sensitivities.array(f"effort:{joint}", name) for solution in (exact, found)
+            )
             assert np.max(np.abs(one - other)) <= FACTOR * noise * np.max(np.abs(one))
 
 
@@ -200,12 +272,20 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     assert 0.0 < max(map(max, other.description["rounded"].values())) < 2 * noise
     for joint in ("swing", "O"):
         name = f"peak:effort:{joint}"
-        peaks, found = (np.array([kept.values(k, name)[name] for k in range(kept.size)]) for kept in (one, other))
+        peaks, found = (
+            np.array([kept.values(k, name)[name] for k in range(kept.size)])
+            for kept in (one, other)
+        )
         assert np.max(np.abs(found - peaks)) <= FACTOR * noise * np.max(np.abs(peaks))
     one, other = (prepare(scene, wanted=["effort"]) for scene in (exact, rough))
     for name, slope in one.gradient(length=0.09)["effort:O"].items():
-        assert other.gradient(length=0.09)["effort:O"][name] == pytest.approx(slope, rel=FACTOR * noise)
-    one, other = (tolerances(scene, {"tilt": "1e-5 rad", "length": 1e-6}, samples=20).peaks["effort:O"] for scene in (exact, rough))
+        assert other.gradient(length=0.09)["effort:O"][name] == pytest.approx(
+            slope, rel=FACTOR * noise
+        )
+    one, other = (
+        tolerances(scene, {"tilt": "1e-5 rad", "length": 1e-6}, samples=20).peaks["effort:O"]
+        for scene in (exact, rough)
+    )
     assert other.worst == pytest.approx(one.worst, rel=1e-5)
     solution = evaluate(rough, wanted=["all"], xi=(0, 1, 3), parameters={"length": 0.09})
     save(solution, tmp_path / "rough.h5")
@@ -222,22 +302,38 @@ def offset(by, default):
     """A four-bar with a pivot that is off its plane, by a parameter."""
     m = SpatialMechanism("offset")
     by = by * m.parameter("k", default)
-    crank, rod, rocker = (m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+    crank, rod, rocker = (
+        m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25))
+    )
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     m.revolute("C", m.ground.at(0.3, 0.05, by), rocker)
     m.revolute("B", rod.tip, rocker.tip)
-    return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+    return Scene(
+        m,
+        {"O": polynomial(0.0, 10.0)},
+        t=(0.0, 0.6, 61),
+        posture={"A": 0.7, "C": 1.5},
+        wanted=["effort"],
+    )
 
 
 BY_DEFAULT = [(1.0, 1.0), (1.0, 3.0), (0.0, 1.0)]
-RAISED = [(1.0, -2.0), (0.0, 0.01), *(pytest.param(*pair, marks=pytest.mark.long) for pair in BY_DEFAULT)]
+RAISED = [
+    (1.0, -2.0),
+    (0.0, 0.01),
+    *(pytest.param(*pair, marks=pytest.mark.long) for pair in BY_DEFAULT),
+]
 
 
 @pytest.mark.parametrize(("default", "raised"), RAISED)
 def test_corrections_are_sought_for_the_parameters_in_use(default, raised):
-    """One correction does not serve all of them, and loops that close by default may not for others."""
-    exact, found = (evaluate(offset(by, default), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))
+    """One correction does not serve all of them, and loops that close by default may not for
+    others.
+    """
+    exact, found = (
+        evaluate(offset(by, default), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7)
+    )
     assert rounded(found)
     assert_near(found, exact, 2e-7)
 
@@ -249,7 +345,9 @@ def test_loops_that_are_off_by_more_for_the_parameters_in_use_are_refused():
 
 @pytest.mark.parametrize("beyond", [1e-10, -3e-7])
 def test_a_station_that_was_rounded_beyond_an_end_is_there(beyond):
-    """Given by a number or by a length and a number; and not where it is a parameter's value, or off by more."""
+    """Given by a number or by a length and a number; and not where it is a parameter's value, or
+    off by more.
+    """
 
     def shelf(station):
         m = Mechanism("shelf")
@@ -259,10 +357,17 @@ def test_a_station_that_was_rounded_beyond_an_end_is_there(beyond):
         return Scene(m, {"O": polynomial(0.0)}, t=(0.0, 1.0, 3))
 
     end = (lambda m: m.parameters["l"].symbol) if beyond > 0.0 else (lambda m: 0.0)
-    found, exact = (evaluate(shelf(lambda m, off=off: end(m) + off), backend="vm") for off in (beyond, 0.0))
+    found, exact = (
+        evaluate(shelf(lambda m, off=off: end(m) + off), backend="vm") for off in (beyond, 0.0)
+    )
     assert found.effort("O") == pytest.approx(exact.effort("O"), rel=1e-15)
-    assert found.notes == (f"places of joint 'W' are taken as ends of links, moved by up to {abs(beyond):.2g} m",)
-    for station in (lambda m: end(m) + 10 * beyond * 1e6, lambda m: m.parameter("x", 0.3 + abs(beyond), "m")):
+    assert found.notes == (
+        f"places of joint 'W' are taken as ends of links, moved by up to {abs(beyond):.2g} m",
+    )
+    for station in (
+        lambda m: end(m) + 10 * beyond * 1e6,
+        lambda m: m.parameter("x", 0.3 + abs(beyond), "m"),
+    ):
         with pytest.raises(ParameterError, match="outside link"):
             shelf(station)
 
@@ -273,8 +378,15 @@ def crossed(off):
     phase = m.parameter("phase", 0.0, "rad")
     arm = m.link("arm", length=0.3, mass=1.0)
     lean = m.parameter("lean", 0.0, "rad")
-    m.universal("C", m.ground, arm, axis=(1.0, 0.0, 0.0), second=(off + lean, ca.cos(phase), ca.sin(phase)))
-    return Scene(m, {"C:turn_1": polynomial(0.2, 1.0), "C:turn_2": polynomial(0.1, -2.0)}, t=(0.0, 1.0, 5), wanted=["effort"])
+    m.universal(
+        "C", m.ground, arm, axis=(1.0, 0.0, 0.0), second=(off + lean, ca.cos(phase), ca.sin(phase))
+    )
+    return Scene(
+        m,
+        {"C:turn_1": polynomial(0.2, 1.0), "C:turn_2": polynomial(0.1, -2.0)},
+        t=(0.0, 1.0, 5),
+        wanted=["effort"],
+    )
 
 
 @pytest.mark.parametrize("off", [1e-10, 1e-8, -9e-7])
@@ -282,7 +394,9 @@ def test_a_second_axis_of_parameters_is_made_exact(off):
     values = {"phase": 0.3}
     found, exact = (evaluate(crossed(size), parameters=values, backend="vm") for size in (off, 0.0))
     assert_near(found, exact, abs(off))
-    assert found.notes == (f"axes of joint 'C' are taken as at right angles, moved by up to {abs(off):.2g} rad",)
+    assert found.notes == (
+        f"axes of joint 'C' are taken as at right angles, moved by up to {abs(off):.2g} rad",
+    )
     assert exact.notes == ()
     with pytest.raises(ParameterError, match="right angles"):
         evaluate(crossed(off), parameters={"lean": 1e-3})
@@ -298,11 +412,24 @@ def test_a_load_along_a_link_that_was_rounded_beyond_an_end_ends_there(off):
         arm = m.link("arm", length=length, mass=1.0)
         m.revolute("O", m.ground, arm)
         m.line_load("wind", arm, y=(-20.0, -40.0), between=(before, length + after))
-        return Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 3), xi=(0, 1, 5), wanted=["effort", "section"])
+        return Scene(
+            m,
+            {"O": polynomial(0.0, 1.0)},
+            t=(0.0, 1.0, 3),
+            xi=(0, 1, 5),
+            wanted=["effort", "section"],
+        )
 
-    found, exact = (evaluate(shelf(*ends), parameters={"l": 0.4}, backend="vm") for ends in (off, (0.0, 0.0)))
+    found, exact = (
+        evaluate(shelf(*ends), parameters={"l": 0.4}, backend="vm") for ends in (off, (0.0, 0.0))
+    )
     np.testing.assert_array_equal(found.effort("O"), exact.effort("O"))
     np.testing.assert_array_equal(found.section("arm").bending, exact.section("arm").bending)
-    assert found.notes == (f"places of load 'wind' are taken as ends of links, moved by up to {max(map(abs, off)):.2g} m",)
+    assert found.notes == (
+        (
+            "places of load 'wind' are taken as ends of links, moved by up to"
+            f" {max(map(abs, off)):.2g} m"
+        ),
+    )
     with pytest.raises(ParameterError, match="but link 'arm' is from 0 to"):
         shelf(off[0], 1e-6)

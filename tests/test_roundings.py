@@ -13,7 +13,9 @@ from lagrange_casadi.judge.roundings import left
 
 pytestmark = pytest.mark.quick
 
-numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6) | st.sampled_from([1.0, -0.5, 3.0, 0.1, 1.0 + 2.0**-52])
+numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6) | st.sampled_from(
+    [1.0, -0.5, 3.0, 0.1, 1.0 + 2.0**-52]
+)
 kinds = st.sampled_from([np.float64, np.float32])
 
 
@@ -26,7 +28,10 @@ def of(code, kind, result, *operands):
 def test_sums_and_products(x, y, kind):
     """To the last bit; where that is more than the rest can hold, to rounding."""
     a, b = kind(x), kind(y)
-    exact = {ca.OP_ADD: Fraction(float(a)) + Fraction(float(b)), ca.OP_SUB: Fraction(float(a)) - Fraction(float(b))}
+    exact = {
+        ca.OP_ADD: Fraction(float(a)) + Fraction(float(b)),
+        ca.OP_SUB: Fraction(float(a)) - Fraction(float(b)),
+    }
     exact |= {ca.OP_MUL: Fraction(float(a)) * Fraction(float(b))}
     rounded = {ca.OP_ADD: a + b, ca.OP_SUB: a - b, ca.OP_MUL: a * b}
     for code, meant in exact.items():
@@ -67,7 +72,9 @@ def test_what_is_exact_leaves_nothing():
 
 
 def test_what_is_not_known():
-    """A function's error, that of a sum that overflows, and that of a product whose own error is below all numbers."""
+    """A function's error, that of a sum that overflows, and that of a product whose own error is
+    below all numbers.
+    """
     assert np.isnan(of(ca.OP_SIN, np.float64, np.sin(0.5), 0.5))
     assert np.isnan(of(ca.OP_ACOS, np.float64, np.arccos(0.0), 0.0))
     with np.errstate(all="ignore"):

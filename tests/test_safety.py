@@ -1,4 +1,6 @@
-"""Factors of safety and lives: against sums worked out beside them, in Python and on the command line."""
+"""Factors of safety and lives: against sums worked out beside them, in Python and on the command
+line.
+"""
 
 import math
 
@@ -30,14 +32,18 @@ def pressed(scene):
 
 def test_yield_is_the_strength_over_the_largest_stress(pressed):
     found = pressed.safety("rod")
-    assert found.against("yield") == pytest.approx(490e6 / pressed.stress("rod").peak("von_mises").value)
+    assert found.against("yield") == pytest.approx(
+        490e6 / pressed.stress("rod").peak("von_mises").value
+    )
     assert pressed.safety("rod", yielding="tresca").against("yield") == pytest.approx(
         490e6 / pressed.stress("rod").peak("tresca").value
     )
 
 
 def test_fatigue_by_hand_along_the_edges(pressed):
-    """At the corners there is no shear: largest and smallest stress over time at each ratio, the notch's beside, then Goodman."""
+    """At the corners there is no shear: largest and smallest stress over time at each ratio, the
+    notch's beside, then Goodman.
+    """
     law, grid = pressed.section("rod").law, np.linspace(0.0, 1.0, 4001)
     worst = np.inf
     for places, k_n, k_m in ((grid, 1.0, 1.0), (np.array([0.3]), 1.8, 1.64)):
@@ -68,7 +74,9 @@ def test_buckling_by_hand(pressed):
 
 
 def test_life_by_hand():
-    """A rod that breaks in time: one swing a turn at the worst edge, its life by the S-N line; hours by the span of time."""
+    """A rod that breaks in time: one swing a turn at the worst edge, its life by the S-N line;
+    hours by the span of time.
+    """
     rough = strong.STEEL.but(endurance=30e6)
     scene = strong.press(beams.rectangle(0.012, 0.004), material=rough)
     solution = evaluate(scene, certificate=False)
@@ -81,7 +89,9 @@ def test_life_by_hand():
     high, low = values[0, k].max(), values[0, k].min()
     amplitude, mean = (high - low) / 2, max((high + low) / 2, 0.0)
     assert found.cycles <= cycles(amplitude / (1 - mean / 700e6), rough) * (1 + 1e-9)
-    assert found.cycles == pytest.approx(float(cycles(amplitude / (1 - mean / 700e6), rough)), rel=0.2)
+    assert found.cycles == pytest.approx(
+        float(cycles(amplitude / (1 - mean / 700e6), rough)), rel=0.2
+    )
 
 
 def test_a_stout_rod_lasts():
@@ -90,7 +100,9 @@ def test_a_stout_rod_lasts():
 
 
 def test_a_material_without_an_endurance_limit_leaves_fatigue_open():
-    solution = evaluate(strong.press(BAR, material=beams.material("EN AW-6082-T6")), certificate=False)
+    solution = evaluate(
+        strong.press(BAR, material=beams.material("EN AW-6082-T6")), certificate=False
+    )
     found = solution.safety("rod")
     assert found.is_open == ("fatigue: material 'EN AW-6082-T6' has no endurance",)
     assert math.isnan(found.against("fatigue"))
@@ -100,18 +112,28 @@ def test_a_material_without_an_endurance_limit_leaves_fatigue_open():
 
 def test_strength_is_wanted_as_other_outputs_are(scene):
     names = outputs(scene.mechanism)
-    assert [n for n in names if n.endswith(":rod")][-4:] == ["stress:rod", "safety:rod", "life:rod", "deflection:rod"]
+    assert [n for n in names if n.endswith(":rod")][-4:] == [
+        "stress:rod",
+        "safety:rod",
+        "life:rod",
+        "deflection:rod",
+    ]
     solution = evaluate(scene, wanted=["safety:rod"], certificate=False)
     assert solution.links_with_sections == ("rod",)
     assert not any(name.startswith(("effort", "reaction")) for name in solution.series)
     assert evaluate(scene, wanted=["life"], certificate=False).links_with_sections == ("rod",)
-    with pytest.raises(DeclarationError, match=r"output 'stress:crank': link 'crank' has no beam.* links with one: rod"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"output 'stress:crank': link 'crank' has no beam.* links with one: rod",
+    ):
         evaluate(scene, wanted=["stress:crank"])
     for call in (
         lambda: prepare(scene, wanted=["life"]),
         lambda: export(scene, "x", wanted=["life:rod"]),
     ):
-        with pytest.raises(DeclarationError, match="tell instants, and a life is that of a whole cycle"):
+        with pytest.raises(
+            DeclarationError, match="tell instants, and a life is that of a whole cycle"
+        ):
             call()
 
 
@@ -133,11 +155,16 @@ def written(here, width):
 
 
 def test_run_tells_what_governs(here, capsys):
-    assert main([*written(here, 0.006), "--want", "stress:rod,safety:rod", "--want", "life:rod"]) == 0
+    assert (
+        main([*written(here, 0.006), "--want", "stress:rod,safety:rod", "--want", "life:rod"]) == 0
+    )
     out = capsys.readouterr().out
     found = evaluate(strong.press(BAR, [beams.Notch(0.3, bending=1.8)]), certificate=False)
     safety, peak = found.safety("rod"), found.stress("rod").peak("von_mises")
-    assert f"  stress:rod:von_mises        {peak.value / 1e6:>13.6g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}" in out
+    assert (
+        f"  stress:rod:von_mises        {peak.value / 1e6:>13.6g} MPa at t = {peak.t:.5g} s, xi/l ="
+        f" {peak.xi:.4f}" in out
+    )
     assert f"{safety.utilisation:>8.4g} |" in out
     assert f"| {safety.governs.against} governs" in out
     for verdict in safety.verdicts:

@@ -1,4 +1,6 @@
-"""Sums, differences and products are those that CasADi's operators write, and of numbers they are numbers."""
+"""Sums, differences and products are those that CasADi's operators write, and of numbers they are
+numbers.
+"""
 
 import operator
 from itertools import product as pairs

@@ -22,7 +22,12 @@ def write(path, count):
         for number in range(count):
             axes = ("t", "xi")[: 1 + number % 2]
             shape = tuple(file[axis].size for axis in axes)
-            scales.attach(file.create_dataset(f"{number // 100}/{number}", shape, np.float64, fillvalue=number), axes)
+            scales.attach(
+                file.create_dataset(
+                    f"{number // 100}/{number}", shape, np.float64, fillvalue=number
+                ),
+                axes,
+            )
         scales.finish()
 
 
@@ -67,7 +72,9 @@ def test_hdf5_goes_on_with_them(tmp_path):
         file["more"] = np.zeros((2, 3))
         file["more"].dims[1].attach_scale(file["t"])
     with h5py.File(tmp_path / "x.h5") as file:
-        assert [file[place].name for place in file["xi"].attrs["REFERENCE_LIST"]["dataset"]] == ["/0/3"]
+        assert [file[place].name for place in file["xi"].attrs["REFERENCE_LIST"]["dataset"]] == [
+            "/0/3"
+        ]
         assert [file[place].name for place in file["t"].attrs["REFERENCE_LIST"]["dataset"]] == [
             *(f"/0/{number}" for number in range(4)),
             "/more",
@@ -87,7 +94,11 @@ def chain(links):
         link = m.link(f"link{number}", length=0.1, mass=0.2)
         m.revolute(f"joint{number}", near, link)
         near, drives[f"joint{number}"] = link.tip, polynomial(0.1 * number, 1.0)
-    return evaluate(Scene(m, drives, t=(0.0, 0.1, 5), xi=(0.0, 1.0, 11), wanted=("all",)), backend="vm", certificate=False)
+    return evaluate(
+        Scene(m, drives, t=(0.0, 0.1, 5), xi=(0.0, 1.0, 11), wanted=("all",)),
+        backend="vm",
+        certificate=False,
+    )
 
 
 def test_a_file_grows_as_its_mechanism_does(tmp_path):

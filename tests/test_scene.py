@@ -14,7 +14,8 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 def test_outputs():
     assert outputs(slider_crank().mechanism) == [
-        "all", "effort", "motion", "reaction:O", "reaction:A", "reaction:B", "reaction:guide", "section:crank", "section:rod",
+        "all", "effort", "motion", "reaction:O", "reaction:A", "reaction:B", "reaction:guide",
+            "section:crank", "section:rod",
         "sensitivity:r", "sensitivity:l", "sensitivity:m1", "sensitivity:m2", "sensitivity:m3",
     ]  # fmt: skip
 
@@ -41,7 +42,10 @@ def test_a_graph_holds_what_is_wanted(wanted, expected):
     ("wanted", "same"),
     [
         (["section"], ["section:crank", "section:rod"]),
-        (["reaction", "effort"], ["effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide"]),
+        (
+            ["reaction", "effort"],
+            ["effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide"],
+        ),
         (["section", "section:rod"], ["section:rod", "section:crank"]),
     ],
 )
@@ -51,14 +55,21 @@ def test_a_kind_is_all_of_that_kind(wanted, same):
 
 
 def test_a_kind_of_which_there_is_none_is_refused():
-    with pytest.raises(DeclarationError, match="output 'load': mechanism 'slider_crank' has none; valid: all, effort, motion"):
+    with pytest.raises(
+        DeclarationError,
+        match="output 'load': mechanism 'slider_crank' has none; valid: all, effort, motion",
+    ):
         derive(slider_crank(), ["effort", "load"])
-    with pytest.raises(UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"):
+    with pytest.raises(
+        UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"
+    ):
         derive(slider_crank(), ["sections"])
 
 
 def test_what_is_not_wanted_costs_nothing():
-    """The effort alone is a graph without a mobility: as many instructions whether or not the links could be cut."""
+    """The effort alone is a graph without a mobility: as many instructions whether or not the links
+    could be cut.
+    """
     scene = four_bar()
     effort, everything = derive(scene, ["effort"]), derive(scene, ["all"])
     section = derive(scene, ["effort", "section:b"])
@@ -70,16 +81,25 @@ def test_what_is_not_wanted_costs_nothing():
 
 
 def test_instructions_do_not_creep_back():
-    """The paper's mechanism, beside its 42 columns, 8 inputs and few constants: everything, and the effort alone."""
-    counts = [derive(slider_crank(), wanted).instructions["instant"] for wanted in (["all"], ["effort"])]
+    """The paper's mechanism, beside its 42 columns, 8 inputs and few constants: everything, and the
+    effort alone.
+    """
+    counts = [
+        derive(slider_crank(), wanted).instructions["instant"] for wanted in (["all"], ["effort"])
+    ]
     assert counts[0] <= 183
     assert counts[1] <= 84
 
 
 def test_the_law_of_a_driven_link_is_its_motion():
-    """Material turns with its link: n2 is the rate squared and f2 less the angular acceleration, to the last bit."""
+    """Material turns with its link: n2 is the rate squared and f2 less the angular acceleration, to
+    the last bit.
+    """
     solution = evaluate(slider_crank(), wanted=["motion", "section:crank"])
-    crank, law = solution.motion("O"), {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")}
+    crank, law = (
+        solution.motion("O"),
+        {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")},
+    )
     np.testing.assert_array_equal(law["n2"], crank.rate**2)
     np.testing.assert_array_equal(law["f2"], -crank.acceleration)
 
@@ -92,18 +112,29 @@ def test_a_single_link_gives_each_output_alone():
     for wanted in ("effort", "reaction:J", "section:a", "motion"):
         alone = evaluate(scene, wanted=[wanted])
         for name in alone.series:
-            np.testing.assert_allclose(alone.series[name], whole.series[name], rtol=1e-14, err_msg=name)
+            np.testing.assert_allclose(
+                alone.series[name], whole.series[name], rtol=1e-14, err_msg=name
+            )
 
 
 def test_the_order_of_wanting_does_not_matter():
-    one, two = (derive(slider_crank(), wanted) for wanted in (["section:rod", "effort"], ["effort", "section:rod"]))
+    one, two = (
+        derive(slider_crank(), wanted)
+        for wanted in (["section:rod", "effort"], ["effort", "section:rod"])
+    )
     assert one.columns == two.columns
 
 
 def test_loops_are_closed_alike_whatever_is_wanted():
-    """A guide carried by a link that is cut, at the cut side: the closed form does not see the cut."""
+    """A guide carried by a link that is cut, at the cut side: the closed
+    form does not see the cut.
+    """
     m = Mechanism("m")
-    a, b, p = m.link("a", length=0.3, mass=1.0), m.link("b", length=1.0, mass=1.0), m.point_mass("p", 1.0)
+    a, b, p = (
+        m.link("a", length=0.3, mass=1.0),
+        m.link("b", length=1.0, mass=1.0),
+        m.point_mass("p", 1.0),
+    )
     m.revolute("O", m.ground, a)
     m.revolute("Q", m.ground.at(0, -0.5), b)
     m.revolute("A", a.tip, p)
@@ -118,8 +149,16 @@ def test_loops_are_closed_alike_whatever_is_wanted():
 @pytest.mark.parametrize(
     ("wanted", "error", "says"),
     [
-        (["torque"], UnknownNameError, "unknown output 'torque'; valid: all, effort, motion, reaction:O"),
-        (["section:slider"], DeclarationError, "'slider' is not a link and has no sections; links: crank, rod"),
+        (
+            ["torque"],
+            UnknownNameError,
+            "unknown output 'torque'; valid: all, effort, motion, reaction:O",
+        ),
+        (
+            ["section:slider"],
+            DeclarationError,
+            "'slider' is not a link and has no sections; links: crank, rod",
+        ),
         (["reaction:X"], UnknownNameError, "unknown output 'reaction:X'"),
         ([], DeclarationError, "no output wanted"),
     ],
@@ -134,17 +173,25 @@ def test_a_link_known_by_its_inertia_has_no_section():
     a = m.link("a", length=1, mass=1, centre=(0.4, 0.1), inertia=0.2)
     m.revolute("O", m.ground, a)
     assert "section:a" not in outputs(m)
-    with pytest.raises(DeclarationError, match="link 'a' is known by its centre of mass and inertia only"):
+    with pytest.raises(
+        DeclarationError, match="link 'a' is known by its centre of mass and inertia only"
+    ):
         Scene(m, {"O": polynomial(0)}, ["section:a"])
 
 
 @pytest.mark.parametrize(
     ("keywords", "says"),
     [
-        ({"motion": {"X": polynomial(0)}}, "unknown joint, path or body in motion 'X'; valid: O, A, guide, crank"),
+        (
+            {"motion": {"X": polynomial(0)}},
+            "unknown joint, path or body in motion 'X'; valid: O, A, guide, crank",
+        ),
         ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
-        ({"posture": {"stick": 1.0}}, "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide"),
+        (
+            {"posture": {"stick": 1.0}},
+            "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide",
+        ),
         ({"t": (0, 1, 0)}, "t: COUNT must be a whole number from 1 to 2\\^63 - 1, got 0"),
         ({"t": (0, 1, 1)}, "t: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"xi": (0, 1, 1)}, "xi: COUNT must be 2 or more to reach from 0 to 1, got 1"),
@@ -181,9 +228,15 @@ def test_grids_are_what_their_decimals_say():
     [
         (
             {"t": (0, 1, 10**12)},
-            r"no room for the outputs over time: 2 x 51 x 1 000 000 000 000 values are 8.16e\+05 GB, and this machine has",
+            (
+                r"no room for the outputs over time: 2 x 51 x 1 000 000 000 000 values are"
+                r" 8.16e\+05 GB, and this machine has"
+            ),
         ),
-        ({"xi": (0, 1, 10**12)}, r"no room for the points from 0 to 1: 3 x 1 000 000 000 000 values are 2\.4e\+04 GB"),
+        (
+            {"xi": (0, 1, 10**12)},
+            r"no room for the points from 0 to 1: 3 x 1 000 000 000 000 values are 2\.4e\+04 GB",
+        ),
     ],
 )
 def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, says):

@@ -1,4 +1,6 @@
-"""The case of a screw lift: torques up and down, efficiency, and where the screw stops locking itself."""
+"""The case of a screw lift: torques up and down, efficiency, and where the screw stops locking
+itself.
+"""
 
 import math
 
@@ -13,7 +15,9 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 @pytest.mark.parametrize("values", [{}, {"mu": 0.05, "payload": 300.0}, {"lead": 0.012, "mu": 0.2}])
 def test_the_motor_lifts_the_weight_and_the_friction(values):
-    """W r tan(angle +- phi) with the inertia of table and spindle; the efficiency of the way up; and work of the whole cycle."""
+    """W r tan(angle +- phi) with the inertia of table and spindle; the efficiency of the way up;
+    and work of the whole cycle.
+    """
     solution = evaluate(load_case(CASES / "screw_lift").scene, parameters=values)
     assert solution.certified
     told = {"mu": 0.12, "payload": 800.0, "lead": 0.006} | values
@@ -26,7 +30,9 @@ def test_the_motor_lifts_the_weight_and_the_friction(values):
     assert solution.effort("motor") == pytest.approx(6e-4 * motion.acceleration - thread, rel=1e-11)
     assert table.value == pytest.approx(-motion.value * told["lead"] / (2 * math.pi), abs=1e-13)
     lifted, given = weight * table.rate, -thread * motion.rate
-    assert (lifted / given)[up] == pytest.approx(np.full(up.sum(), math.tan(angle) / math.tan(angle + phi)), rel=1e-11)
+    assert (lifted / given)[up] == pytest.approx(
+        np.full(up.sum(), math.tan(angle) / math.tan(angle + phi)), rel=1e-11
+    )
     assert solution.output("lifting_power") == pytest.approx(lifted, rel=1e-11)
     # Where it locks itself, it must be driven down.
     assert (given[~up] > 0.0).all() == (phi > angle)

@@ -60,7 +60,10 @@ def test_the_digest_is_what_the_documentation_says(tmp_path, length):
     assert whole[:length] == content
     assert len(whole) == length + seal.SIZE
     digest = plain("something", content)
-    lines = f"lagrange-casadi seal 1\nof something\nbytes {length}\nSHA-256 of the SHA-256 of every MiB {digest}\n"
+    lines = (
+        f"lagrange-casadi seal 1\nof something\nbytes {length}\nSHA-256 of the SHA-256 of every MiB"
+        f" {digest}\n"
+    )
     assert whole[length:].decode("ascii").rstrip(" \n") + "\n" == lines
     assert whole[-1:] == b"\n"
     assert seal.kind_of(path) == "something"
@@ -89,7 +92,9 @@ def test_after_a_failure_no_thread_goes_on(monkeypatch, error):
 
 
 def test_the_documentation_verifies_a_file(run, tmp_path, monkeypatch):
-    (block,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "schema.md").read_text(), re.DOTALL)
+    (block,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs" / "schema.md").read_text(), re.DOTALL
+    )
     shutil.copy(run, tmp_path)
     monkeypatch.chdir(tmp_path)
     exec(compile(block, "schema.md", "exec"), {})
@@ -116,7 +121,9 @@ def test_every_bit_before_it_counts(tmp_path_factory, place, bit):
         path.write_bytes(np.random.default_rng(1).bytes(2 * MIB + 1000))
         seal.seal(path, "something")
     flip(path, place, 1 << bit)
-    with pytest.raises(StoreError, match=r"bits\.bin: damaged: its bytes are not those that were written$"):
+    with pytest.raises(
+        StoreError, match=r"bits\.bin: damaged: its bytes are not those that were written$"
+    ):
         seal.verify(path)
     flip(path, place, 1 << bit)
     seal.verify(path)
@@ -125,7 +132,12 @@ def test_every_bit_before_it_counts(tmp_path_factory, place, bit):
 @pytest.mark.parametrize("cut", [1, 255, 256, 257, 1000, 2 * MIB])
 def test_a_file_that_was_cut_is_refused(sealed, cut):
     content = sealed.read_bytes()
-    for damaged in (content[:-cut], content[cut:], content[:1000] + content[1000 + cut :], content[:-256] + content[-cut:]):
+    for damaged in (
+        content[:-cut],
+        content[cut:],
+        content[:1000] + content[1000 + cut :],
+        content[:-256] + content[-cut:],
+    ):
         sealed.write_bytes(damaged)
         if damaged != content:
             with pytest.raises(StoreError, match=r"x\.bin: "):
@@ -160,7 +172,9 @@ def test_what_was_seen_is_told_from_what_came_after(sealed):
     assert not seen.is_at(sealed)
 
 
-@pytest.mark.parametrize("read", [load, check, store.figure_specs, Sweep.open, check_sweep, seal.verify])
+@pytest.mark.parametrize(
+    "read", [load, check, store.figure_specs, Sweep.open, check_sweep, seal.verify]
+)
 def test_pipes_and_folders_are_not_opened(tmp_path, read):
     os.mkfifo(tmp_path / "x.h5")
     with pytest.raises(PathError, match=r"x\.h5: is a device or a pipe, not a file$"):
@@ -172,7 +186,9 @@ def test_pipes_and_folders_are_not_opened(tmp_path, read):
 
 
 def test_other_readers_go_on(run):
-    """A seal is no part of HDF5: what the first bytes tell, and every library that reads it, are as ever."""
+    """A seal is no part of HDF5: what the first bytes tell, and every library that reads it, are as
+    ever.
+    """
     assert run.read_bytes()[:8] == seal.SIGNATURE
     for engine in ("h5netcdf", "netcdf4", None):
         with xarray.open_dataset(run, engine=engine, group="effort") as effort:
@@ -183,7 +199,9 @@ def test_other_readers_go_on(run):
 def test_h5dump_goes_on(run):
     import subprocess
 
-    done = subprocess.run(["h5dump", "-d", "/t", str(run)], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["h5dump", "-d", "/t", str(run)], capture_output=True, text=True, check=True
+    )
     assert "(0): 0, 0.0001" in done.stdout
     assert done.stderr == ""
 
@@ -210,7 +228,9 @@ def unsealed(request, run, monkeypatch, tmp_path):
         readers = (Sweep.open, check_sweep)
     else:
         with h5py.File(path, "w") as file:
-            file.attrs.update({"schema": optimum.SCHEMA, "schema_version": optimum.VERSION, "complete": True})
+            file.attrs.update(
+                {"schema": optimum.SCHEMA, "schema_version": optimum.VERSION, "complete": True}
+            )
             file.attrs.update({"stopped": False, "feasible": True, "converged": True})
             file.create_group("points")
         seal.seal(path, optimum.SCHEMA)
@@ -228,7 +248,10 @@ def test_what_has_no_seal_is_to_be_run_again(unsealed, capsys, monkeypatch, vers
     if version:
         with h5py.File(path, "r+") as file:
             file.attrs["schema_version"] = version
-    told = f"{path}: it has no seal: cut short, changed by another program, or from before there were seals; run it again"
+    told = (
+        f"{path}: it has no seal: cut short, changed by another program, or from before there were"
+        " seals; run it again"
+    )
 
     def opened(*_arguments, **_keywords):
         raise AssertionError("HDF5 saw it")
@@ -238,14 +261,26 @@ def test_what_has_no_seal_is_to_be_run_again(unsealed, capsys, monkeypatch, vers
         with pytest.raises(StoreError, match=f"^{re.escape(told)}$"):
             read(path)
     for command in ("check", "info", "report", "best", "table"):
-        assert main([command, str(path), *(("--minimise", "peak:effort:O") if command == "best" else ())]) == 1
+        assert (
+            main(
+                [
+                    command,
+                    str(path),
+                    *(("--minimise", "peak:effort:O") if command == "best" else ()),
+                ]
+            )
+            == 1
+        )
         assert capsys.readouterr() == ("", f"error: {told}\n")
     assert not is_sweep(path)
     assert not optimum.is_optimum(path)
 
 
 def test_an_unsealed_file_is_not_replaced(unsealed, solution):
-    with pytest.raises(PathError, match=r"it is an HDF5 file of something else, or without its seal; choose another name$"):
+    with pytest.raises(
+        PathError,
+        match=r"it is an HDF5 file of something else, or without its seal; choose another name$",
+    ):
         save(solution, unsealed[0])
 
 
@@ -258,5 +293,10 @@ def test_other_versions_are_to_be_run_again(tmp_path, schema):
         with h5py.File(path, "w") as file:
             file.attrs.update({"schema": schema, "schema_version": version, "complete": True})
         seal.seal(path, schema)
-        with pytest.raises(StoreError, match=rf"schema version {version}.*, this program reads versions \d to \d: run it again$"):
+        with pytest.raises(
+            StoreError,
+            match=(
+                rf"schema version {version}.*, this program reads versions \d to \d: run it again$"
+            ),
+        ):
             read(path)

@@ -17,7 +17,9 @@ numbers = st.floats(-100, 100)
 
 def law(values, length=0.7, mass=1.3):
     return SectionLaw(
-        length, NumericDensity((0.0, 1.0), ((mass,),)), {name: np.array([v]) for name, v in zip(NAMES, values, strict=True)}
+        length,
+        NumericDensity((0.0, 1.0), ((mass,),)),
+        {name: np.array([v]) for name, v in zip(NAMES, values, strict=True)},
     )
 
 
@@ -25,7 +27,11 @@ def law(values, length=0.7, mass=1.3):
 def test_the_tip_is_exact(values):
     found = law(values)
     one = np.array([1.0])
-    assert [found.on_grid(force, one)[0, 0] for force in FORCES] == [values[0], values[3], values[6]]
+    assert [found.on_grid(force, one)[0, 0] for force in FORCES] == [
+        values[0],
+        values[3],
+        values[6],
+    ]
 
 
 @given(st.tuples(*[numbers] * 7))
@@ -48,7 +54,9 @@ def moving(t, order):
     values = [np.polynomial.Polynomial([k + 1.0, 0.5 * k - 2.0, 0.3 - k]) for k in range(11)]
     values[7] = np.polynomial.Polynomial([0.35, 0.2, -0.04])
     found = [np.array([value.deriv(order)(t) if order else value(t)]) for value in values]
-    return SectionLaw(0.7, CELLS, dict(zip(NAMES, found[:7], strict=True)), (StationLoad("pin", *found[7:]),))
+    return SectionLaw(
+        0.7, CELLS, dict(zip(NAMES, found[:7], strict=True)), (StationLoad("pin", *found[7:]),)
+    )
 
 
 @pytest.mark.parametrize("force", FORCES)

@@ -1,4 +1,6 @@
-"""The law of a spatial link: against quadrature of its matter in three dimensions, and its resultants' peaks."""
+"""The law of a spatial link: against quadrature of its matter in three dimensions, and its
+resultants' peaks.
+"""
 
 import numpy as np
 import pytest
@@ -28,25 +30,41 @@ SIZES = {"shear": ("shear_y", "shear_z"), "bending": ("bending_y", "bending_z")}
 
 
 class Link:
-    """A slender link in motion at one instant, all vectors on its own axes, and what acts on it beyond its base."""
+    """A slender link in motion at one instant, all vectors on its own axes, and what acts on it
+    beyond its base.
+    """
 
     def __init__(self, random, density, stations, spin=3.0):
         self.density = density
-        self.acceleration, self.alpha, self.omega = random.normal(size=(3, 3)) * [[9.0], [12.0], [spin]]
+        self.acceleration, self.alpha, self.omega = random.normal(size=(3, 3)) * [
+            [9.0],
+            [12.0],
+            [spin],
+        ]
         self.tip = random.normal(size=(2, 3)) * [[40.0], [5.0]]
-        self.stations = [(float(u), *(random.normal(size=(2, 3)) * [[30.0], [4.0]])) for u in stations]
+        self.stations = [
+            (float(u), *(random.normal(size=(2, 3)) * [[30.0], [4.0]])) for u in stations
+        ]
 
     def place_acceleration(self, x):
         """Less gravity, at a distance from the base: a_B + alpha x r + w x (w x r)."""
         r = x[:, None] * X
-        return self.acceleration + np.cross(self.alpha, r) + np.cross(self.omega, np.cross(self.omega, r))
+        return (
+            self.acceleration
+            + np.cross(self.alpha, r)
+            + np.cross(self.omega, np.cross(self.omega, r))
+        )
 
     def at(self, u, side="tip"):
-        """The forces at a section, what holds the piece beyond it: by Gauss' rule over each cell, d'Alembert's principle."""
+        """The forces at a section, what holds the piece beyond it: by Gauss' rule over each cell,
+        d'Alembert's principle.
+        """
         l, here = LENGTH, u * LENGTH * X
         force, moment = self.tip[0].copy(), self.tip[1] + np.cross(l * X - here, self.tip[0])
         nodes, weights = np.polynomial.legendre.leggauss(12)
-        for a, b, cell in zip(self.density.breaks, self.density.breaks[1:], self.density.cells, strict=False):
+        for a, b, cell in zip(
+            self.density.breaks, self.density.breaks[1:], self.density.cells, strict=False
+        ):
             a = max(a, u)
             if a >= b:
                 continue
@@ -64,7 +82,10 @@ class Link:
         return found | {name: float(np.hypot(found[a], found[b])) for name, (a, b) in SIZES.items()}
 
     def coefficients(self):
-        """F = F0 - mu0 a - mu1 gamma, with gamma = alpha x e + w x (w x e); M by its moments. Bending has the lever of F."""
+        """F = F0 - mu0 a - mu1 gamma, with gamma = alpha x e + w x (w x e); M by its moments.
+
+        Bending has the lever of F.
+        """
         gamma = np.cross(self.alpha, X) + np.cross(self.omega, np.cross(self.omega, X))
         (n, fy, fz), a = zip(self.tip[0], -self.acceleration, -gamma, strict=True), self.tip[1]
         values = (*n, *fy, a[2], *fz, a[1], a[0])
@@ -83,9 +104,17 @@ class Link:
 def together(links):
     """One law over many instants, of the laws of each."""
     laws = [link.law() for link in links]
-    coefficients = {name: np.concatenate([law.coefficients[name] for law in laws]) for name in SPACE.law}
+    coefficients = {
+        name: np.concatenate([law.coefficients[name] for law in laws]) for name in SPACE.law
+    }
     loads = tuple(
-        SpatialStationLoad("", *(np.concatenate([getattr(law.loads[i], name) for law in laws]) for name in SPACE.place_first))
+        SpatialStationLoad(
+            "",
+            *(
+                np.concatenate([getattr(law.loads[i], name) for law in laws])
+                for name in SPACE.place_first
+            ),
+        )
         for i in range(len(laws[0].loads))
     )
     return SectionLaw(LENGTH, laws[0].density, coefficients, loads)
@@ -93,14 +122,23 @@ def together(links):
 
 def drawn(seed, density, count, stations=2, spin=3.0):
     random = np.random.default_rng(seed)
-    return [Link(random, DENSITIES[density], random.uniform(0.05, 0.95, stations), spin) for _ in range(count)]
+    return [
+        Link(random, DENSITIES[density], random.uniform(0.05, 0.95, stations), spin)
+        for _ in range(count)
+    ]
 
 
 SEEDS = st.integers(0, 2**32 - 1)
 KINDS = st.sampled_from(sorted(DENSITIES))
 
 
-@given(SEEDS, KINDS, st.lists(st.floats(0, 1), min_size=0, max_size=3), st.floats(0, 1), st.sampled_from(["tip", "base"]))
+@given(
+    SEEDS,
+    KINDS,
+    st.lists(st.floats(0, 1), min_size=0, max_size=3),
+    st.floats(0, 1),
+    st.sampled_from(["tip", "base"]),
+)
 def test_forces_are_those_of_quadrature(seed, density, stations, u, side):
     link = Link(np.random.default_rng(seed), DENSITIES[density], stations)
     law = link.law()
@@ -108,7 +146,10 @@ def test_forces_are_those_of_quadrature(seed, density, stations, u, side):
         expected = link.at(place, side)
         for force in SPACE.forces:
             scale = 200.0 if expected[force] == 0.0 else 200.0 + abs(expected[force])
-            assert abs(law.at(force, np.array([[place]]), side)[0, 0] - expected[force]) <= 1e-13 * scale, force
+            assert (
+                abs(law.at(force, np.array([[place]]), side)[0, 0] - expected[force])
+                <= 1e-13 * scale
+            ), force
 
 
 @given(SEEDS, KINDS)
@@ -125,14 +166,19 @@ def test_grids_compiled_or_not_are_what_the_law_gives_at_each_point(density, wor
     law, xi = together(drawn(3, density, 40)), np.linspace(0, 1, 61)
     for force in SPACE.forces:
         points = law.at(force, np.tile(xi, (40, 1)))
-        np.testing.assert_allclose(law.on_grid(force, xi), points, rtol=0, atol=1e-13 * np.abs(points).max())
+        np.testing.assert_allclose(
+            law.on_grid(force, xi), points, rtol=0, atol=1e-13 * np.abs(points).max()
+        )
 
 
 @pytest.mark.parametrize(("n", "k"), [(1, 1), (3, 5000), (911, 61), (14_000, 1)])
 def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
     random = np.random.default_rng(5)
     coefficients = {name: random.normal(size=n) for name in SPACE.law}
-    loads = tuple(SpatialStationLoad("", random.uniform(-0.1, 1.1, n), *random.normal(size=(6, n))) for _ in range(2))
+    loads = tuple(
+        SpatialStationLoad("", random.uniform(-0.1, 1.1, n), *random.normal(size=(6, n)))
+        for _ in range(2)
+    )
     law, xi = SectionLaw(LENGTH, DENSITIES["in cells"], coefficients, loads), np.linspace(0, 1, k)
     for force in SPACE.forces:
         monkeypatch.setattr(grids, "WORTH_COMPILING", 10**12)
@@ -151,10 +197,19 @@ def test_what_is_largest_over_the_instants_is_that_of_the_grid(worth, monkeypatc
     laws, xi = [together(drawn(seed, "tapered", 30)) for seed in range(4)], np.linspace(0, 1, 9)
     stacked = SectionLaw(
         LENGTH * np.ones((4, 1)),
-        NumericDensity((0.0, 1.0), tuple(tuple(c * np.ones((4, 1)) for c in cell) for cell in laws[0].density.cells)),
+        NumericDensity(
+            (0.0, 1.0),
+            tuple(tuple(c * np.ones((4, 1)) for c in cell) for cell in laws[0].density.cells),
+        ),
         {name: np.stack([law.coefficients[name] for law in laws]) for name in SPACE.law},
         tuple(
-            SpatialStationLoad("", *(np.stack([getattr(law.loads[i], name) for law in laws]) for name in SPACE.place_first))
+            SpatialStationLoad(
+                "",
+                *(
+                    np.stack([getattr(law.loads[i], name) for law in laws])
+                    for name in SPACE.place_first
+                ),
+            )
             for i in range(2)
         ),
     )
@@ -168,7 +223,9 @@ def test_what_is_largest_over_the_instants_is_that_of_the_grid(worth, monkeypatc
 
 @pytest.mark.parametrize("density", DENSITIES)
 def test_bending_moments_go_by_the_shear_forces(density):
-    """d(bending_z)/d(xi) = -shear_y and d(bending_y)/d(xi) = shear_z, by differences that share nothing with the law."""
+    """d(bending_z)/d(xi) = -shear_y and d(bending_y)/d(xi) = shear_z, by differences that share
+    nothing with the law.
+    """
     links, e = drawn(11, density, 12, stations=1), 1e-4
     for link in links:
         link.stations = [(0.55, *link.stations[0][1:])]
@@ -176,10 +233,15 @@ def test_bending_moments_go_by_the_shear_forces(density):
     xi = np.tile(places, (12, 1))
     law = together(links)
     for bending, shear, sign in (("bending_z", "shear_y", -1.0), ("bending_y", "shear_z", 1.0)):
-        near = [np.array([[link.at(u + k * e)[bending] for u in places] for link in links]) for k in (-2, -1, 1, 2)]
+        near = [
+            np.array([[link.at(u + k * e)[bending] for u in places] for link in links])
+            for k in (-2, -1, 1, 2)
+        ]
         difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e * LENGTH)
         np.testing.assert_allclose(difference, sign * law.at(shear, xi), rtol=1e-8, atol=1e-7)
-        np.testing.assert_allclose(law.along(bending, xi), sign * LENGTH * law.at(shear, xi), rtol=1e-14)
+        np.testing.assert_allclose(
+            law.along(bending, xi), sign * LENGTH * law.at(shear, xi), rtol=1e-14
+        )
     for force in SPACE.forces:
         near = [law.at(force, xi + k * e) for k in (-2, -1, 1, 2)]
         difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e)
@@ -189,19 +251,27 @@ def test_bending_moments_go_by_the_shear_forces(density):
 @settings(max_examples=30, deadline=None)
 @given(SEEDS, KINDS, st.integers(0, 3), st.sampled_from([0.0, 3.0, 40.0]))
 def test_extremes_are_those_of_a_dense_search(seed, density, stations, spin):
-    """Nothing on a fine grid, of either side of every station, is beyond the extremes, and they are values of the law."""
+    """Nothing on a fine grid, of either side of every station, is beyond the extremes, and they are
+    values of the law.
+    """
     law = together(drawn(seed, density, 6, stations, spin))
     fine = np.linspace(0, 1, 4001)
     for force in SPACE.forces:
         place, value = law.extreme(force)
         grid = law.on_grid(force, fine)
-        beside = [law.at(force, load.station[:, None], side) for load in law.loads for side in ("tip", "base")]
+        beside = [
+            law.at(force, load.station[:, None], side)
+            for load in law.loads
+            for side in ("tip", "base")
+        ]
         values = np.hstack([grid, *beside])
         size, spread = np.abs(values).max(axis=1), np.ptp(values, axis=1)
         assert (np.abs(value) >= size * (1 - 1e-12)).all()
         assert (np.abs(value) <= size + 1e-5 * spread + 1e-300).all()
         here = [law.at(force, place[:, None], side)[:, 0] for side in ("tip", "base")]
-        assert np.min([np.abs(values - value) for values in here], axis=0) == pytest.approx(0.0, abs=1e-12 * size.max())
+        assert np.min([np.abs(values - value) for values in here], axis=0) == pytest.approx(
+            0.0, abs=1e-12 * size.max()
+        )
         places, ends = law.reached(force)
         assert (ends[0] <= values.min(axis=1) + 1e-12 * size).all()
         assert (ends[1] >= values.max(axis=1) - 1e-12 * size).all()
@@ -209,8 +279,12 @@ def test_extremes_are_those_of_a_dense_search(seed, density, stations, spin):
 
 
 def test_a_resultant_may_have_two_summits_between_its_ends():
-    """M runs through an S beside the origin: M . M' = 0 five times, and both summits are among the curves."""
-    # With v = 1 - u, m = l = 1: M_z = mz0 + fy0 v + (fy1 v^2 / 2 + ...): a cubic in each plane, chosen by its values.
+    """M runs through an S beside the origin: M .
+
+    M' = 0 five times, and both summits are among the curves.
+    """
+    # With v = 1 - u, m = l = 1: M_z = mz0 + fy0 v + (fy1 v^2 / 2 + ...): a cubic in each plane,
+    # chosen by its values.
     v = np.linspace(0, 1, 4)
     wanted = {"bending_z": [0.0, 1.0, -1.0, 0.0], "bending_y": [0.3, -0.25, 0.25, -0.3]}
     density = NumericDensity((0.0, 1.0), ((1.0,),))
@@ -239,13 +313,17 @@ def test_a_resultant_may_have_two_summits_between_its_ends():
 @pytest.mark.parametrize("force", ["shear", "bending"])
 @pytest.mark.parametrize("density", ["even", "in cells"])
 def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density):
-    """A slow link, whose pattern of zeros changes all the time: their summits do not jump, but where one comes or goes."""
+    """A slow link, whose pattern of zeros changes all the time: their summits do not jump, but
+    where one comes or goes.
+    """
     n = 20_001
     s = np.linspace(0, 2 * np.pi, n)
     law = together(drawn(8, density, 1, stations=1, spin=1e-2))
     wave = {name: np.cos(s + k) * law.coefficients[name] for k, name in enumerate(SPACE.law)}
     (load,) = law.loads
-    acting = {name: np.cos(2 * s + k) * getattr(load, name) for k, name in enumerate(SPACE.place_first)}
+    acting = {
+        name: np.cos(2 * s + k) * getattr(load, name) for k, name in enumerate(SPACE.place_first)
+    }
     loads = (SpatialStationLoad("", **acting | {"station": np.full(n, 0.45)}),)
     places, values = SectionLaw(LENGTH, law.density, wave, loads).curves(force)
     assert places.shape == (n, 8)
@@ -262,7 +340,8 @@ def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density)
 @pytest.mark.parametrize("stations", [0, 1])
 @pytest.mark.parametrize("density", ["even", "in cells"])
 def test_what_turns_at_an_end_but_for_rounding_stays_there(second, stations, density, across, end):
-    """A link whose base or tip is at rest, without weight: its shear forces turn there, and so does their resultant.
+    """A link whose base or tip is at rest, without weight: its shear forces turn there, and so does
+    their resultant.
 
     Each curve that is more than an end's goes on: none jumps from what is an end's to what is not.
     """
@@ -274,7 +353,10 @@ def test_what_turns_at_an_end_but_for_rounding_stays_there(second, stations, den
         coefficients |= {f"f{axis}{k}": values for k, values in law.items()}
     (link,) = drawn(5, density, 1, stations=0)
     nothing = {name: np.zeros(400) for name in SPACE.place_first}
-    loads = tuple(SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(400, 0.7)}) for k in range(stations))
+    loads = tuple(
+        SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(400, 0.7)})
+        for k in range(stations)
+    )
     law = SectionLaw(LENGTH, link.density, coefficients, loads)
     for force in SPACE.forces:
         _, values = law.curves(force)
@@ -307,7 +389,9 @@ def test_rates_are_those_of_differences(force, side):
     t, e = 0.3, 1e-4
     near = [forces(t + k * e) for k in (-2, -1, 1, 2)]
     difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e)
-    rate = moving(t).rate(force, moving(t, 1), np.array([[0.1, 0.37, float(station(t)), 0.9]]), side)
+    rate = moving(t).rate(
+        force, moving(t, 1), np.array([[0.1, 0.37, float(station(t)), 0.9]]), side
+    )
     np.testing.assert_allclose(rate, difference, rtol=1e-8, atol=1e-8)
     assert np.max(np.abs(rate)) > 1e-3
 
@@ -319,17 +403,25 @@ def test_changes_are_those_of_a_changed_law(seed, little):
     gaps = {name: little * values[None] for name, values in other.coefficients.items()}
     shifts = [
         SpatialStationLoad(
-            "", *(np.zeros((1, 3)) if m == "station" else little * getattr(load, m)[None] for m in SPACE.place_first)
+            "",
+            *(
+                np.zeros((1, 3)) if m == "station" else little * getattr(load, m)[None]
+                for m in SPACE.place_first
+            ),
         )
         for load in other.loads
     ]
-    changed = law.changed(SectionLaw(LENGTH, law.density, gaps, tuple(shifts)), np.array([0.0, 0.3, 1.0]))
+    changed = law.changed(
+        SectionLaw(LENGTH, law.density, gaps, tuple(shifts)), np.array([0.0, 0.3, 1.0])
+    )
     after = SectionLaw(
         LENGTH,
         law.density,
         {name: values + gaps[name][0] for name, values in law.coefficients.items()},
         tuple(
-            SpatialStationLoad("", *(getattr(load, m) + getattr(shift, m)[0] for m in SPACE.place_first))
+            SpatialStationLoad(
+                "", *(getattr(load, m) + getattr(shift, m)[0] for m in SPACE.place_first)
+            )
             for load, shift in zip(law.loads, shifts, strict=True)
         ),
     )
@@ -338,18 +430,34 @@ def test_changes_are_those_of_a_changed_law(seed, little):
         found, sizes = changed[force]
         for k, side in enumerate(("tip", "base")):
             expected = after.at(force, u, side) - law.at(force, u, side)
-            np.testing.assert_allclose(found[0, ..., k], expected, rtol=0, atol=1e-12 * np.max(sizes))
+            np.testing.assert_allclose(
+                found[0, ..., k], expected, rtol=0, atol=1e-12 * np.max(sizes)
+            )
         assert (sizes[..., 0] >= np.abs(law.at(force, u)) * (1 - 1e-12)).all()
-        assert law.bound(force, np.array([0.0, 0.3, 1.0])) >= np.max(np.abs(law.at(force, u[:, :3]))) * (1 - 1e-12)
+        assert law.bound(force, np.array([0.0, 0.3, 1.0])) >= np.max(
+            np.abs(law.at(force, u[:, :3]))
+        ) * (1 - 1e-12)
 
 
 def test_what_a_resultant_is_made_of():
     outputs = [Output("law", "rod", member) for member in SPACE.law]
     outputs += [Output("station", "rod", member, "A") for member in SPACE.station]
     found = made_of(outputs, "rod", "bending", SPACE)
-    assert {output.member for output in found if not output.station} == {"my0", "mz0", "fy0", "fy1", "fy2", "fz0", "fz1", "fz2"}
+    assert {output.member for output in found if not output.station} == {
+        "my0",
+        "mz0",
+        "fy0",
+        "fy1",
+        "fy2",
+        "fz0",
+        "fz1",
+        "fz2",
+    }
     assert {output.member for output in found if output.station} == {"my", "mz", "fy", "fz"}
-    assert [str(output) for output in made_of(outputs, "rod", "torsion", SPACE)] == ["section:rod:law:mx0", "section:rod:A:mx"]
+    assert [str(output) for output in made_of(outputs, "rod", "torsion", SPACE)] == [
+        "section:rod:law:mx0",
+        "section:rod:A:mx",
+    ]
 
 
 def test_a_section_shows_the_forces_of_its_mechanism():
@@ -358,6 +466,8 @@ def test_a_section_shows_the_forces_of_its_mechanism():
     for force in SPACE.forces:
         np.testing.assert_array_equal(section.array(force), getattr(section, force))
         assert section.array(force).tobytes() == law.on_grid(force, xi).tobytes()
-    planar = SectionLaw(1.0, law.density, {name: np.zeros(1) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")})
+    planar = SectionLaw(
+        1.0, law.density, {name: np.zeros(1) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
+    )
     with pytest.raises(UnknownNameError, match=r"section force.*'torsion'.*axial, shear, bending"):
         Section(planar, xi).torsion.sum()

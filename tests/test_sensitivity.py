@@ -26,7 +26,9 @@ OWN = {
     "jansen_leg": ["push"],
     "roller_cam": ["lift", "base", "offset", "stiffness"],
 }
-"""Cases of which the oracle knows some lengths by number, as where a spring acts: parameters of theirs that change no drive."""
+"""Cases of which the oracle knows some lengths by number, as where a spring acts: parameters of
+theirs that change no drive.
+"""
 
 
 def made(scene, backend="vm"):
@@ -38,8 +40,14 @@ def made(scene, backend="vm"):
 
 
 def slopes_at(slopes, t, p):
-    """Of every quantity at a time, and of every section force at ratios: value and slopes, by name and ratio."""
-    names = [(q, xi) for q in slopes.points.quantities for xi in (RATIOS if q.group == "section" else (math.nan,))]
+    """Of every quantity at a time, and of every section force at ratios: value and slopes, by name
+    and ratio.
+    """
+    names = [
+        (q, xi)
+        for q in slopes.points.quantities
+        for xi in (RATIOS if q.group == "section" else (math.nan,))
+    ]
     chosen = np.array([slopes.numbers[q] for q, _ in names], np.intc)
     times = np.full(len(names), t)
     # Loops are followed to the time from the start.
@@ -49,7 +57,9 @@ def slopes_at(slopes, t, p):
 
 
 def differences(scene, t, name, at=None, share=STEP):
-    """The derivatives of all quantities by a parameter in 50 digits: by four values, at doubles exactly as far apart."""
+    """The derivatives of all quantities by a parameter in 50 digits: by four values, at doubles
+    exactly as far apart.
+    """
     values_at = scene.mechanism.values(at)
     x = values_at[name]
     step = math.ldexp(share, math.frexp(x)[1])
@@ -62,7 +72,11 @@ def differences(scene, t, name, at=None, share=STEP):
         for quantity, value in found.items():
             for xi in RATIOS if callable(value) else (math.nan,):
                 values.setdefault((quantity, xi), {})[k] = value(xi) if callable(value) else value
-    return {key: (8 * (v[1] - v[-1]) - (v[2] - v[-2])) / (12 * step) for key, v in values.items() if len(v) == 4}
+    return {
+        key: (8 * (v[1] - v[-1]) - (v[2] - v[-2])) / (12 * step)
+        for key, v in values.items()
+        if len(v) == 4
+    }
 
 
 def unit(name):
@@ -73,7 +87,9 @@ def unit(name):
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", PLANAR)
 def test_slopes_are_those_of_differences_in_50_digits(name):
-    """Of every force and every place, by numbers of the declaration: lengths, masses, densities, places, gravity."""
+    """Of every force and every place, by numbers of the declaration: lengths, masses, densities,
+    places, gravity.
+    """
     scene = load_case(CASES / name).scene if name in OWN else declared(CASES / name)
     start, stop, _ = scene.t
     t = start + 0.37 * (stop - start)
@@ -92,27 +108,48 @@ def test_slopes_are_those_of_differences_in_50_digits(name):
         assert len(told) >= 6
         for key in told:
             gap = abs(float(own[key][1][j] - exact[key]))
-            assert gap <= 1e-10 * sizes[unit(key[0])] / abs(p[j]), (key, parameter, gap, sizes[unit(key[0])])
+            assert gap <= 1e-10 * sizes[unit(key[0])] / abs(p[j]), (
+                key,
+                parameter,
+                gap,
+                sizes[unit(key[0])],
+            )
 
 
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", ["arm", "engine", "four_bar", "quick_return", "rrr3"])
 def test_second_derivatives_too(name):
-    """By two parameters at once, at a time and a place that stand still, beside differences of four values in 50 digits."""
+    """By two parameters at once, at a time and a place that stand still, beside differences of four
+    values in 50 digits.
+    """
     scene = load_case(CASES / name).scene if name in OWN else declared(CASES / name)
     start, stop, _ = scene.t
     t = start + 0.37 * (stop - start)
     values = scene.mechanism.values()
-    p, (one, other) = np.array(list(values.values())), [k for k, x in values.items() if x != 0.0][-2:]
+    p, (one, other) = (
+        np.array(list(values.values())),
+        [k for k, x in values.items() if x != 0.0][-2:],
+    )
     curvatures = Curvatures.of(slopes := made(scene), Rung("vm"))
-    names = [(q, xi) for q in slopes.points.quantities for xi in (RATIOS if q.group == "section" else (math.nan,))]
-    chosen, xi = np.array([slopes.numbers[q] for q, _ in names], np.intc), np.array([xi for _, xi in names])
+    names = [
+        (q, xi)
+        for q in slopes.points.quantities
+        for xi in (RATIOS if q.group == "section" else (math.nan,))
+    ]
+    chosen, xi = (
+        np.array([slopes.numbers[q] for q, _ in names], np.intc),
+        np.array([xi for _, xi in names]),
+    )
     times = np.full(chosen.size, t)
     z = slopes.iterated(np.linspace(start, t, 20), p, times)
     numbers = [list(values).index(name) for name in (one, other)]
-    found = curvatures.at(times, z, p, chosen, xi, np.full(chosen.size, np.nan), unit_ways(numbers, p.size)).changes[:, 2:]
+    found = curvatures.at(
+        times, z, p, chosen, xi, np.full(chosen.size, np.nan), unit_ways(numbers, p.size)
+    ).changes[:, 2:]
     found = found[:, :, [2 + number for number in numbers]]
-    np.testing.assert_allclose(found[:, 0, 1], found[:, 1, 0], rtol=0, atol=1e-12 * np.abs(found).max())
+    np.testing.assert_allclose(
+        found[:, 0, 1], found[:, 1, 0], rtol=0, atol=1e-12 * np.abs(found).max()
+    )
     _, held = columns_at(derive(scene, ["all"]), t, values)
     steps = [math.ldexp(2.0**-20, math.frexp(values[name])[1]) for name in (one, other)]
     corners = {}
@@ -121,26 +158,39 @@ def test_second_derivatives_too(name):
         corners[a, b] = precise(scene, t, held, parameters=at)
     sizes: dict[tuple, float] = {}
     for (q, _), rows in zip(names, found, strict=True):
-        sizes[unit(str(q))] = max(sizes.get(unit(str(q)), 0.0), float(np.abs(rows * np.outer(p[numbers], p[numbers])).max()))
+        sizes[unit(str(q))] = max(
+            sizes.get(unit(str(q)), 0.0),
+            float(np.abs(rows * np.outer(p[numbers], p[numbers])).max()),
+        )
     told = [k for k, (q, _) in enumerate(names) if str(q) in corners[1, 1]]
     assert len(told) >= 6
     for k in told:
         q, place = str(names[k][0]), names[k][1]
-        v = {ab: value[q](place) if callable(value[q]) else value[q] for ab, value in corners.items()}
+        v = {
+            ab: value[q](place) if callable(value[q]) else value[q] for ab, value in corners.items()
+        }
         exact = float((v[1, 1] - v[1, -1] - v[-1, 1] + v[-1, -1]) / (4 * steps[0] * steps[1]))
         gap = abs(found[k, 0, 1] - exact) * abs(values[one] * values[other])
         assert gap <= 1e-10 * sizes[unit(q)] + 1e-14, (q, one, other, gap, sizes[unit(q)])
 
 
 def with_parameters():
-    """The cases in space that have parameters; Bricard's loop closes for its own proportions alone."""
-    return [name for name in SPATIAL if name != "bricard" and load_case(CASES / name).scene.mechanism.parameters]
+    """The cases in space that have parameters; Bricard's loop closes for
+    its own proportions alone.
+    """
+    return [
+        name
+        for name in SPATIAL
+        if name != "bricard" and load_case(CASES / name).scene.mechanism.parameters
+    ]
 
 
 @pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", with_parameters())
 def test_in_space_too(name):
-    """All columns, forward, beside differences of the graph itself in 50 digits: of loops that are closed anew."""
+    """All columns, forward, beside differences of the graph itself in 50 digits: of loops that are
+    closed anew.
+    """
     scene = load_case(CASES / name).scene
     start, stop = scene.span
     t = start + 0.37 * (stop - start)
@@ -169,7 +219,9 @@ def test_in_space_too(name):
 
 @pytest.mark.parametrize("share", [1e-3, 1e-6])
 def test_near_a_dead_centre(share):
-    """The rod is longer than the crank by a share; where the crank is across, the sine of the transmission angle is its root."""
+    """The rod is longer than the crank by a share; where the crank is across, the sine of the
+    transmission angle is its root.
+    """
     scene = load_case(CASES / "slider_crank").scene
     t = next(t for t in np.linspace(*scene.t).tolist() if across(scene, t) > 0.999999)
     values = scene.mechanism.values({"r": 0.1, "l": 0.1 * (1.0 + share)})

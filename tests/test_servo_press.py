@@ -1,4 +1,6 @@
-"""The case of a servo press: its crank's work and effort by virtual work, and the choice of its motor by closed forms."""
+"""The case of a servo press: its crank's work and effort by virtual work, and the choice of its
+motor by closed forms.
+"""
 
 import math
 
@@ -22,7 +24,9 @@ def scene():
 
 
 def stroke(t, strokes=30.0, slowing=0.5, drawing=250e3):
-    """The crank's angle from the top, its rate and acceleration; the effort that it takes; and its inertia."""
+    """The crank's angle from the top, its rate and acceleration; the effort that it takes; and its
+    inertia.
+    """
     turn = strokes * math.pi / 30
     x = math.pi / 2 + turn * t + slowing * np.sin(turn * t)
     rate, change = turn * (1 + slowing * np.cos(turn * t)), -slowing * turn**2 * np.sin(turn * t)
@@ -40,7 +44,12 @@ def stroke(t, strokes=30.0, slowing=0.5, drawing=250e3):
 
     whole, step = inertia(x), 1e-5
     assert whole == pytest.approx(6.036 + rod + 400.0 * slope**2)
-    bend = (inertia(x - 2 * step) - 8 * inertia(x - step) + 8 * inertia(x + step) - inertia(x + 2 * step)) / (12 * step)
+    bend = (
+        inertia(x - 2 * step)
+        - 8 * inertia(x - step)
+        + 8 * inertia(x + step)
+        - inertia(x + 2 * step)
+    ) / (12 * step)
     force = drawing * np.interp(height, HEIGHTS, SHARES) * (slope < 0)
     weights = 9.81 * (90.0 * 0.02 * c + 80.0 * (R * c + slope) / 2)  # the ram's is carried
     return x, rate, height, whole * change + bend * rate**2 / 2 - force * slope + weights, whole
@@ -54,16 +63,27 @@ def test_the_cranks_effort_is_that_of_virtual_work(scene, values):
     assert solution.motion("main").value == pytest.approx(angle, rel=1e-13)
     assert solution.output("height") == pytest.approx(height, abs=1e-13)
     assert solution.effort("main") == pytest.approx(effort, rel=0, abs=1e-9 * effort.max())
-    assert solution.output("power") == pytest.approx(effort * rate, rel=0, abs=1e-9 * (effort * rate).max())
+    assert solution.output("power") == pytest.approx(
+        effort * rate, rel=0, abs=1e-9 * (effort * rate).max()
+    )
     assert inertia_at(scene, "main", parameters=values) == pytest.approx(inertia, rel=1e-12)
 
 
 @pytest.mark.parametrize("values", [{}, {"strokes": 45.0, "slowing": 0.0}])
 def test_a_stroke_takes_the_work_of_the_part(scene, values):
-    """The area under the table, whatever the motion: all else is weights and inertia, which give back what they took."""
-    solution = evaluate(scene, parameters=values, t=(0, 60 / values.get("strokes", 30.0), 20000), wanted=["effort", "motion"])
+    """The area under the table, whatever the motion: all else is weights and inertia, which give
+    back what they took.
+    """
+    solution = evaluate(
+        scene,
+        parameters=values,
+        t=(0, 60 / values.get("strokes", 30.0), 20000),
+        wanted=["effort", "motion"],
+    )
     power = solution.effort("main") * solution.motion("main").rate
-    assert np.trapezoid(power, solution.t) == pytest.approx(250e3 * np.trapezoid(SHARES, HEIGHTS), rel=2e-6)
+    assert np.trapezoid(power, solution.t) == pytest.approx(
+        250e3 * np.trapezoid(SHARES, HEIGHTS), rel=2e-6
+    )
     assert 250e3 * np.trapezoid(SHARES, HEIGHTS) == pytest.approx(8375.0)
 
 
@@ -78,24 +98,43 @@ def test_the_motor_is_the_one_that_closed_forms_name(scene, capsys):
     motors = read_motors(CASES / "servo_press" / "motors.csv")
     for motor in motors:
         for ratio in ratios:
-            torque = effort / ratio * np.where(effort > 0, 1 / 0.95, 0.95) + motor.inertia * ratio * change
+            torque = (
+                effort / ratio * np.where(effort > 0, 1 / 0.95, 0.95)
+                + motor.inertia * ratio * change
+            )
             speed = ratio * rate
-            lasting = np.interp(np.trapezoid(speed, t) / 2, [0, motor.rated_speed], [motor.stall_torque, motor.rated_torque])
-            limit = np.interp(speed, [motor.knee_speed, motor.max_speed], [motor.peak_torque, motor.end_torque])
+            lasting = np.interp(
+                np.trapezoid(speed, t) / 2,
+                [0, motor.rated_speed],
+                [motor.stall_torque, motor.rated_torque],
+            )
+            limit = np.interp(
+                speed, [motor.knee_speed, motor.max_speed], [motor.peak_torque, motor.end_torque]
+            )
             # Half an hour of winding against 2 s of cycle: the mean of the losses is what warms.
             heat = math.sqrt(np.trapezoid(torque**2, t) / 2) / lasting
             shares = (heat, (abs(torque) / limit).max(), speed.max() / motor.max_speed)
             if max(shares) <= 1.0:
                 serving[motor.rated_power, heat] = (motor.name, ratio, shares)
     name, ratio, shares = serving[min(serving)]
-    choice = select(motors, lambda n, inertia: duty_of(solution, "main", ratio=n, inertia=inertia, efficiency=0.95), ratios=ratios)
+    choice = select(
+        motors,
+        lambda n, inertia: duty_of(solution, "main", ratio=n, inertia=inertia, efficiency=0.95),
+        ratios=ratios,
+    )
     assert (choice.motor.name, choice.ratio) == (name, ratio) == ("S 180", 50)
     assert (choice.torque, choice.speed) == pytest.approx(shares[1:], rel=1e-6)
     assert choice.heat == pytest.approx(shares[0], rel=2e-3)
     assert [why.partition(":")[0] for why in choice.refused] == ["S 40", "S 70", "S 110"]
     page = (CASES / "servo_press" / "README.md").read_text()
-    assert f"{choice.duty.rms_torque:.3g} N m, its peak {choice.duty.peak_torque:.0f} N m" in " ".join(page.split())
+    assert (
+        f"{choice.duty.rms_torque:.3g} N m, its peak {choice.duty.peak_torque:.0f} N m"
+        in " ".join(page.split())
+    )
     energies = choice.duty.energy / 1000, choice.duty.regenerated / 1000
     assert "{:.3g} kJ a stroke, of which {:.2f} kJ".format(*energies) in " ".join(page.split())
     assert main(["drive", case, "--ratio", "20,30,40,50", "--efficiency", "0.95"]) == 0
-    assert "smallest of 6 motors that serves: 'S 180', 31416 W, with a ratio of 50" in capsys.readouterr().out
+    assert (
+        "smallest of 6 motors that serves: 'S 180', 31416 W, with a ratio of 50"
+        in capsys.readouterr().out
+    )

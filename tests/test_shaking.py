@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from conftest import CASES
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, density, evaluate, load_case, optimise, shaking
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    density,
+    evaluate,
+    load_case,
+    optimise,
+    shaking,
+)
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 
@@ -27,7 +36,9 @@ def weightless(name, about=()):
 
 @pytest.mark.parametrize("name", ["slider_crank", "six_bar", "arm", "arm6"])
 def test_without_weight_and_loads_it_is_what_the_ground_bears(name):
-    """The ground's joints hold the mechanism with the opposite of it: the sum of their forces, moments and efforts."""
+    """The ground's joints hold the mechanism with the opposite of it: the sum of their forces,
+    moments and efforts.
+    """
     scene = weightless(name)
     space = scene.mechanism.space
     wanted = ["reaction", "effort", "output"]
@@ -36,27 +47,42 @@ def test_without_weight_and_loads_it_is_what_the_ground_bears(name):
     for joint in scene.mechanism.joints.values():
         if joint.parent.body is not scene.mechanism.ground:
             continue
-        values = {m: solution.series.get(f"reaction:{joint.name}:{m}", np.zeros(17)) for m in ("fx", "fy", "fz", "mx", "my", "mz")}
+        values = {
+            m: solution.series.get(f"reaction:{joint.name}:{m}", np.zeros(17))
+            for m in ("fx", "fy", "fz", "mx", "my", "mz")
+        }
         f, m = (np.array([values[f"{kind}{x}"] for x in "xyz"]) for kind in "fm")
-        assert {axis.kind for axis in joint.axes} <= {"angle"} or f"effort:{joint.name}" not in solution.series
+        assert {axis.kind for axis in joint.axes} <= {
+            "angle"
+        } or f"effort:{joint.name}" not in solution.series
         m[2] += solution.series.get(f"effort:{joint.name}", 0.0)  # all these drives turn about z
-        place = np.array([float(scene.mechanism.number(x, scene.mechanism.values())) for x in joint.parent.place])
+        place = np.array(
+            [float(scene.mechanism.number(x, scene.mechanism.values())) for x in joint.parent.place]
+        )
         if joint.name == "guide":
             place = np.zeros(3) + 0.0
-            slider = evaluate(scene, t=(*scene.t[:2], 17), wanted=["motion"], backend="vm", certificate=False).pose("slider")
+            slider = evaluate(
+                scene, t=(*scene.t[:2], 17), wanted=["motion"], backend="vm", certificate=False
+            ).pose("slider")
             moment += np.cross(np.array([slider.x, slider.y, 0 * slider.x]), f, axis=0)
         force += f
         moment += m + np.cross(place, f.T).T
     size = np.abs(force).max() + np.abs(moment).max()
     for k, x in enumerate("xyz"[: 2 + space]):
-        np.testing.assert_allclose(solution.output(f"shaking_f{x}"), -force[k], rtol=0, atol=1e-12 * size)
+        np.testing.assert_allclose(
+            solution.output(f"shaking_f{x}"), -force[k], rtol=0, atol=1e-12 * size
+        )
     for k, x in enumerate("xyz"):
         if space or x == "z":
-            np.testing.assert_allclose(solution.output(f"shaking_m{x}"), -moment[k], rtol=0, atol=1e-12 * size)
+            np.testing.assert_allclose(
+                solution.output(f"shaking_m{x}"), -moment[k], rtol=0, atol=1e-12 * size
+            )
 
 
 def test_of_slices_with_rotary_inertia():
-    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking moment's there."""
+    """Each effort of a ball is the moment about its turn's axis, the opposite of the shaking
+    moment's there.
+    """
     m = SpatialMechanism("thick")
     m.set_gravity(0, 0, 0)
     slices = {"yy": density.polynomial(0.02, 0.03), "zz": 0.05, "yz": 0.004}
@@ -74,7 +100,12 @@ def test_of_slices_with_rotary_inertia():
     moment = np.array([solution.output(f"shaking_m{x}") for x in "xyz"])
     for k, axis in enumerate(axes):
         told = -(moment * axis).sum(axis=0)
-        np.testing.assert_allclose(told, solution.series[f"effort:O:turn_{k + 1}"], rtol=0, atol=1e-12 * np.abs(moment).max())
+        np.testing.assert_allclose(
+            told,
+            solution.series[f"effort:O:turn_{k + 1}"],
+            rtol=0,
+            atol=1e-12 * np.abs(moment).max(),
+        )
 
 
 def test_about_another_point():
@@ -85,13 +116,17 @@ def test_about_another_point():
     )
     fx, fy = first.output("shaking_fx"), first.output("shaking_fy")
     np.testing.assert_allclose(
-        second.output("shaking_mz"), first.output("shaking_mz") - (0.2 * fy - 0.1 * fx), rtol=0, atol=1e-12 * np.abs(fy).max()
+        second.output("shaking_mz"),
+        first.output("shaking_mz") - (0.2 * fy - 0.1 * fx),
+        rtol=0,
+        atol=1e-12 * np.abs(fy).max(),
     )
 
 
 @pytest.mark.parametrize("coupler", [1.0, 3.0])
 def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
-    """Its coupler's mass is shared between its pins, and each share and link is balanced about its pin on the ground.
+    """Its coupler's mass is shared between its pins, and each share and link is balanced about its
+    pin on the ground.
 
     Then the centre of all mass rests, however the drive moves: the shaking force is zero.
     """
@@ -109,14 +144,21 @@ def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
         m.revolute("B", rod.tip, rocker.tip)
         m.revolute("C", m.ground.at(base, 0), rocker)
         for link, length, mass in ((crank, a, 1.0), (rocker, c, 2.0)) if balanced else ():
-            # Half of the coupler at the tip: m_w r_w = (m/2 + m_coupler/2) l, at half the length beyond the pin.
+            # Half of the coupler at the tip: m_w r_w = (m/2 + m_coupler/2) l, at half the length
+            # beyond the pin.
             tail = m.link(f"{link.name}_tail", length=length / 2, mass=0.0)
             m.weld(f"{link.name}_rear", link, tail, angle=math.pi)
-            m.weld(f"{link.name}_weight", tail.tip, m.point_mass(f"{link.name}_mass", mass + coupler))
+            m.weld(
+                f"{link.name}_weight", tail.tip, m.point_mass(f"{link.name}_mass", mass + coupler)
+            )
         shaking(m)
-        scene = Scene(m, {"O": harmonic(0.3, 2.0, 1.0)}, t=(0, 1, 41), posture={"rod": 0.5, "rocker": 1.2})
+        scene = Scene(
+            m, {"O": harmonic(0.3, 2.0, 1.0)}, t=(0, 1, 41), posture={"rod": 0.5, "rocker": 1.2}
+        )
         found.append(evaluate(scene, wanted=["output"], backend="vm", certificate=False))
-    plain, without = ({x: np.abs(one.output(f"shaking_{x}")).max() for x in ("fx", "fy", "mz")} for one in found)
+    plain, without = (
+        {x: np.abs(one.output(f"shaking_{x}")).max() for x in ("fx", "fy", "mz")} for one in found
+    )
     assert max(without["fx"], without["fy"]) <= 1e-12 * plain["fx"]
     assert without["mz"] > 0.1 * plain["mz"]  # balanced forces, not moments
 
@@ -139,7 +181,9 @@ def yoke():
 
 
 def test_a_counterweight_trades_one_direction_for_the_other():
-    """Along the slide (slide - weight) r w^2 is left, across it weight r w^2: one newton more here is one less there."""
+    """Along the slide (slide - weight) r w^2 is left, across it weight r w^2: one newton more here
+    is one less there.
+    """
     found = optimise(
         yoke(),
         minimise="peak:output:shaking_fx",
@@ -164,5 +208,7 @@ def test_mistakes():
         shaking(m, about=(1.0, 2.0, 3.0))
     shaking(m)
     m.weld("held", arm.tip, m.point_mass("late", 1.0))
-    with pytest.raises(DeclarationError, match="body 'late' was declared after it; call shaking after all bodies"):
+    with pytest.raises(
+        DeclarationError, match="body 'late' was declared after it; call shaking after all bodies"
+    ):
         Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 5))

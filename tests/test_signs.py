@@ -1,4 +1,6 @@
-"""Which fibre a bending moment stretches, found without a moment: the section is a pin in one fibre and a bar in another."""
+"""Which fibre a bending moment stretches, found without a moment: the section is a pin in one fibre
+and a bar in another.
+"""
 
 import numpy as np
 import pytest
@@ -11,7 +13,9 @@ LENGTH, AT, LOAD = 2.0, 0.25, 10.0
 
 
 def cantilever(tip):
-    """The forces in a beam from a wall along x, without gravity, whose tip bears the force ``tip`` along y."""
+    """The forces in a beam from a wall along x, without gravity, whose tip bears the force ``tip``
+    along y.
+    """
     m = Mechanism("cantilever")
     m.set_gravity(0, 0)
     beam = m.link("beam", length=LENGTH, mass=1.0)
@@ -21,7 +25,9 @@ def cantilever(tip):
 
 
 def fibre(side, tip, height=0.1, reach=0.3):
-    """The moment that a fibre at ``side`` (1: that of n) bears, by its tension: what the pin in the other fibre cannot."""
+    """The moment that a fibre at ``side`` (1: that of n) bears, by its tension: what the pin in the
+    other fibre cannot.
+    """
     m = Mechanism("fibres")
     m.set_gravity(0, 0)
     beam = m.link("beam", length=LENGTH * (1 - AT), mass=1.0)
@@ -47,4 +53,6 @@ def test_the_forces_of_a_loaded_tip():
     section = cantilever(-LOAD)
     np.testing.assert_allclose(section.axial, 0.0, atol=1e-12)
     np.testing.assert_allclose(section.shear, -LOAD, rtol=1e-12)
-    np.testing.assert_allclose(section.bending[0], -LOAD * LENGTH * (1 - section.xi), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(
+        section.bending[0], -LOAD * LENGTH * (1 - section.xi), rtol=1e-12, atol=1e-12
+    )

@@ -38,13 +38,24 @@ STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
 def built(name, precision, language, folder):
     """The object code of a scene, by the package's own flags, pedantically clean."""
     graph = derive(WHOLE[name]())
-    source = codegen.emit(graph, plain(graph) if precision == "double" else compensated(graph, precision))
+    source = codegen.emit(
+        graph, plain(graph) if precision == "double" else compensated(graph, precision)
+    )
     path = folder / ("scene.c" if language == "c" else "scene.cpp")
-    path.write_text(source if language == "c" else source.replace(LANES_PLACE, HEADER.read_text(), 1))
+    path.write_text(
+        source if language == "c" else source.replace(LANES_PLACE, HEADER.read_text(), 1)
+    )
     flags = [flag for flag in FLAGS[language] if flag not in ("-shared", "-nostartfiles")]
     # A pack is passed as the machine's vectors are, and CasADi knows no C++.
     flags += STRICT if language == "c" else [*STRICT[3:], "-Wno-psabi"]
-    command = [*codegen.find_compiler(language).command, *flags, "-c", path, "-o", folder / "scene.o"]
+    command = [
+        *codegen.find_compiler(language).command,
+        *flags,
+        "-c",
+        path,
+        "-o",
+        folder / "scene.o",
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return folder / "scene.o"
@@ -53,7 +64,9 @@ def built(name, precision, language, folder):
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize(("name", "newton"), [*((name, None) for name in WHOLE), ("iterated", 2)])
 def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
-    """No double is meant, and none comes in by a promotion; not even CasADi's own text needs an exception."""
+    """No double is meant, and none comes in by a promotion; not even CasADi's own text needs an
+    exception.
+    """
     graph = derive(WHOLE[name]())
     source = tmp_path / "scene.c"
     source.write_text(codegen.emit(graph, compensated(graph, "single"), newton))
@@ -62,7 +75,8 @@ def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
     assert result.returncode == 0, result.stderr
 
 
-# Arithmetic, comparisons and conversions of doubles, in SSE, AVX and x87; to move or to mask eight bytes is none.
+# Arithmetic, comparisons and conversions of doubles, in SSE, AVX and x87; to move or to mask eight
+# bytes is none.
 ON_DOUBLES = re.compile(
     r"v?(add|sub|mul|div|sqrt|max|min|cmp\w*|u?comi|round|rndscale|rcp\w*|rsqrt\w*|scalef|reduce|get\w+|h(add|sub)|addsub|dp)[sp]d"
     r"|vfn?m\w+[sp]d|v?cvt\w*[sp]d\w*|f(ld|st|add|sub|mul|div|prem|sqrt|ild|com|ucom|i?st)\w*"
@@ -71,7 +85,9 @@ ON_DOUBLES = re.compile(
 
 def on_doubles(path):
     """The instructions on doubles in object code."""
-    listed = subprocess.run(["objdump", "-d", "--no-show-raw-insn", path], capture_output=True, text=True, check=True)
+    listed = subprocess.run(
+        ["objdump", "-d", "--no-show-raw-insn", path], capture_output=True, text=True, check=True
+    )
     found = re.findall(r"^\s*[0-9a-f]+:\s+(?:\{\w+\}\s+)?(\w+)", listed.stdout, re.MULTILINE)
     assert len(found) > 50
     return {instruction for instruction in found if ON_DOUBLES.fullmatch(instruction)}
@@ -85,7 +101,11 @@ def functions_of_doubles(path):
 
 
 tools = pytest.mark.skipif(
-    not (shutil.which("objdump") and shutil.which("nm") and platform.machine() in ("x86_64", "AMD64", "i686")),
+    not (
+        shutil.which("objdump")
+        and shutil.which("nm")
+        and platform.machine() in ("x86_64", "AMD64", "i686")
+    ),
     reason="reads the instructions of x86 by objdump and nm",
 )
 
@@ -113,7 +133,10 @@ def test_instructions_on_doubles_are_told(language, tmp_path):
 def test_every_function_in_single(backend):
     """Within some roundings of the doubles, of the largest term of the sum."""
     scene = every_function()
-    single, double = (evaluate(scene, backend=backend, precision=p, wanted=["load:t"]) for p in ("single", "double"))
+    single, double = (
+        evaluate(scene, backend=backend, precision=p, wanted=["load:t"])
+        for p in ("single", "double")
+    )
     assert np.isfinite(double.series["load:t:mz"]).all()
     np.testing.assert_allclose(single.series["load:t:mz"], double.series["load:t:mz"], rtol=1e-5)
 
@@ -127,7 +150,10 @@ def loaded(constant):
 
 
 def test_a_number_too_large_for_single_is_refused():
-    with pytest.raises(SizeError, match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38"):
+    with pytest.raises(
+        SizeError,
+        match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38",
+    ):
         evaluate(loaded(1e39), precision="single")
     assert evaluate(loaded(1e39)).array("load:t:mz")[0] == 4e38
 

@@ -42,7 +42,11 @@ def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
     for one in sized.links:
         assert one.safety == sized.solution.safety(one.link)
         assert one.mass == pytest.approx(
-            7850 * math.pi / 4 * one.profile.dimensions["diameter"] ** 2 * (0.5 if one.link == "upper" else 0.4)
+            7850
+            * math.pi
+            / 4
+            * one.profile.dimensions["diameter"] ** 2
+            * (0.5 if one.link == "upper" else 0.4)
         )
         profile, found = one.lighter
         assert profile.dimensions["diameter"] < one.profile.dimensions["diameter"]
@@ -58,7 +62,11 @@ def test_all_pairs_tried(scene, sized):
     diameters = sorted(profile.dimensions["diameter"] for profile in BARS)
     for d1 in diameters:
         for d2 in diameters:
-            if d1 <= chosen["upper"] and d2 <= chosen["fore"] and (d1, d2) != tuple(chosen.values()):
+            if (
+                d1 <= chosen["upper"]
+                and d2 <= chosen["fore"]
+                and (d1, d2) != tuple(chosen.values())
+            ):
                 assert not safe(scene, d1, d2), (d1, d2)
 
 
@@ -71,13 +79,19 @@ def test_a_link_may_be_left_as_it_is(scene):
 
 def test_where_no_profile_is_safe(scene):
     with pytest.raises(
-        NoDesignError, match=r"link 'upper': no profile has a factor of 50; the most, 'bar 22', has .* against fatigue"
+        NoDesignError,
+        match=(
+            r"link 'upper': no profile has a factor of 50; the most, 'bar 22', has .* against"
+            r" fatigue"
+        ),
     ):
         size(scene, BARS, safety=50.0)
 
 
 def test_a_link_is_stiff(scene):
-    found = size(scene, BARS, links=["fore"], parameters={"d1": 0.02}, t=(0, 1 / 1.5, 5), deflection=1 / 350)
+    found = size(
+        scene, BARS, links=["fore"], parameters={"d1": 0.02}, t=(0, 1 / 1.5, 5), deflection=1 / 350
+    )
     (fore,) = found.links
     bent = abs(found.solution.deflection("fore").peak().value)
     assert bent <= 0.4 / 350
@@ -88,7 +102,9 @@ def test_a_link_is_stiff(scene):
 
 @pytest.mark.long
 def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
-    """Where the deflection governs it is what the next lighter profile fails by; 1 is enough of it, of other factors 2."""
+    """Where the deflection governs it is what the next lighter profile fails by; 1 is enough of it,
+    of other factors 2.
+    """
     found = size(scene, BARS, safety=2.0, deflection=1 / 300)
     upper, fore = found.links
     assert all(one.mass > before.mass for one, before in zip(found.links, sized.links, strict=True))
@@ -104,7 +120,11 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
     assert upper.safety.against("fatigue") > 2.0 > upper.safety.factor
     assert fore.safety.governs.against == "fatigue"
     with pytest.raises(
-        NoDesignError, match=r"factor of 2, and a deflection of 0\.001 of its length at most; the most, 'bar 22', has"
+        NoDesignError,
+        match=(
+            r"factor of 2, and a deflection of 0\.001 of its length at most; the most, 'bar"
+            r" 22', has"
+        ),
     ):
         size(scene, BARS, deflection=1 / 1000)
 
@@ -114,12 +134,17 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
     [
         ({"profiles": []}, DeclarationError, "expected at least one profile"),
         ({"safety": 0.0}, DeclarationError, r"size: safety: expected a positive number, got 0\.0"),
-        ({"deflection": -0.1}, DeclarationError, r"size: deflection: expected a positive number, got -0\.1"),
+        ({"deflection": -0.1}, DeclarationError,
+            r"size: deflection: expected a positive number, got -0\.1"),
         ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
-        ({"links": ["plate"]}, DeclarationError, "link 'plate': diameter is no dimension of its rectangle"),
-        ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError, "no link; upper: wall is no dimension of its round_bar"),
-        ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError, r"'x': parameter 'd1' = 0\.5 m is out of its range"),
-        ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError, "its height is no parameter"),
+        ({"links": ["plate"]}, DeclarationError,
+            "link 'plate': diameter is no dimension of its rectangle"),
+        ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError,
+            "no link; upper: wall is no dimension of its round_bar"),
+        ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError,
+            r"'x': parameter 'd1' = 0\.5 m is out of its range"),
+        ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError,
+            "its height is no parameter"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_sized(scene, arguments, error, says):
@@ -128,7 +153,9 @@ def test_what_cannot_be_sized(scene, arguments, error, says):
 
 
 def test_two_links_that_share_a_parameter():
-    with pytest.raises(DeclarationError, match="links 'upper' and 'fore' share parameter 'd1'; give each its own"):
+    with pytest.raises(
+        DeclarationError, match="links 'upper' and 'fore' share parameter 'd1'; give each its own"
+    ):
         size(arms(shared=True), BARS)
 
 
@@ -139,9 +166,13 @@ def table(here, text):
 
 def test_tables_have_units_and_blank_lines(here):
     found = table(here, "name, height [mm],width[cm],web,flange [m]\n\nA 1,35, 2.8,0.007,0.007\n")
-    assert found == (Profile("A 1", {"height": 0.035, "width": 0.028, "web": 0.007, "flange": 0.007}),)
+    assert found == (
+        Profile("A 1", {"height": 0.035, "width": 0.028, "web": 0.007, "flange": 0.007}),
+    )
     assert found[0].shape("i_section").area == pytest.approx(11 * 0.007**2)
-    with pytest.raises(DeclarationError, match="a round_bar has the dimensions diameter, got height, width"):
+    with pytest.raises(
+        DeclarationError, match="a round_bar has the dimensions diameter, got height, width"
+    ):
         found[0].shape("round_bar")
 
 
@@ -175,26 +206,48 @@ def test_a_table_that_is_not_there(here):
 
 @pytest.mark.long
 def test_one_command_sizes(here, capsys, sized):
-    lines = ("import sys", f"sys.path.insert(0, {str(Path(__file__).parent)!r})", "from strong import arms as scene")
+    lines = (
+        "import sys",
+        f"sys.path.insert(0, {str(Path(__file__).parent)!r})",
+        "from strong import arms as scene",
+    )
     (here / "case.py").write_text("\n".join(lines))
     (here / "profiles.csv").write_text(
-        "name,diameter [mm]\n" + "".join(f"{p.name},{p.dimensions['diameter'] * 1000:g}\n" for p in BARS)
+        "name,diameter [mm]\n"
+        + "".join(f"{p.name},{p.dimensions['diameter'] * 1000:g}\n" for p in BARS)
     )
     assert main(["size", "case.py", "--safety", "2"]) == 0
     out = capsys.readouterr().out
     for one in sized.links:
         assert f"\n{one.link}: '{one.profile.name}', {one.mass:.6g} kg\n" in out
-        assert f"    lighter: '{one.lighter[0].name}' has {one.lighter[1].factor:.4g} against " in out
+        assert (
+            f"    lighter: '{one.lighter[0].name}' has {one.lighter[1].factor:.4g} against " in out
+        )
     assert "plate: left as it is, for diameter is no dimension of its rectangle\n  plate  " in out
     settings = [f"{name}={value!r}" for name, value in sized.parameters.items()]
     assert " ".join(f"--set {word}" for word in settings) in out
-    assert main(["run", "case.py", "--no-figures", "--want", "safety", *(x for word in settings for x in ("--set", word))]) == 0
+    assert (
+        main(
+            [
+                "run",
+                "case.py",
+                "--no-figures",
+                "--want",
+                "safety",
+                *(x for word in settings for x in ("--set", word)),
+            ]
+        )
+        == 0
+    )
     run = capsys.readouterr().out
     for one in sized.links:
         assert f"  {one.link:<20} {one.safety.utilisation:>8.4g} |" in run
     assert main(["size", "case.py", "--deflection", "1/300"]) == 0
     out = capsys.readouterr().out
-    assert "a factor of safety of 2, or more, and a deflection of 0.00333333 of its length, or less:\n" in out
+    assert (
+        "a factor of safety of 2, or more, and a deflection of 0.00333333 of its length, or less:\n"
+        in out
+    )
     assert "| deflection governs\n" in out
     assert main(["size", "case.py", "--deflection", "1/0"]) == 2
     assert "expected a share of the length, as 1/500, got '1/0'" in capsys.readouterr().err

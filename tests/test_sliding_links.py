@@ -1,4 +1,6 @@
-"""A slender link that slides across its own axis, of which nothing was said: a note says so, and of no other link."""
+"""A slender link that slides across its own axis, of which nothing was said: a note says so, and of
+no other link.
+"""
 
 import numpy as np
 import pytest
@@ -23,7 +25,9 @@ def axis_drawn(rng, size):
 
 
 def drawn(seed):
-    """A link that slides on the ground or on a link that stands still, and whether something was said of how it lies."""
+    """A link that slides on the ground or on a link that stands still, and whether something was
+    said of how it lies.
+    """
     rng = np.random.default_rng(seed)
     space = bool(rng.integers(2))
     m = SpatialMechanism("sliding") if space else Mechanism("sliding")
@@ -56,16 +60,26 @@ def drawn(seed):
     if kind == "screw":
         words["lead"] = 0.01
     getattr(m, kind)("way", parent, bar, **words)
-    motion |= {"way:slide": SLIDE, "way:turn": polynomial(0.0)} if kind == "cylindrical" else {"way": SLIDE}
+    motion |= (
+        {"way:slide": SLIDE, "way:turn": polynomial(0.0)}
+        if kind == "cylindrical"
+        else {"way": SLIDE}
+    )
     return Scene(m, motion, t=(0.0, 1.0, 3), xi=(0, 1, 3)), given
 
 
 def slides_across(solution):
-    """Whether the link's point goes in another direction than that of its axis, as its pose tells."""
+    """Whether the link's point goes in another direction than that of its
+    axis, as its pose tells.
+    """
     pose = solution.pose("bar")
     z = np.zeros_like(pose.x) if pose.z is None else pose.z
     way = np.array([(values[-1] - values[0]) for values in (pose.x, pose.y, z)])
-    axis = [np.cos(pose.angle[0]), np.sin(pose.angle[0]), 0.0] if pose.axes is None else pose.axes[0][0]
+    axis = (
+        [np.cos(pose.angle[0]), np.sin(pose.angle[0]), 0.0]
+        if pose.axes is None
+        else pose.axes[0][0]
+    )
     return np.linalg.norm(np.cross(way / np.linalg.norm(way), axis)) > 1e-6
 
 
@@ -74,7 +88,9 @@ def across(solution):
     return [note for note in solution.notes if "does not turn it" in note]
 
 
-@pytest.mark.parametrize("seed", [*range(20), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(20, 1000))])
+@pytest.mark.parametrize(
+    "seed", [*range(20), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(20, 1000))]
+)
 def test_a_note_says_so_where_nothing_was_said_of_it_and_only_there(seed):
     scene, given = drawn(seed)
     solution = evaluate(scene)
@@ -84,7 +100,9 @@ def test_a_note_says_so_where_nothing_was_said_of_it_and_only_there(seed):
 def needle_bar(**words):
     """A bar that goes up and down."""
     m = Mechanism("sewing")
-    m.prismatic("guide", m.ground, m.link("needle_bar", length=0.2, mass=0.1), axis=(0, -1), **words)
+    m.prismatic(
+        "guide", m.ground, m.link("needle_bar", length=0.2, mass=0.1), axis=(0, -1), **words
+    )
     return Scene(m, {"guide": SLIDE}, t=(0.0, 1.0, 3), xi=(0, 1, 3))
 
 
@@ -92,9 +110,10 @@ def test_the_note_says_what_to_do_and_doing_it_helps(tmp_path):
     """Sideways it bends by its weight; along its way it does not."""
     sideways = evaluate(needle_bar())
     (note,) = sideways.notes
-    assert note == (
-        "link 'needle_bar' slides along joint 'guide' at 90 deg to its axis, for the joint's axis does not turn it: "
-        'angle="-90 deg" lays it along, angle=0 says that it is meant'
+    assert (
+        note
+        == "link 'needle_bar' slides along joint 'guide' at 90 deg to its axis, for the joint's"
+        ' axis does not turn it: angle="-90 deg" lays it along, angle=0 says that it is meant'
     )
     assert abs(sideways.section("needle_bar").bending).max() == pytest.approx(0.1 * 9.81 * 0.1)
     along = evaluate(needle_bar(angle="-90 deg"))
@@ -107,9 +126,14 @@ def test_the_note_says_what_to_do_and_doing_it_helps(tmp_path):
 
 @pytest.mark.parametrize("tip", [False, True])
 def test_of_a_massless_carrier_nothing_is_said(tip):
-    """A cross slide: how the carriage lies matters to nothing, unless something hangs on its tip."""
+    """A cross slide: how the carriage lies matters to nothing, unless something
+    hangs on its tip.
+    """
     m = Mechanism("cross")
-    table, carriage = m.link("table", length=0.1, mass=0.0), m.link("carriage", length=0.1, mass=0.0)
+    table, carriage = (
+        m.link("table", length=0.1, mass=0.0),
+        m.link("carriage", length=0.1, mass=0.0),
+    )
     m.prismatic("X", m.ground, table, axis=(1, 0))
     m.prismatic("Y", table, carriage, axis=(0, 1))
     m.weld("load", carriage.tip if tip else carriage, m.point_mass("p", 1.0))

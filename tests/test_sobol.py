@@ -1,4 +1,6 @@
-"""Designs to start from, spread by the sequence of Sobol: points that are known, and that every box of a kind has one."""
+"""Designs to start from, spread by the sequence of Sobol: points that are known, and that every box
+of a kind has one.
+"""
 
 import numpy as np
 import pytest
@@ -16,9 +18,13 @@ def test_the_first_points_are_those_of_joe_and_kuo():
 
 
 def test_each_coordinate_takes_each_share_once():
-    """With the origin 2^k points are a Latin hypercube; a direction number that is even would break it."""
+    """With the origin 2^k points are a Latin hypercube; a direction number that is even would break
+    it.
+    """
     points = np.vstack([np.zeros((1, MOST_DIMENSIONS)), sobol(255, MOST_DIMENSIONS)])
-    np.testing.assert_array_equal(np.sort(256 * points, axis=0), np.tile(np.arange(256.0)[:, None], MOST_DIMENSIONS))
+    np.testing.assert_array_equal(
+        np.sort(256 * points, axis=0), np.tile(np.arange(256.0)[:, None], MOST_DIMENSIONS)
+    )
     assert len(np.unique(points, axis=1).T) == MOST_DIMENSIONS
 
 
@@ -39,5 +45,8 @@ def test_they_are_those_of_scipy():
 
 
 def test_too_many_dimensions_are_refused():
-    with pytest.raises(DeclarationError, match="starts are spread over 32 parameters at most, got 33; name the designs"):
+    with pytest.raises(
+        DeclarationError,
+        match="starts are spread over 32 parameters at most, got 33; name the designs",
+    ):
         sobol(4, 33)

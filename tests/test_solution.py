@@ -27,10 +27,17 @@ def test_names_lead_to_arrays(solution):
 
 def test_units(solution):
     units = {
-        name: solution.unit(name) for name in ("effort:O", "motion:guide_rate", "motion:O_acceleration", "section:rod:bending")
+        name: solution.unit(name)
+        for name in (
+            "effort:O",
+            "motion:guide_rate",
+            "motion:O_acceleration",
+            "section:rod:bending",
+        )
     }
     assert units == {
-        "effort:O": "N m", "motion:guide_rate": "m/s", "motion:O_acceleration": "rad/s^2", "section:rod:bending": "N m",
+        "effort:O": "N m", "motion:guide_rate": "m/s", "motion:O_acceleration": "rad/s^2",
+            "section:rod:bending": "N m",
     }  # fmt: skip
 
 
@@ -73,9 +80,13 @@ def test_angles_are_continuous(slider_crank):
 
 
 def test_unknown_names_list_the_valid(solution, slider_crank):
-    with pytest.raises(UnknownNameError, match="unknown link with sections 'sider'; valid: crank, rod"):
+    with pytest.raises(
+        UnknownNameError, match="unknown link with sections 'sider'; valid: crank, rod"
+    ):
         solution.section("sider")
-    with pytest.raises(UnknownNameError, match=r"unknown joint with a reaction 'gide' \(did you mean 'guide'\?\)"):
+    with pytest.raises(
+        UnknownNameError, match=r"unknown joint with a reaction 'gide' \(did you mean 'guide'\?\)"
+    ):
         solution.reaction("gide")
     with pytest.raises(UnknownNameError, match="unknown drive 'A'; valid: O"):
         solution.effort("A")
@@ -86,8 +97,12 @@ def test_unknown_names_list_the_valid(solution, slider_crank):
 
 
 def test_a_section_is_made_when_asked_for(slider_crank):
-    """The law is seven numbers an instant; a grid of xi costs nothing until somebody looks at it."""
-    solution = evaluate(slider_crank.scene, t=(0, 0.08, 11), xi=(0, 1, 100_000), wanted=["section:rod"])
+    """The law is seven numbers an instant; a grid of xi costs nothing
+    until somebody looks at it.
+    """
+    solution = evaluate(
+        slider_crank.scene, t=(0, 0.08, 11), xi=(0, 1, 100_000), wanted=["section:rod"]
+    )
     assert sum(values.size for values in solution.series.values()) == 7 * 11
     assert solution.section("rod").bending.shape == (11, 100_000)
 
@@ -101,7 +116,10 @@ def test_to_xarray(solution):
 
 
 def test_repr_is_short(solution):
-    assert repr(solution) == "<Solution of slider_crank: 801 instants, 101 ratios, 32 quantities, certified>"
+    assert (
+        repr(solution)
+        == "<Solution of slider_crank: 801 instants, 101 ratios, 32 quantities, certified>"
+    )
     assert repr(solution.section("rod")) == "<Section of a link of 0.2 m: 801 instants, 101 ratios>"
     assert "no certificate" in repr(replace(solution, certificate={}))
     assert "its certificate fails" in repr(replace(solution, certificate={"balance": np.ones(801)}))
@@ -109,7 +127,10 @@ def test_repr_is_short(solution):
 
 def test_what_is_declared_is_shown_in_a_line(slider_crank):
     scene = "<Scene of slider_crank: drives O, wants all, 801 instants from 0 to 0.08 s>"
-    assert repr(slider_crank.scene.mechanism) == "<Mechanism slider_crank: crank, rod, slider; joints: O, A, B, guide>"
+    assert (
+        repr(slider_crank.scene.mechanism)
+        == "<Mechanism slider_crank: crank, rod, slider; joints: O, A, B, guide>"
+    )
     assert repr(slider_crank.scene) == scene
     assert repr(slider_crank) == f"<Case slider_crank: {scene}>"
     assert repr(Mechanism("new")) == "<Mechanism new: no body yet; joints: none yet>"

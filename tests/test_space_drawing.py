@@ -1,4 +1,6 @@
-"""Drawings of mechanisms in space: four views to one scale, each instant where the poses put it, names apart."""
+"""Drawings of mechanisms in space: four views to one scale, each instant where the poses put it,
+names apart.
+"""
 
 import io
 import json
@@ -41,9 +43,13 @@ def test_links_are_where_their_poses_put_them_in_every_view():
     ends = [place_of(solution, {"body": "coupler", "x": x, "y": 0.0, "z": 0.0}) for x in (0.0, 0.4)]
     for axes, one in zip(figure.axes, views((0, -9.81, 0), -60, 25), strict=True):
         (strong,) = lines(axes, "coupler")
-        np.testing.assert_allclose(strong.get_xydata(), [one.on_page(end[0]) for end in ends], atol=1e-12)
+        np.testing.assert_allclose(
+            strong.get_xydata(), [one.on_page(end[0]) for end in ends], atol=1e-12
+        )
         faint = [
-            line for line in axes.get_lines() if line.get_alpha() not in (None, 1.0) and line.get_color() == strong.get_color()
+            line
+            for line in axes.get_lines()
+            if line.get_alpha() not in (None, 1.0) and line.get_color() == strong.get_color()
         ]
         expected = [[one.on_page(end[k]) for end in ends] for k in (6, 4, 2)]
         np.testing.assert_allclose([line.get_xydata() for line in faint], expected, atol=1e-12)
@@ -65,7 +71,13 @@ def test_names_are_apart_and_scales_are_one(solution):
     boxes = [text.get_window_extent(renderer) for text in texts]
     frame = axes.get_window_extent(renderer)
     told = {name for text in texts for name in text.get_text().replace("\n", " ").split(", ")}
-    assert told >= {*solution.description["joints"], *solution.description.get("paths", {}), "x", "y", "z"}
+    assert told >= {
+        *solution.description["joints"],
+        *solution.description.get("paths", {}),
+        "x",
+        "y",
+        "z",
+    }
     for k, box in enumerate(boxes):
         assert within(box, frame), texts[k]
         for j in range(k):
@@ -91,12 +103,26 @@ def test_everything_drawn_is_in_the_pictures():
 def test_the_page_says_what_it_shows():
     figure, _ = drawn(moved("cardan_shaft"), azimuth=30.0, elevation=40.0)
     told = figure.get_suptitle().replace("\n", " ")
-    assert told.startswith("cardan_shaft: t = 0 s (bearing = 0 deg), and faint 0.025 s (bearing = 90 deg), ")
+    assert told.startswith(
+        "cardan_shaft: t = 0 s (bearing = 0 deg), and faint 0.025 s (bearing = 90 deg), "
+    )
     assert told.endswith("orthographic, all views to one scale")
     titles = [axes.get_title() for axes in figure.axes]
-    assert titles == ["from above (+z)", "azimuth 30°, elevation 40°, z up", "from the front (-y)", "from the right (+x)"]
+    assert titles == [
+        "from above (+z)",
+        "azimuth 30°, elevation 40°, z up",
+        "from the front (-y)",
+        "from the right (+x)",
+    ]
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert legend == ["shaft", "tube", "output", "revolute joint", "universal joint", "cylindrical joint"]
+    assert legend == [
+        "shaft",
+        "tube",
+        "output",
+        "revolute joint",
+        "universal joint",
+        "cylindrical joint",
+    ]
 
 
 def test_numbers_on_an_axis_that_runs_backward_are_those_of_its_coordinate():
@@ -136,7 +162,9 @@ def test_it_is_among_the_usual_figures_and_every_name_is_a_files(tmp_path):
     specs = default_figures(solution)
     assert specs[-1] == MechanismDrawing()
     few = [spec for spec in specs if spec.name in ("motion_pose-slide_1", "motion_P0", "mechanism")]
-    assert [path.name for _, path in draw(solution, few, tmp_path)] == [f"{spec.name}.png" for spec in few]
+    assert [path.name for _, path in draw(solution, few, tmp_path)] == [
+        f"{spec.name}.png" for spec in few
+    ]
     assert len(few) == 3
     list(draw(solution, specs[:1], tmp_path))
 
@@ -150,7 +178,9 @@ def test_the_view_survives_the_file():
 
 def test_a_pose_that_was_not_wanted_is_not_drawn(tmp_path):
     solution = moved("rssr")
-    without = replace(solution, outputs={o: v for o, v in solution.outputs.items() if o.group != "pose"})
+    without = replace(
+        solution, outputs={o: v for o, v in solution.outputs.items() if o.group != "pose"}
+    )
     assert [path for _, path in draw(without, [MechanismDrawing()], tmp_path)] == [None]
 
 
@@ -161,7 +191,9 @@ def test_ways_to_assemble_in_space_are_drawn_in_space(tmp_path, monkeypatch, cap
     assert draw_postures(scene, file) == 2
     assert file.getvalue().startswith(b"\x89PNG")
     figures = []
-    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda figure, *_, **__: figures.append(figure))
+    monkeypatch.setattr(
+        "matplotlib.figure.Figure.savefig", lambda figure, *_, **__: figures.append(figure)
+    )
     draw_postures(scene, io.BytesIO())
     for axes, angle in zip(figures[0].axes, (-4.6082, 171.728), strict=True):
         assert axes.get_title() == f"posture={{'Q': '{angle:g} deg'}}"

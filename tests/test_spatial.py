@@ -6,7 +6,13 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive
 from lagrange_casadi.declare.spatial import reference_posture
-from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError, MobilityError, ParameterError
+from lagrange_casadi.errors import (
+    AssemblyError,
+    DeclarationError,
+    LagrangeCasadiError,
+    MobilityError,
+    ParameterError,
+)
 from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
@@ -21,7 +27,10 @@ def arm(**kwargs):
 @pytest.mark.parametrize(
     ("declare", "says"),
     [
-        (lambda m, a: m.revolute("J", m.ground, a, axis=(0, 0, 0)), "joint 'J': axis must not be of length zero"),
+        (
+            lambda m, a: m.revolute("J", m.ground, a, axis=(0, 0, 0)),
+            "joint 'J': axis must not be of length zero",
+        ),
         (
             lambda m, a: m.revolute("J", m.ground, a, axis=(0, 1)),
             r"joint 'J': axis must be three components \(x, y, z\)",
@@ -34,15 +43,27 @@ def arm(**kwargs):
             lambda m, a: m.revolute("J", m.ground, a, turned=((1, 0, 0), (1, 1, 0))),
             "turned: its axes must be at right angles",
         ),
-        (lambda m, a: m.revolute("J", m.ground, a, turned=[("x", "30 grad")]), "or a text such as '350 deg'"),
+        (
+            lambda m, a: m.revolute("J", m.ground, a, turned=[("x", "30 grad")]),
+            "or a text such as '350 deg'",
+        ),
         (
             lambda m, a: m.universal("J", m.ground, a, axis=(1, 0, 0), second=(1, 1, 0)),
             "joint 'J': its axes must be at right angles, and are at 45 deg",
         ),
-        (lambda m, a: m.revolute("J", m.ground, a, at=(0, 0, 0)), "joint 'J': 'a' has no place in the reference posture"),
+        (
+            lambda m, a: m.revolute("J", m.ground, a, at=(0, 0, 0)),
+            "joint 'J': 'a' has no place in the reference posture",
+        ),
         (lambda m, a: m.revolute("J", a, a.tip), "joint 'J' joins 'a' to itself"),
-        (lambda m, a: m.prismatic("J", m.point_mass("p", 1.0), a, axis=Z), "joint 'J': its parent 'p' is a point mass"),
-        (lambda m, a: m.link("b", mass=1.0), "link 'b': give its length, or the two places that it lies between"),
+        (
+            lambda m, a: m.prismatic("J", m.point_mass("p", 1.0), a, axis=Z),
+            "joint 'J': its parent 'p' is a point mass",
+        ),
+        (
+            lambda m, a: m.link("b", mass=1.0),
+            "link 'b': give its length, or the two places that it lies between",
+        ),
         (
             lambda m, a: m.link("b", between=((0, 0, 0), (0, 0, 0)), mass=1.0),
             "link 'b': the two places .* are one",
@@ -51,17 +72,41 @@ def arm(**kwargs):
             lambda m, a: m.link("b", between=((0, 0, 0), (1, 1, 0)), beside=(2, 2, 0), mass=1.0),
             "link 'b': beside lies along the link",
         ),
-        (lambda m, a: m.spherical("J", m.ground, a, second=Z), "joint 'J': second goes with axis, at right angles to it"),
-        (lambda m, a: m.free("J", m.ground, a, second=Z), "joint 'J': second goes with axis, at right angles to it"),
-        (lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)), "link 'b': centre and inertia go together"),
         (
-            lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=((1, 0.1, 0), (0, 1, 0), (0, 0, 1))),
+            lambda m, a: m.spherical("J", m.ground, a, second=Z),
+            "joint 'J': second goes with axis, at right angles to it",
+        ),
+        (
+            lambda m, a: m.free("J", m.ground, a, second=Z),
+            "joint 'J': second goes with axis, at right angles to it",
+        ),
+        (
+            lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)),
+            "link 'b': centre and inertia go together",
+        ),
+        (
+            lambda m, a: m.link(
+                "b",
+                length=1.0,
+                mass=1.0,
+                centre=(0, 0, 0),
+                inertia=((1, 0.1, 0), (0, 1, 0), (0, 0, 1)),
+            ),
             r"link 'b': inertia must be symmetric, and entries \(2, 1\) and \(1, 2\) differ",
         ),
-        (lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0), "link 'b': inertia must be three moments"),
+        (
+            lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0),
+            "link 'b': inertia must be three moments",
+        ),
         (lambda m, a: m.direction(a), "a link in space has no single angle"),
-        (lambda m, a: m.coordinate(m.cylindrical("J", m.ground, a, axis=Z)), "joint 'J' has no coordinate ''; valid: slide, turn"),
-        (lambda m, a: m.coordinate(m.revolute("J", m.ground, a), "turn"), "joint 'J' has no coordinate 'turn'"),
+        (
+            lambda m, a: m.coordinate(m.cylindrical("J", m.ground, a, axis=Z)),
+            "joint 'J' has no coordinate ''; valid: slide, turn",
+        ),
+        (
+            lambda m, a: m.coordinate(m.revolute("J", m.ground, a), "turn"),
+            "joint 'J' has no coordinate 'turn'",
+        ),
     ],
 )
 def test_misuse_is_named(declare, says):
@@ -77,16 +122,36 @@ def test_misuse_is_named(declare, says):
             lambda m, a: m.prismatic("J", m.ground, a, axis=Z, angle=1.0),
             "prismatic 'J': .*'angle'; in space it takes",
         ),
-        (SpatialMechanism, lambda m, a: m.torque("T", a, 5.0), "torque 'T': .*; in space it takes name, point, x, y, z, against"),
-        (SpatialMechanism, lambda m, a: m.set_gravity((0, 0, -9.81)), "set_gravity: .*; in space it takes x, y, z"),
+        (
+            SpatialMechanism,
+            lambda m, a: m.torque("T", a, 5.0),
+            "torque 'T': .*; in space it takes name, point, x, y, z, against",
+        ),
+        (
+            SpatialMechanism,
+            lambda m, a: m.set_gravity((0, 0, -9.81)),
+            "set_gravity: .*; in space it takes x, y, z",
+        ),
         (
             Mechanism,
             lambda m, a: m.revolute("J", m.ground, a, axis=Z),
             "revolute 'J': .*'axis'; in a plane it takes name, parent, child$",
         ),
-        (Mechanism, lambda m, a: m.force("F", a, z=1.0), "force 'F': .*'z'; in a plane it takes name, point, x, y, turning"),
-        (Mechanism, lambda m, a: m.set_gravity(0, 0, -9.81), "set_gravity: .*; in a plane it takes x, y"),
-        (Mechanism, lambda m, a: m.prismatic("J", m.ground, a, axis=Z), "joint 'J': axis must be two components"),
+        (
+            Mechanism,
+            lambda m, a: m.force("F", a, z=1.0),
+            "force 'F': .*'z'; in a plane it takes name, point, x, y, turning",
+        ),
+        (
+            Mechanism,
+            lambda m, a: m.set_gravity(0, 0, -9.81),
+            "set_gravity: .*; in a plane it takes x, y",
+        ),
+        (
+            Mechanism,
+            lambda m, a: m.prismatic("J", m.ground, a, axis=Z),
+            "joint 'J': axis must be two components",
+        ),
         (
             Mechanism,
             lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0),
@@ -101,30 +166,52 @@ def test_what_is_for_the_other_kind_of_mechanism_is_named(of, declare, says):
 
 
 def test_a_hard_point_may_be_rounded():
-    """A bar is one though its ends are worked out twice; and moments of inertia are symmetric but for rounding."""
+    """A bar is one though its ends are worked out twice; and moments of inertia are symmetric but
+    for rounding.
+    """
     m, up = SpatialMechanism("m"), (0.1, 0.2, 0.1 + 0.2)
     crank = m.link("crank", between=((0, 0, 0), up), mass=1.0)
     rod = m.link("rod", between=(up, (1.0, 0.1, 0.6)), mass=1.0)
     slider = m.link("slider", between=((1.0, 0.1, 0.6), (1.1, 0.1, 0.6)), mass=1.0)
     m.revolute("O", m.ground, crank, at=(0, 0, 0), axis=Z)
-    first, last = m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3)), m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3))
+    first, last = (
+        m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3)),
+        m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3)),
+    )
     m.prismatic("G", m.ground, slider, at=(1.0, 0.1, 0.6), axis=(1, 0, 0))
     assert up[2] != 0.3
     assert 0.2 * 3 != 0.6
-    assert (first.parent.end, first.child.end, last.parent.end, last.child.end) == ("tip", "base", "tip", "base")
+    assert (first.parent.end, first.child.end, last.parent.end, last.child.end) == (
+        "tip",
+        "base",
+        "tip",
+        "base",
+    )
     weight = m.at(rod, 0.1 + 0.3 * 0.9, 0.2 - 0.3 * 0.1, 0.3 + 0.3 * 0.3)
     assert (weight.y, weight.z) == (0.0, 0.0)
-    body = m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=((1, 0.1, 0), (0.1 + 1e-17, 1, 0), (0, 1e-17, 1)))
+    body = m.link(
+        "b",
+        length=1.0,
+        mass=1.0,
+        centre=(0, 0, 0),
+        inertia=((1, 0.1, 0), (0.1 + 1e-17, 1, 0), (0, 1e-17, 1)),
+    )
     assert body.mass.inertia[1] == (0.1, 1.0, 0.0)
 
 
 def test_a_plane_has_no_z():
     m = Mechanism("m")
-    with pytest.raises(DeclarationError, match=r"a plane has no z, got 1\.0; a mechanism in space is a SpatialMechanism"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"a plane has no z, got 1\.0; a mechanism in space is a SpatialMechanism",
+    ):
         m.revolute("J", m.ground.at(0.0, 0.0, 1.0), m.link("a", length=1.0, mass=1.0))
 
 
-@pytest.mark.parametrize("inertia", [(1.0, 1.0, 2.1), ((1.0, 0.9, 0.0), (0.9, 1.0, 0.0), (0.0, 0.0, 1.0)), (-1.0, 1.0, 1.0)])
+@pytest.mark.parametrize(
+    "inertia",
+    [(1.0, 1.0, 2.1), ((1.0, 0.9, 0.0), (0.9, 1.0, 0.0), (0.0, 0.0, 1.0)), (-1.0, 1.0, 1.0)],
+)
 def test_a_body_has_moments_of_inertia_that_can_be(inertia):
     m, a = arm(centre=(0.0, 0.0, 0.0), inertia=inertia)
     m.revolute("J", m.ground, a)
@@ -177,7 +264,9 @@ def test_a_body_that_hangs_on_bars_alone_is_named():
         bar = m.link(f"bar{k}", length=0.5, mass=0.1)
         m.spherical(f"A{k}", crank.tip if k == 0 else m.ground.at(k, 0, 0), bar)
         m.spherical(f"B{k}", bar.tip, plate.at(0.1 * k, 0.0))
-    with pytest.raises(DeclarationError, match=r"'plate' hangs on bars alone; declare a free\(\) joint"):
+    with pytest.raises(
+        DeclarationError, match=r"'plate' hangs on bars alone; declare a free\(\) joint"
+    ):
         derive(Scene(m, {"O": polynomial(0, 1)}))
 
 
@@ -187,14 +276,29 @@ def test_a_loop_that_drives_leave_nothing_to_close_is_named():
     m.cylindrical("A", m.ground, a, axis=Z)
     m.cylindrical("B", a.tip, b, axis=(1, 0, 0))
     m.planar("C", m.ground.at(1, 1, 1), b, axis=(0, 1, 0))
-    says = "joint 'B': of every joint of its loop some motion is given, .* and A:turn, C:slide_2, C:turn, B:turn cannot follow"
+    says = (
+        "joint 'B': of every joint of its loop some motion is given, .* and A:turn, C:slide_2,"
+        " C:turn, B:turn cannot follow"
+    )
     with pytest.raises(DeclarationError, match=says):
-        derive(Scene(m, {"A:slide": polynomial(0, 1), "B:slide": polynomial(0, 1), "C:slide_1": polynomial(0)}))
+        derive(
+            Scene(
+                m,
+                {
+                    "A:slide": polynomial(0, 1),
+                    "B:slide": polynomial(0, 1),
+                    "C:slide_1": polynomial(0),
+                },
+            )
+        )
 
 
 def test_what_an_idle_spin_makes_of_the_freedoms_is_said():
     m = SpatialMechanism("m")
-    crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1))
+    crank, rod = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("rod", length=0.3, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1)),
+    )
     slider = m.link("slider", length=0.1, mass=1.0)
     m.revolute("O", m.ground, crank, axis=(0, 1, 0))
     m.spherical("A", crank.tip, rod)
@@ -206,12 +310,19 @@ def test_what_an_idle_spin_makes_of_the_freedoms_is_said():
 
 def test_a_bar_that_does_not_reach_is_named():
     m = SpatialMechanism("m")
-    crank, rod, slider = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0), m.point_mass("slider", 1.0)
+    crank, rod, slider = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("rod", length=0.3, mass=1.0),
+        m.point_mass("slider", 1.0),
+    )
     m.revolute("O", m.ground, crank, axis=(0, 1, 0))
     m.spherical("A", crank.tip, rod)
     m.spherical("B", rod.tip, slider)
     m.slot("G", m.ground.at(0, 2.0, 0), slider, axis=(1, 0, 0))
-    with pytest.raises(AssemblyError, match="the loop closed by bar 'rod' cannot be closed at the start of the motion"):
+    with pytest.raises(
+        AssemblyError,
+        match="the loop closed by bar 'rod' cannot be closed at the start of the motion",
+    ):
         derive(Scene(m, {"O": polynomial(0, 1)}, posture={"G:slide": 0.3}))
 
 

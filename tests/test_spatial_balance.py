@@ -1,4 +1,6 @@
-"""The spatial oracle against closed forms, one for each thing that it can be told, and what it refuses."""
+"""The spatial oracle against closed forms, one for each thing that it can be told, and what it
+refuses.
+"""
 
 import dataclasses
 import math
@@ -7,7 +9,17 @@ import numpy as np
 import pytest
 from arithmetic import DOUBLE
 from spatial_algebra import InconsistentError, cross
-from spatial_bodies import Coupling, Joint, Load, Mechanism, Rigid, Rod, Spring, second_moments, uniform
+from spatial_bodies import (
+    Coupling,
+    Joint,
+    Load,
+    Mechanism,
+    Rigid,
+    Rod,
+    Spring,
+    second_moments,
+    uniform,
+)
 from spatial_draft import direction, frame, joint
 from spatial_mechanisms import rssr, rsur
 from spatial_motion import OpenLoopError
@@ -22,13 +34,19 @@ UPRIGHT = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
 
 
 def close(found, told, size=1.0):
-    assert np.allclose(np.asarray(found, dtype=float), told, rtol=0, atol=1e-13 * size), (found, told)
+    assert np.allclose(np.asarray(found, dtype=float), told, rtol=0, atol=1e-13 * size), (
+        found,
+        told,
+    )
 
 
 def test_a_screw_lifts_what_it_turns():
     lead, inertia, mass, alpha = 0.3, 0.02, 4.0, 5.0
     nut = Rigid("nut", mass, inertia=np.diag([0.01, 0.01, inertia]))
-    found = solve(Mechanism([nut], [Joint("J", "screw", "ground", "nut", lead=lead)]), {("J", 0): (0.7, 2.0, alpha)})
+    found = solve(
+        Mechanism([nut], [Joint("J", "screw", "ground", "nut", lead=lead)]),
+        {("J", 0): (0.7, 2.0, alpha)},
+    )
     s = lead / (2 * math.pi)
     close(found.efforts["J", 0], (inertia + mass * s * s) * alpha + mass * G * s, 10)
     lift = mass * (G + s * alpha)
@@ -40,7 +58,11 @@ def test_a_bead_on_a_line_is_pushed_along_and_held_across():
     line, turns = np.array([0.6, 0.0, 0.8]), [(0, 0, 0)] * 3
     bead = Rigid("bead", 2.0, inertia=np.eye(3))
     told = {("J", 0): (0.5, 1.0, 3.0)} | {("J", 1 + k): turn for k, turn in enumerate(turns)}
-    found = solve(Mechanism([bead], [Joint("J", "slot", "ground", "bead", axis=line)]), told, pushed=[("J", 0)])
+    found = solve(
+        Mechanism([bead], [Joint("J", "slot", "ground", "bead", axis=line)]),
+        told,
+        pushed=[("J", 0)],
+    )
     close(found.efforts["J", 0], 2 * (3 + G * 0.8), 10)
     close(found.reactions["J"], [-2 * G * 0.8 * 0.6, 0, 2 * G - 2 * G * 0.8 * 0.8, 0, 0, 0], 10)
 
@@ -48,7 +70,15 @@ def test_a_bead_on_a_line_is_pushed_along_and_held_across():
 def test_a_puck_on_an_incline():
     across, up = np.array([0.0, 1.0, 0.0]), np.array([0.8, 0.0, 0.6])
     puck = Rigid("puck", 3.0, inertia=np.diag([0.1, 0.2, 0.3]))
-    plane = Joint("J", "planar", "ground", "puck", axis=up, axis2=across, orientation=np.array([up, across, cross(up, across)]).T)
+    plane = Joint(
+        "J",
+        "planar",
+        "ground",
+        "puck",
+        axis=up,
+        axis2=across,
+        orientation=np.array([up, across, cross(up, across)]).T,
+    )
     told = {("J", 0): (0.1, 1.0, 2.0), ("J", 1): (0.2, 2.0, 4.0), ("J", 2): (0.4, 3.0, 5.0)}
     found = solve(Mechanism([puck], [plane]), told)
     close([found.efforts["J", k] for k in range(3)], [3 * (2 + G * 0.6), 3 * 4.0, 0.3 * 5], 10)
@@ -61,7 +91,10 @@ def test_a_universal_joint_carries_its_second_axis():
     first, second = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
     spin = Joint("J", "universal", "ground", "top", axis=first, axis2=second)
     top = Rigid("top", 1.0, inertia=np.diag([0.2, 0.2, 0.2]))
-    found = solve(Mechanism([top], [spin], gravity=(0, 0, 0)), {("J", 0): (0.5, 3.0, 0.0), ("J", 1): (0.2, 7.0, 0.0)})
+    found = solve(
+        Mechanism([top], [spin], gravity=(0, 0, 0)),
+        {("J", 0): (0.5, 3.0, 0.0), ("J", 1): (0.2, 7.0, 0.0)},
+    )
     carried = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     close(found.poses["top"].w, 3 * first + 7 * carried)
     close(found.reactions["J"][3:], 0.2 * 3 * 7 * np.cross(first, carried))
@@ -69,12 +102,22 @@ def test_a_universal_joint_carries_its_second_axis():
 
 
 def test_gears_share_a_load_by_their_ratio():
-    """A wheel drives another of twice its teeth, on skew shafts; the second one lifts a weight by a rack."""
+    """A wheel drives another of twice its teeth, on skew shafts; the second one lifts a weight by a
+    rack.
+    """
     axes = [np.array([0.0, 0.6, 0.8]), np.array([1.0, 0.0, 0.0])]
-    wheels = [Rigid(f"w{i}", 1.0, inertia=np.eye(3) * inertia) for i, inertia in enumerate((0.1, 0.4))]
-    joints = [Joint(f"J{i}", "revolute", "ground", f"w{i}", (i, 0, 0), axis=axis) for i, axis in enumerate(axes)]
+    wheels = [
+        Rigid(f"w{i}", 1.0, inertia=np.eye(3) * inertia) for i, inertia in enumerate((0.1, 0.4))
+    ]
+    joints = [
+        Joint(f"J{i}", "revolute", "ground", f"w{i}", (i, 0, 0), axis=axis)
+        for i, axis in enumerate(axes)
+    ]
     joints.append(Joint("L", "prismatic", "ground", "load"))
-    couplings = [Coupling("mesh", {("J0", 0): 1, ("J1", 0): 2}, 0.3), Coupling("rack", {("L", 0): 1, ("J1", 0): 0.05})]
+    couplings = [
+        Coupling("mesh", {("J0", 0): 1, ("J1", 0): 2}, 0.3),
+        Coupling("rack", {("L", 0): 1, ("J1", 0): 0.05}),
+    ]
     mechanism = Mechanism([*wheels, Rigid("load", 6.0)], joints, couplings=couplings)
     found = solve(mechanism, {("J0", 0): (1.0, 2.0, 8.0)})
     assert not found.open
@@ -105,7 +148,9 @@ def test_a_load_may_turn_with_its_body(turning):
     arm = uniform("arm", 2.0, 1.0)
     load = Load("arm", (2, 0, 0), (0, 5, 0), (2, 0, 1), turning)
     pin = Joint("J", "revolute", "ground", "arm")
-    found = solve(Mechanism([arm], [pin], gravity=(0, 0, 0), loads=[load]), {("J", 0): (math.pi / 3, 0, 0)})
+    found = solve(
+        Mechanism([arm], [pin], gravity=(0, 0, 0), loads=[load]), {("J", 0): (math.pi / 3, 0, 0)}
+    )
     close(found.efforts["J", 0], -1 - 10 * (1.0 if turning else 0.5), 10)
     along = [1.0, math.sqrt(3)] if turning else [2.0, 0.0]
     close(found.reactions["J"][3:], [-along[0], -along[1], 0], 10)
@@ -113,7 +158,10 @@ def test_a_load_may_turn_with_its_body(turning):
 
 def test_a_collar_loads_a_cantilever_where_it_is():
     beam, collar = uniform("beam", 2.0, 3.0), Rigid("collar", 5.0)
-    joints = [Joint("W", "weld", "ground", "beam"), Joint("P", "prismatic", "beam", "collar", axis=(1, 0, 0))]
+    joints = [
+        Joint("W", "weld", "ground", "beam"),
+        Joint("P", "prismatic", "beam", "collar", axis=(1, 0, 0)),
+    ]
     found = solve(Mechanism([beam, collar], joints), {("P", 0): (1.2, 0.3, 4.0)})
     close(found.efforts["P", 0], 20, 10)
     for x in (0.0, 0.6, 1.19, 1.21, 2.0):
@@ -125,7 +173,9 @@ def test_a_collar_loads_a_cantilever_where_it_is():
 
 
 def test_second_moments_are_what_a_solid_bar_has():
-    """A bar whose section is a tapered, sheared rectangle, against quadrature of its matter in three dimensions."""
+    """A bar whose section is a tapered, sheared rectangle, against quadrature of its matter in
+    three dimensions.
+    """
     rho, length, lean = 700.0, 0.9, 0.3
 
     def wide(xi):
@@ -140,21 +190,33 @@ def test_second_moments_are_what_a_solid_bar_has():
     def zz(xi):
         return rho * wide(xi) * high(xi) ** 3 / 12 + lean**2 * yy(xi)
 
-    bar = Rod("bar", length, lambda xi: rho * wide(xi) * high(xi), **second_moments(yy, zz, lambda xi: lean * yy(xi)))
+    bar = Rod(
+        "bar",
+        length,
+        lambda xi: rho * wide(xi) * high(xi),
+        **second_moments(yy, zz, lambda xi: lean * yy(xi)),
+    )
     rng = np.random.default_rng(3)
     told = {("J", k): tuple(rng.normal(size=3)) for k in range(6)}
-    found = solve(Mechanism([bar], [joint(rng, "J", "free", "ground", "bar")], gravity=(1, 2, -9)), told)
+    found = solve(
+        Mechanism([bar], [joint(rng, "J", "free", "ground", "bar")], gravity=(1, 2, -9)), told
+    )
     pose, (nodes, weights) = found.poses["bar"], DOUBLE.gauss
     for start in (0.0, 0.3, 0.7):
         force = moment = np.zeros(3)
-        for u, p in zip(start + (nodes + 1) / 2 * (1 - start), weights / 2 * (1 - start), strict=True):
+        for u, p in zip(
+            start + (nodes + 1) / 2 * (1 - start), weights / 2 * (1 - start), strict=True
+        ):
             for v, q in zip(nodes, weights, strict=True):
                 for w, r in zip(nodes, weights, strict=True):
                     y = v * wide(u) / 2
                     at = np.array([u * length, y, w * high(u) / 2 + lean * y])
                     mass = rho * wide(u) * high(u) * p * q * r / 4 * length
                     needed = mass * (pose.acceleration(at) - np.array([1, 2, -9]))
-                    force, moment = force - needed, moment - np.cross(pose.R @ (at - [start * length, 0, 0]), needed)
+                    force, moment = (
+                        force - needed,
+                        moment - np.cross(pose.R @ (at - [start * length, 0, 0]), needed),
+                    )
         own = found.sections["bar"].at(start)
         close(own, [*(pose.R.T @ force), *(pose.R.T @ moment)], 100)
         if start == 0.0:
@@ -201,7 +263,15 @@ def test_a_spin_that_is_driven_changes_no_force_of_a_slender_coupler():
     # The last turn of this sphere is about the coupler, which stands so at coordinates zero.
     zero = free.poses["crank"].R.T @ R
     turns = [-zero[:, 2], zero[:, 1], zero[:, 0]]
-    first = Joint("A", "spherical", "crank", "coupler", mechanism.joint("A").at_parent, frame=turns, orientation=zero)
+    first = Joint(
+        "A",
+        "spherical",
+        "crank",
+        "coupler",
+        mechanism.joint("A").at_parent,
+        frame=turns,
+        orientation=zero,
+    )
     joints = [first if j.name == "A" else j for j in mechanism.joints]
     spun = dataclasses.replace(mechanism, joints=joints)
     found = solve(spun, drives | {("A", 2): (0.0, 3.0, 40.0)}, one.guess)
@@ -213,7 +283,10 @@ def test_a_spin_that_is_driven_changes_no_force_of_a_slender_coupler():
 
 def test_a_loop_out_of_reach_is_refused():
     one = rssr(0)
-    far = [dataclasses.replace(j, at_parent=(9, 9, 9)) if j.name == "Q" else j for j in one.mechanism.joints]
+    far = [
+        dataclasses.replace(j, at_parent=(9, 9, 9)) if j.name == "Q" else j
+        for j in one.mechanism.joints
+    ]
     with pytest.raises(OpenLoopError, match="does not close"):
         solve(Mechanism(one.mechanism.bodies, far), one.drives(0.0), one.guess)
 
@@ -236,13 +309,19 @@ def test_a_frame_is_right_handed():
     rng = np.random.default_rng(0)
     with pytest.raises(AssertionError, match="right-handed"):
         solve(
-            Mechanism([Rigid("body", 1.0)], [Joint("J", "weld", "ground", "body", orientation=-frame(direction(rng), rng))]),
+            Mechanism(
+                [Rigid("body", 1.0)],
+                [Joint("J", "weld", "ground", "body", orientation=-frame(direction(rng), rng))],
+            ),
             {},
         )
 
 
 def test_a_motion_that_skids_is_told_by_name():
     rolls = wheel(1)
-    faster = dataclasses.replace(rolls, laws=rolls.laws | {("shaft", 0): dataclasses.replace(rolls.laws["shaft", 0], speed=9.0)})
+    faster = dataclasses.replace(
+        rolls,
+        laws=rolls.laws | {("shaft", 0): dataclasses.replace(rolls.laws["shaft", 0], speed=9.0)},
+    )
     with pytest.raises(InconsistentError, match="the motion does not fulfil 'rolling'"):
         faster.solve(0.3)

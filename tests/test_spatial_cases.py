@@ -1,4 +1,6 @@
-"""The cases in space against numbers from elsewhere, closed forms, statics and energies that are worked out here."""
+"""The cases in space against numbers from elsewhere, closed forms, statics and energies that are
+worked out here.
+"""
 
 import dataclasses
 import math
@@ -38,9 +40,13 @@ def along(found, link):
 
 
 def rate(values, period):
-    """The rates of periodic rows over time (t, ...), without the last instant, from their Fourier series."""
+    """The rates of periodic rows over time (t, ...), without the last instant, from their Fourier
+    series.
+    """
     wave = 2j * np.pi * np.fft.fftfreq(len(values), period / len(values))
-    return np.fft.ifft(np.fft.fft(values, axis=0) * wave.reshape(-1, *[1] * (values.ndim - 1)), axis=0).real
+    return np.fft.ifft(
+        np.fft.fft(values, axis=0) * wave.reshape(-1, *[1] * (values.ndim - 1)), axis=0
+    ).real
 
 
 REFERENCES = {
@@ -68,14 +74,22 @@ def test_the_reference_numbers(name):
     for instant in data["instants"]:
         (i,) = np.flatnonzero(np.abs(found.t - float(instant["t"])) < 1e-12)
         for drive, joint in drives.items():
-            compare(found.unit(f"effort:{joint}"), float(instant["efforts"][drive]), found.effort(joint)[i])
+            compare(
+                found.unit(f"effort:{joint}"),
+                float(instant["efforts"][drive]),
+                found.effort(joint)[i],
+            )
         for joint, told in instant["reactions"].items():
             own = scene.mechanism.joints[joint]
             sign = 1 if own.child.body.name == data["mechanism"]["joints"][joint]["child"] else -1
             for unit, word, kind in (("N", "force", "f"), ("N m", "moment", "m")):
                 for axis, value in zip("xyz", told[word], strict=True):
                     if f"reaction:{joint}:{kind}{axis}" in found.series:
-                        compare(unit, sign * float(value), found.series[f"reaction:{joint}:{kind}{axis}"][i])
+                        compare(
+                            unit,
+                            sign * float(value),
+                            found.series[f"reaction:{joint}:{kind}{axis}"][i],
+                        )
                     else:
                         assert float(value) == 0.0
         for link, rows in instant["sections"].items():
@@ -96,14 +110,19 @@ def test_the_reference_numbers(name):
 
 def test_the_benchmarks_slider_at_its_start():
     slide = vm(scene_of("spatial_slider_crank"), t=(0, 0, 1), wanted=["motion"]).motion("guide")
-    assert (slide.value[0], slide.rate[0], slide.acceleration[0]) == pytest.approx((0.2, 0.24, 1.44), abs=1e-14)
+    assert (slide.value[0], slide.rate[0], slide.acceleration[0]) == pytest.approx(
+        (0.2, 0.24, 1.44), abs=1e-14
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "period"), [("rssr", 0.2 * math.pi), ("arm6", 2.0), ("delta", 0.5), ("spatial_slider_crank", None)]
+    ("name", "period"),
+    [("rssr", 0.2 * math.pi), ("arm6", 2.0), ("delta", 0.5), ("spatial_slider_crank", None)],
 )
 def test_over_a_cycle_drives_give_no_work(name, period):
-    """All is as it was, and nothing is lost: the brake of the four-bar works on a rocker that swings back."""
+    """All is as it was, and nothing is lost: the brake of the four-bar works on a rocker that
+    swings back.
+    """
     period = period or math.pi / 3
     scene = scene_of(name)
     found = vm(scene, t=(0, period, 513), wanted=["effort", "motion"])
@@ -119,14 +138,20 @@ def test_a_shaft_in_phase_passes_the_torque_it_is_loaded_with():
 
 
 def test_a_shaft_out_of_phase_pulsates():
-    """Hooke's joint twice: without inertia the torque follows the speed, between cos^2 and 1/cos^2 of the tube's angle."""
+    """Hooke's joint twice: without inertia the torque follows the speed, between cos^2 and 1/cos^2
+    of the tube's angle.
+    """
     square = 1 - (0.15 / 0.5) ** 2
     parameters = {"phase": math.pi / 2}
-    slow = vm(scene_of("cardan_shaft"), parameters=parameters | {"rpm": 1e-3}, wanted=["effort", "motion"])
+    slow = vm(
+        scene_of("cardan_shaft"), parameters=parameters | {"rpm": 1e-3}, wanted=["effort", "motion"]
+    )
     ratio = slow.motion("far:turn").rate / slow.motion("bearing").rate
     assert (ratio.min(), ratio.max()) == pytest.approx((square, 1 / square), rel=1e-12)
     assert np.max(np.abs(slow.effort("bearing") - 80.0 * ratio)) < 1e-7
-    assert (slow.effort("bearing").min(), slow.effort("bearing").max()) == pytest.approx((72.8, 80 / 0.91), abs=1e-7)
+    assert (slow.effort("bearing").min(), slow.effort("bearing").max()) == pytest.approx(
+        (72.8, 80 / 0.91), abs=1e-7
+    )
     fast = vm(scene_of("cardan_shaft"), parameters=parameters, wanted=["effort"]).effort("bearing")
     assert np.mean(fast[:-1]) == pytest.approx(80.0, abs=1e-11)
     assert np.ptp(fast) > 4 * np.ptp(slow.effort("bearing"))
@@ -135,17 +160,31 @@ def test_a_shaft_out_of_phase_pulsates():
 def test_an_arm_at_rest_holds_the_weights_beyond_each_joint():
     scene = scene_of("arm6")
     angles = dict(zip(scene.motion, (0.4, 0.9, -1.3, 0.7, 1.1, -0.5), strict=True))
-    found = vm(dataclasses.replace(scene, motion={joint: polynomial(angle) for joint, angle in angles.items()}), t=(0, 0, 1))
+    found = vm(
+        dataclasses.replace(
+            scene, motion={joint: polynomial(angle) for joint, angle in angles.items()}
+        ),
+        t=(0, 0, 1),
+    )
     constants = runpy.run_path(str(CASES / "arm6" / "case.py"))
     place = [vector(found, "pose", f"link{k}")[0] for k in range(1, 7)]
-    centres = [place[k] + length / 2 * along(found, f"link{k + 1}")[0] for k, length in enumerate(constants["LENGTHS"])]
+    centres = [
+        place[k] + length / 2 * along(found, f"link{k + 1}")[0]
+        for k, length in enumerate(constants["LENGTHS"])
+    ]
     R = vector(found, "pose", "tool", [f"{a}{b}" for a in "xyz" for b in "xyz"])[0].reshape(3, 3)
     centres.append(vector(found, "pose", "tool")[0] + np.array([0.05, 0.01, 0.0]) @ R)
     masses = (*constants["MASSES"], 5.0)
     axes = [UP, *(vector(found, "pose", f"link{k}", ("zx", "zy", "zz"))[0] for k in (1, 2))]
-    axes += [along(found, "link3")[0], vector(found, "pose", "link4", ("zx", "zy", "zz"))[0], along(found, "link5")[0]]
+    axes += [
+        along(found, "link3")[0],
+        vector(found, "pose", "link4", ("zx", "zy", "zz"))[0],
+        along(found, "link5")[0],
+    ]
     for k, joint in enumerate(angles):
-        beyond = sum(np.cross(c - place[k], m * G * UP) for c, m in zip(centres[k:], masses[k:], strict=True))
+        beyond = sum(
+            np.cross(c - place[k], m * G * UP) for c, m in zip(centres[k:], masses[k:], strict=True)
+        )
         assert found.effort(joint)[0] == pytest.approx(axes[k] @ beyond, abs=1e-12 * 200), joint
 
 
@@ -156,10 +195,19 @@ def test_a_deltas_platform_does_not_turn():
 
 
 def test_a_deltas_motors_share_a_circle():
-    """On a level circle about the middle each motor does what the one before it did a third of a turn earlier."""
-    laws = {"tool:slide_1": harmonic(0.0, 0.1, 2.0, math.pi / 2), "tool:slide_2": harmonic(0.0, 0.1, 2.0)}
-    scene = dataclasses.replace(scene_of("delta"), motion=laws | {"tool:slide_3": polynomial(-0.62)})
-    found = vm(scene, t=(0.0, 0.5, 301), wanted=["effort", "section:arm0", "section:arm1"], xi=(0, 1, 3))
+    """On a level circle about the middle each motor does what the one before it did a third of a
+    turn earlier.
+    """
+    laws = {
+        "tool:slide_1": harmonic(0.0, 0.1, 2.0, math.pi / 2),
+        "tool:slide_2": harmonic(0.0, 0.1, 2.0),
+    }
+    scene = dataclasses.replace(
+        scene_of("delta"), motion=laws | {"tool:slide_3": polynomial(-0.62)}
+    )
+    found = vm(
+        scene, t=(0.0, 0.5, 301), wanted=["effort", "section:arm0", "section:arm1"], xi=(0, 1, 3)
+    )
     efforts = [found.effort(f"motor{k}")[:-1] for k in range(3)]
     size = np.max(np.abs(efforts))
     assert np.ptp(efforts[0]) > 0.1 * size
@@ -170,30 +218,47 @@ def test_a_deltas_motors_share_a_circle():
 
 
 def test_a_delta_at_rest_holds_its_weights():
-    """In the middle each motor's effort is a third of the rise of the weights' energy with the arms' angle."""
+    """In the middle each motor's effort is a third of the rise of the weights' energy with the
+    arms' angle.
+    """
     scene = scene_of("delta")
     laws = {f"tool:slide_{k}": polynomial(place) for k, place in ((1, 0.0), (2, 0.0), (3, -0.62))}
     found = vm(dataclasses.replace(scene, motion=laws), t=(0, 0, 1), wanted=["effort", "motion"])
-    upper, angle, masses = 0.3, found.motion("motor0").value[0], {"arm": 0.4, "bar": 0.12, "platform": 0.5}
+    upper, angle, masses = (
+        0.3,
+        found.motion("motor0").value[0],
+        {"arm": 0.4, "bar": 0.12, "platform": 0.5},
+    )
     out, down = 0.2 + upper * math.cos(angle) - 0.06, -0.62 + upper * math.sin(angle)
     assert math.hypot(out, down) == pytest.approx(0.65, abs=1e-14)
     # out^2 + down^2 stays what it is.
     knee = -upper * math.cos(angle)
     platform = (out * upper * math.sin(angle) - down * upper * math.cos(angle)) / down
-    rise = 3 * masses["arm"] * knee / 2 + 6 * masses["bar"] * (knee + platform) / 2 + masses["platform"] * platform
+    rise = (
+        3 * masses["arm"] * knee / 2
+        + 6 * masses["bar"] * (knee + platform) / 2
+        + masses["platform"] * platform
+    )
     for k in range(3):
         assert found.effort(f"motor{k}")[0] == pytest.approx(G * rise / 3, abs=1e-12)
 
 
 def test_a_suspension_at_rest():
-    """Six equations of the hub, for the forces along five bars and the effort; half a bar's weight is across it at each end."""
-    found = vm(scene_of("five_link_suspension"), parameters={"travel": 0.0}, t=(0, 0, 1), xi=(0, 1, 3))
+    """Six equations of the hub, for the forces along five bars and the effort; half a bar's weight
+    is across it at each end.
+    """
+    found = vm(
+        scene_of("five_link_suspension"), parameters={"travel": 0.0}, t=(0, 0, 1), xi=(0, 1, 3)
+    )
     told = runpy.run_path(str(CASES / "five_link_suspension" / "case.py"))
     wheel, weight = np.array(told["WHEEL"]), 0.9 * G
     top, low = np.array([0.0, 0.45, 0.75]), wheel - [0.0, 0.08, 0.02]
     distance = np.linalg.norm(top - low)
     bars, across, lengths = [], [], []
-    given = [(wheel - [0.0, 0.03, 0.0], -18.0 * G * UP), (wheel * [1, 1, 0], np.array([0.0, -2500.0, 4000.0]))]
+    given = [
+        (wheel - [0.0, 0.03, 0.0], -18.0 * G * UP),
+        (wheel * [1, 1, 0], np.array([0.0, -2500.0, 4000.0])),
+    ]
     given.append((low, 30e3 * (distance - 0.62) * (top - low) / distance))
     for inner, outer in told["BARS"].values():
         start, end = np.array(inner), np.array(outer)
@@ -202,24 +267,32 @@ def test_a_suspension_at_rest():
         across.append(-weight / 2 * (UP - (UP @ e) * e))
         given.append((end, across[-1]))
         bars.append((end, -e))
-    matrix = np.array([[*force, *np.cross(place, force)] for place, force in (*bars, (wheel, UP))]).T
+    matrix = np.array(
+        [[*force, *np.cross(place, force)] for place, force in (*bars, (wheel, UP))]
+    ).T
     right = -sum(np.array([*force, *np.cross(place, force)]) for place, force in given)
     *forces, effort = np.linalg.solve(matrix, right)
     size = np.max(np.abs(forces))
     assert found.effort("wheel:slide_3")[0] == pytest.approx(effort, abs=1e-12 * size)
     for k, (name, force) in enumerate(zip(told["BARS"], forces, strict=True)):
         section, back = found.section(name), bars[k][1]
-        assert section.axial[0, [0, -1]] == pytest.approx([force + weight * (back @ UP), force], abs=1e-12 * size), name
+        assert section.axial[0, [0, -1]] == pytest.approx(
+            [force + weight * (back @ UP), force], abs=1e-12 * size
+        ), name
         hub = vector(found, "reaction", f"{name}_hub", ("fx", "fy", "fz"))[0]
         assert np.max(np.abs(hub - (force * back + across[k]))) < 1e-12 * size, name
         level = math.hypot(*np.cross(back, UP))
-        assert section.bending[0] == pytest.approx([0, weight * level * lengths[k] / 8, 0], abs=1e-12), name
+        assert section.bending[0] == pytest.approx(
+            [0, weight * level * lengths[k] / 8, 0], abs=1e-12
+        ), name
 
 
 def test_what_a_suspensions_effort_gives_its_damper_takes():
     found = vm(scene_of("five_link_suspension"), t=(0, 1, 513), wanted=["effort", "motion"])
     hub = vector(found, "pose", "hub")[:-1]
-    R = vector(found, "pose", "hub", [f"{a}{b}" for a in "xyz" for b in "xyz"])[:-1].reshape(-1, 3, 3)
+    R = vector(found, "pose", "hub", [f"{a}{b}" for a in "xyz" for b in "xyz"])[:-1].reshape(
+        -1, 3, 3
+    )
     low = hub + (R[0] @ (np.array([0.0, 0.62, 0.28]) - hub[0])) @ R
     length = np.linalg.norm(low - np.array([0.0, 0.45, 0.75]), axis=1)
     given = np.mean((found.effort("wheel:slide_3") * found.motion("wheel:slide_3").rate)[:-1])
@@ -236,7 +309,9 @@ def test_bricards_loop_moves_and_one_force_is_open():
     for k in range(6):
         assert np.max(np.abs(np.cos(angles[k]) - (first, second)[k % 2])) < 1e-13
     assert np.max(np.abs(first + second + first * second)) < 1e-13
-    open_of = {str(output).split(":")[1] for output in found.left_open if output.group == "reaction"}
+    open_of = {
+        str(output).split(":")[1] for output in found.left_open if output.group == "reaction"
+    }
     assert open_of == {f"J{k}" for k in range(6)}
     assert all(np.isnan(found.outputs[output]).all() for output in found.left_open)
     assert np.isnan(found.section("link3").axial).all()
@@ -245,7 +320,11 @@ def test_bricards_loop_moves_and_one_force_is_open():
         base = vector(found, "pose", f"link{k}")[:-1]
         tip = base + 0.5 * along(found, f"link{k}")[:-1]
         v, w = rate(base, 1.0), rate(tip, 1.0)
-        energy = energy + 1.5 / 6 * np.sum(v * v + v * w + w * w, axis=1) + 1.5 * G * (base + tip)[:, 2] / 2
+        energy = (
+            energy
+            + 1.5 / 6 * np.sum(v * v + v * w + w * w, axis=1)
+            + 1.5 * G * (base + tip)[:, 2] / 2
+        )
     power = (found.effort("J0") * found.motion("J0").rate)[:-1]
     assert np.max(np.abs(power - rate(energy, 1.0))) < 1e-10 * np.max(np.abs(power))
 
@@ -254,7 +333,12 @@ def test_a_design_whose_small_quantities_are_rounding_is_judged():
     """Its loop is iterated over all instants, and looked at in a few."""
     scene = scene_of("cardan_shaft")
     designs = DesignEngine.of(scene, t=(0.0, 0.1, 33), rung=Rung("c"))
-    assert designs.failures(np.array(list(scene.mechanism.values({"aside": 0.05}).values())), derive(scene, ["all"])) == {}
+    assert (
+        designs.failures(
+            np.array(list(scene.mechanism.values({"aside": 0.05}).values())), derive(scene, ["all"])
+        )
+        == {}
+    )
 
 
 @pytest.mark.sampled(7)
@@ -272,7 +356,9 @@ def test_estimates_are_near_the_errors(name):
 def test_figures_can_be_drawn(name, tmp_path):
     scene = scene_of(name)
     link = {"rssr": "coupler", "cardan_shaft": "tube"}[name]
-    solution = evaluate(scene, t=(*scene.span, 31), xi=(0, 1, 11), wanted=["effort", "motion", f"section:{link}"])
+    solution = evaluate(
+        scene, t=(*scene.span, 31), xi=(0, 1, 11), wanted=["effort", "motion", f"section:{link}"]
+    )
     drawn = list(figures.draw(solution, None, tmp_path))
     assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
     assert {"mechanism", f"section_{link}"} <= {spec.name for spec, _ in drawn}

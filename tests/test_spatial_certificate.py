@@ -1,4 +1,6 @@
-"""The certificate of mechanisms in space: at the level of rounding whatever holds the bodies, and it sees what is wrong."""
+"""The certificate of mechanisms in space: at the level of rounding whatever holds the bodies, and
+it sees what is wrong.
+"""
 
 from dataclasses import replace
 
@@ -20,7 +22,13 @@ WHOLE = {"closure", "balance", "power", "ends"}
 def disturbed(solution, name, change):
     """The residuals of a solution one of whose arrays is otherwise."""
     output = Output.of(name)
-    return residuals(certify(replace(solution, outputs={**solution.outputs, output: change(solution.outputs[output])})))
+    return residuals(
+        certify(
+            replace(
+                solution, outputs={**solution.outputs, output: change(solution.outputs[output])}
+            )
+        )
+    )
 
 
 def off(values):
@@ -41,14 +49,22 @@ WRONG = [
     ("motion:B:turn_1", {"closure"}),
     ("motion:B:turn_2_rate", {"closure"}),
     ("motion:B:turn_2_acceleration", {"closure"}),
-    *((f"section:coupler:law:{member}", {"ends"}) for member in ("n0", "fy0", "fz0", "mx0", "my0", "mz0")),
-    *((f"section:crank:law:{member}", {"ends"}) for member in ("n1", "n2", "fy1", "fy2", "fz1", "fz2")),
+    *(
+        (f"section:coupler:law:{member}", {"ends"})
+        for member in ("n0", "fy0", "fz0", "mx0", "my0", "mz0")
+    ),
+    *(
+        (f"section:crank:law:{member}", {"ends"})
+        for member in ("n1", "n2", "fy1", "fy2", "fz1", "fz2")
+    ),
 ]
 
 
 @pytest.mark.parametrize(("name", "wrong"), WRONG, ids=[name for name, _ in WRONG])
 def test_what_is_wrong_is_seen(name, wrong):
-    """By the residual that says what is wrong; in a four-bar of skew axes, a universal joint closes it."""
+    """By the residual that says what is wrong; in a four-bar of skew axes, a universal joint closes
+    it.
+    """
     _, solution = evaluated("rsur", 0)
     clean = residuals(certify(solution))
     assert max(clean.values()) < 1e-13
@@ -58,7 +74,15 @@ def test_what_is_wrong_is_seen(name, wrong):
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
-    "name", ["pose:bar2:y", "pose:bar2:xx", "pose:bar2:yz", "reaction:H2:fy", "effort:travel:slide_3", "pose:hub:xz"]
+    "name",
+    [
+        "pose:bar2:y",
+        "pose:bar2:xx",
+        "pose:bar2:yz",
+        "reaction:H2:fy",
+        "effort:travel:slide_3",
+        "pose:hub:xz",
+    ],
 )
 def test_what_is_wrong_of_bars_is_seen(name):
     _, solution = evaluated("suspension", 0)
@@ -68,17 +92,28 @@ def test_what_is_wrong_of_bars_is_seen(name):
 def test_mirrored_axes_are_seen():
     """Of a bar too, of which nothing but what is reported tells how its cross-section is turned."""
     _, solution = evaluated("suspension", 0)
-    axes = {Output("pose", "bar1", f"z{x}"): -solution.outputs[Output("pose", "bar1", f"z{x}")] for x in "xyz"}
+    axes = {
+        Output("pose", "bar1", f"z{x}"): -solution.outputs[Output("pose", "bar1", f"z{x}")]
+        for x in "xyz"
+    }
     found = residuals(certify(replace(solution, outputs={**solution.outputs, **axes})))
     assert found["closure"] > 0.1
 
 
 def test_several_turns_of_a_drive_have_couples_that_are_reciprocal():
-    """A spherical joint whose three turns are driven: its effort about one axis does no work about the others."""
+    """A spherical joint whose three turns are driven: its effort about one axis does no work about
+    the others.
+    """
     m = SpatialMechanism("top")
-    body = m.link("top", length=0.4, mass=1.2, centre=(0.2, 0.01, 0.02), inertia=(0.01, 0.03, 0.025))
+    body = m.link(
+        "top", length=0.4, mass=1.2, centre=(0.2, 0.01, 0.02), inertia=(0.01, 0.03, 0.025)
+    )
     m.spherical("S", m.ground, body, axis=(0, 0, 1), second=(1, 0, 0))
-    laws = [motion.polynomial(0.2, 3.0), motion.harmonic(0.4, 0.3, 1.0), motion.polynomial(0.0, -5.0, 1.0)]
+    laws = [
+        motion.polynomial(0.2, 3.0),
+        motion.harmonic(0.4, 0.3, 1.0),
+        motion.polynomial(0.0, -5.0, 1.0),
+    ]
     solution = evaluate(Scene(m, {"S": laws}, t=(0, 1, 21)))
     assert set(residuals(solution.certificate)) == {"closure", "balance", "power"}
     assert max(residuals(solution.certificate).values()) < 1e-14
@@ -86,7 +121,9 @@ def test_several_turns_of_a_drive_have_couples_that_are_reciprocal():
 
 
 def constrained():
-    """A universal joint's turns in proportion, a screw's angle by a point's height, and a spring to a point mass on a slide."""
+    """A universal joint's turns in proportion, a screw's angle by a point's height, and a spring to
+    a point mass on a slide.
+    """
     m = SpatialMechanism("constrained")
     arm, nut = (
         m.link("arm", length=0.5, mass=1.0),
@@ -108,7 +145,9 @@ def constrained():
     )
 
 
-@pytest.mark.parametrize("name", ["multiplier:tie", "multiplier:follow", "load:twist:mx", "load:spring:fy", "effort:P"])
+@pytest.mark.parametrize(
+    "name", ["multiplier:tie", "multiplier:follow", "load:twist:mx", "load:spring:fy", "effort:P"]
+)
 def test_equations_springs_and_point_masses_are_balanced(name):
     scene = constrained()
     solution = evaluate(scene)
@@ -119,7 +158,9 @@ def test_equations_springs_and_point_masses_are_balanced(name):
 
 
 def hung_on_masses(m):
-    """A bar between two point masses on lines, and a force on it: no joint gives its direction's rate, and its ends do."""
+    """A bar between two point masses on lines, and a force on it: no joint gives its direction's
+    rate, and its ends do.
+    """
     a, b, bar = m.point_mass("a", 1.0), m.point_mass("b", 2.0), m.link("bar", length=0.5, mass=1.0)
     m.prismatic("P", m.ground, a, axis=(1, 0, 0))
     m.prismatic("Q", m.ground, b, axis=(0.1, 1, 0.2))
@@ -131,7 +172,11 @@ def hung_on_masses(m):
 
 def on_a_mass(m):
     """A link whose base is at a point mass, turned by the link at its tip."""
-    a, b, c = m.point_mass("a", 1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.5, mass=1.0)
+    a, b, c = (
+        m.point_mass("a", 1.0),
+        m.link("b", length=0.5, mass=1.0),
+        m.link("c", length=0.5, mass=1.0),
+    )
     m.prismatic("P", m.ground, a, axis=(1, 0, 0))
     m.spherical("S", a, b)
     m.revolute("R", m.ground.at(0.3, 0.2, 0.1), c, axis=(0, 0, 1))
@@ -140,7 +185,9 @@ def on_a_mass(m):
 
 
 def in_a_slot(m):
-    """A link's tip in a slot of another one, which closes the loop: its slide is told, its turns are not."""
+    """A link's tip in a slot of another one, which closes the loop: its slide is told, its turns
+    are not.
+    """
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.0)
     m.revolute("A", m.ground, a, axis=(0, 0.1, 1))
     m.universal("B", m.ground.at(0.3, -0.4, 0.05), b, axis=(0, 0, 1), second=(0, 1, 0))
@@ -163,16 +210,23 @@ def at_rest(m):
 
 
 def backward(m):
-    """A chain whose joints are declared from its end to the ground: a screw, a turn and a slide run against the tree."""
+    """A chain whose joints are declared from its end to the ground: a screw, a turn and a slide run
+    against the tree.
+    """
     a, b = m.link("a", length=0.4, mass=1.0), m.link("b", length=0.3, mass=0.6)
     m.screw("N", a, m.ground.at(0.1, 0.2, 0.3), axis=(0.6, 0, 0.8), lead=0.1, turned=[("x", 0.4)])
     m.cylindrical("C", b.at(0.1, 0.02, 0), a.tip, axis=(1, 0, 0), turned=[("z", 0.7), ("y", 0.3)])
     m.force("push", b.tip, y=5.0, turning=True)
-    return {"N": motion.polynomial(0.1, 3.0), "C": [motion.harmonic(0, 0.1, 1.0), motion.polynomial(0.2, -2.0, 1.0)]}, {}
+    return {
+        "N": motion.polynomial(0.1, 3.0),
+        "C": [motion.harmonic(0, 0.1, 1.0), motion.polynomial(0.2, -2.0, 1.0)],
+    }, {}
 
 
 def rolling_arm(m):
-    """A link that turns about its own axis, on one that turns about z: of its axis one rate is nothing but rounding."""
+    """A link that turns about its own axis, on one that turns about z: of its axis one rate is
+    nothing but rounding.
+    """
     a, b = m.link("a", length=0.4, mass=1.0), m.link("b", length=0.3, mass=0.6)
     m.revolute("A", m.ground, a, axis=(0, 0, 1))
     m.revolute("B", a.tip, b, axis=(1, 0, 0))
@@ -181,11 +235,20 @@ def rolling_arm(m):
 
 def lift(m):
     """A screw that makes several turns: what it lifts goes on."""
-    m.screw("N", m.ground, m.link("nut", length=0.1, mass=1.0), axis=(0.6, 0, 0.8), lead=0.1, turned=[("y", 0.3)])
+    m.screw(
+        "N",
+        m.ground,
+        m.link("nut", length=0.1, mass=1.0),
+        axis=(0.6, 0, 0.8),
+        lead=0.1,
+        turned=[("y", 0.3)],
+    )
     return {"N": motion.polynomial(0.1, 20.0, 1.0)}, {}
 
 
-@pytest.mark.parametrize("declare", [hung_on_masses, on_a_mass, in_a_slot, light, at_rest, backward, rolling_arm, lift])
+@pytest.mark.parametrize(
+    "declare", [hung_on_masses, on_a_mass, in_a_slot, light, at_rest, backward, rolling_arm, lift]
+)
 def test_whatever_holds_the_bodies(declare):
     m = SpatialMechanism(declare.__name__)
     laws, posture = declare(m)
@@ -200,20 +263,32 @@ def test_whatever_holds_the_bodies(declare):
 
 
 def test_many_turns_do_not_blur_what_is_judged():
-    """A drive of ten million radians, far from the origin: angles have lost seven digits, and their phases are known."""
+    """A drive of ten million radians, far from the origin: angles have lost seven digits, and their
+    phases are known.
+    """
     m = SpatialMechanism("many")
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.3, mass=1.0)
     m.revolute("A", m.ground.at(5, 6, 7), a, axis=(0, 1, 1))
     m.universal("B", a.tip, b, axis=(0, 0, 1), second=(0, 1, 0))
-    laws = {"A": motion.polynomial(0, 1e4), "B": [motion.polynomial(0, 2e3), motion.polynomial(0, 1e3)]}
+    laws = {
+        "A": motion.polynomial(0, 1e4),
+        "B": [motion.polynomial(0, 2e3), motion.polynomial(0, 1e3)],
+    }
     solution = evaluate(Scene(m, laws, t=(0, 1000, 101)))
     assert max(residuals(solution.certificate).values()) < 1e-11
     assert solution.certified
 
 
 def drawn(generator):
-    """A vector each of whose components is zero by structure, one number, or an array; and the same as NumPy has it, (5, 3)."""
-    kinds = (lambda: 0.0, lambda: 1.0, lambda: float(generator.normal()), lambda: generator.normal(size=5))
+    """A vector each of whose components is zero by structure, one number, or an array; and the same
+    as NumPy has it, (5, 3).
+    """
+    kinds = (
+        lambda: 0.0,
+        lambda: 1.0,
+        lambda: float(generator.normal()),
+        lambda: generator.normal(size=5),
+    )
     vector = Vector(*(kinds[k]() for k in generator.integers(0, 4, 3)))
     return vector, whole(vector)
 
@@ -234,11 +309,16 @@ def test_vectors_are_those_of_numpy(seed):
     np.testing.assert_allclose(whole(a.cross(b)), np.cross(p, q), **near)
     np.testing.assert_allclose(np.broadcast_to(a.dot(b), 5), np.sum(p * q, axis=1), **near)
     np.testing.assert_allclose(np.broadcast_to(a.size, 5), np.linalg.norm(p, axis=1), **near)
-    axis, angle = np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float), generator.normal(size=5)
+    axis, angle = (
+        np.array([(0, 0, 1), (0.6, 0, 0.8), (2 / 3, -1 / 3, 2 / 3)][seed % 3], float),
+        generator.normal(size=5),
+    )
     axes = Axes.about(Vector(*axis.tolist()), angle)
     turned = np.stack([rotation(axis, one) for one in angle])
     np.testing.assert_allclose(whole(axes.turn(b)), (turned @ q[..., None])[..., 0], **near)
-    np.testing.assert_allclose(whole(axes.resolve(b)), (np.swapaxes(turned, 1, 2) @ q[..., None])[..., 0], **near)
+    np.testing.assert_allclose(
+        whole(axes.resolve(b)), (np.swapaxes(turned, 1, 2) @ q[..., None])[..., 0], **near
+    )
     np.testing.assert_allclose(whole(axes.carry(axes).x), (turned @ turned)[:, :, 0], **near)
     np.testing.assert_allclose(whole(axes.inverse.turn(b)), whole(axes.resolve(b)), **near)
     assert np.max(axes.under(axes).off(GROUND)) < 1e-15

@@ -1,4 +1,6 @@
-"""Mechanisms in space, evaluated: all is as the oracle has it, in every way of evaluating them, and files hold it."""
+"""Mechanisms in space, evaluated: all is as the oracle has it, in every way of evaluating them, and
+files hold it.
+"""
 
 import math
 
@@ -16,8 +18,12 @@ from lagrange_casadi.store.runs import check
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 WHOLE = {"closure", "balance", "power", "ends"}
-CASES = [("tree", seed) for seed in range(12)] + [("loop", seed) for seed in range(8)] + [("arm", 0)]
-CASES += [(name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm") for seed in range(2)]
+CASES = (
+    [("tree", seed) for seed in range(12)] + [("loop", seed) for seed in range(8)] + [("arm", 0)]
+)
+CASES += [
+    (name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm") for seed in range(2)
+]
 CASES += [("anyhow", seed) for seed in range(35)]
 OVER_CONSTRAINED = ("planar_four_bar", "planar_slider_crank", "bennett", "bricard")
 ROUNDING = 1e-12
@@ -38,8 +44,19 @@ def test_all_is_as_the_oracle_has_it_and_certified(case):
     assert max(found.values()) < ROUNDING
     assert solution.certified
     true = {k: drawn.solve(float(solution.t[k])) for k in SOME}
-    force = max(1.0, *(float(np.abs(x[:3].astype(float)).max()) for one in true.values() for x in one.reactions.values()))
-    twist = max(float(np.abs(x[3:].astype(float)).max()) for one in true.values() for x in one.reactions.values())
+    force = max(
+        1.0,
+        *(
+            float(np.abs(x[:3].astype(float)).max())
+            for one in true.values()
+            for x in one.reactions.values()
+        ),
+    )
+    twist = max(
+        float(np.abs(x[3:].astype(float)).max())
+        for one in true.values()
+        for x in one.reactions.values()
+    )
     moment = max(1.0, twist, force * drawn.solve(0.0).size)
     for k, one in true.items():
         compare_motion(drawn, solution, k, one)
@@ -48,14 +65,19 @@ def test_all_is_as_the_oracle_has_it_and_certified(case):
             assert near(own[k], effort, moment), joint
         for joint, reaction in one.reactions.items():
             for i, member in enumerate(REACTION):
-                own = solution.outputs.get(Output("reaction", joint, member), np.zeros_like(solution.t))
+                own = solution.outputs.get(
+                    Output("reaction", joint, member), np.zeros_like(solution.t)
+                )
                 if (joint, member) in one.open:
                     assert np.isnan(own).all(), (joint, member)
                 elif np.isfinite(own).all():
                     assert near(own[k], reaction[i], force if i < 3 else moment), (joint, member)
                 else:
                     # What is open at any instant is told at none.
-                    assert any((joint, member) in drawn.solve(float(t)).open for t in solution.t), (joint, member)
+                    assert any((joint, member) in drawn.solve(float(t)).open for t in solution.t), (
+                        joint,
+                        member,
+                    )
         for rod in rods:
             compare_sections(drawn, solution, k, one, rod, force, moment)
     assert bool(solution.left_open) == any(bool(one.open) for one in true.values())
@@ -64,7 +86,10 @@ def test_all_is_as_the_oracle_has_it_and_certified(case):
 
 def compare_motion(drawn, solution, k, one):
     places = postures(drawn, float(solution.t[k]))
-    fast = max(1.0, *(abs(float(x)) for _, rate, change in one.coordinates.values() for x in (rate, change)))
+    fast = max(
+        1.0,
+        *(abs(float(x)) for _, rate, change in one.coordinates.values() for x in (rate, change)),
+    )
     for name, value in places.items():
         if name in solution.description["unmeasured"]:
             continue
@@ -79,21 +104,36 @@ def compare_motion(drawn, solution, k, one):
             assert near(own.acceleration[k], change, 100 * fast), name
     for body, pose in one.poses.items():
         told = solution.pose(body)
-        assert np.allclose([told.x[k], told.y[k], told.z[k]], pose.r.astype(float), rtol=0, atol=1e-12), body
+        assert np.allclose(
+            [told.x[k], told.y[k], told.z[k]], pose.r.astype(float), rtol=0, atol=1e-12
+        ), body
         spun = body in solution.description["bars"]
         axes = np.array(pose.R, float).T
-        assert np.allclose(told.axes[k][: 1 if spun else 3], axes[: 1 if spun else 3], rtol=0, atol=1e-12), body
+        assert np.allclose(
+            told.axes[k][: 1 if spun else 3], axes[: 1 if spun else 3], rtol=0, atol=1e-12
+        ), body
 
 
 def compare_sections(drawn, solution, k, one, rod, force, moment):
     section = solution.section(rod)
     for i, xi in enumerate(solution.xi):
-        told, shut = one.sections[rod].at(float(xi)).astype(float), ~np.array(one.open_section(rod, float(xi)))
+        told, shut = (
+            one.sections[rod].at(float(xi)).astype(float),
+            ~np.array(one.open_section(rod, float(xi))),
+        )
         own = np.array([getattr(section, name)[k, i] for name in SECTION])
         if rod in solution.description["bars"]:
             # A bar's cross-section has axes of its own: its spin is anyone's.
-            own, told, shut = spun(own), spun(told), np.array([shut[0], shut[1:3].all(), shut[3], shut[4:].all()])
-        sizes = (force, force, force, moment, moment, moment) if len(own) > 4 else (force, force, moment, moment)
+            own, told, shut = (
+                spun(own),
+                spun(told),
+                np.array([shut[0], shut[1:3].all(), shut[3], shut[4:].all()]),
+            )
+        sizes = (
+            (force, force, force, moment, moment, moment)
+            if len(own) > 4
+            else (force, force, moment, moment)
+        )
         for value, other, determined, size in zip(own, told, shut, sizes, strict=True):
             if np.isnan(value):
                 # What two stations leave open is told on neither side of them.
@@ -111,7 +151,9 @@ def spun(forces):
 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize(
-    "case", [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)], ids=lambda case: case[0]
+    "case",
+    [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)],
+    ids=lambda case: case[0],
 )
 def test_a_file_holds_it_all(case, tmp_path):
     _, solution = evaluated(*case)
@@ -125,16 +167,24 @@ def test_a_file_holds_it_all(case, tmp_path):
 
 @pytest.mark.parametrize("kind", ["prismatic", "cylindrical", "screw"])
 def test_either_body_of_a_guide_may_be_the_parent(kind):
-    """A slender rod slides through a turning bush: told from the bush to the rod, and from the rod to the bush."""
+    """A slender rod slides through a turning bush: told from the bush to the rod, and from the rod
+    to the bush.
+    """
     told = []
     for sign in (1, -1):
         m = SpatialMechanism("guide")
         bush, rod = m.link("bush", length=0.5, mass=1.0), m.link("rod", length=0.6, mass=2.0)
         m.universal("A", m.ground, bush, axis=(0, 0, 1), second=(0, 1, 0))
         ends = (bush.tip, rod) if sign > 0 else (rod, bush.tip)
-        getattr(m, kind)("B", *ends, axis=(sign, 0, 0), **({"lead": 0.3} if kind == "screw" else {}))
+        getattr(m, kind)(
+            "B", *ends, axis=(sign, 0, 0), **({"lead": 0.3} if kind == "screw" else {})
+        )
         laws = {"A": (motion.polynomial(0.3, 0.7, 0.5), motion.polynomial(0.1, -0.4, 0.8))}
-        laws |= {name: motion.polynomial(-0.2, 0.4, 0.3) for name in m.coordinates if name.startswith("B")}
+        laws |= {
+            name: motion.polynomial(-0.2, 0.4, 0.3)
+            for name in m.coordinates
+            if name.startswith("B")
+        }
         told.append(evaluate(Scene(m, laws, t=(0, 0.5, 5)), wanted=["effort", "reaction:A"]))
     one, other = told
     for name in (key for key in one.series if key.startswith(("effort:", "reaction:A:"))):
@@ -142,7 +192,9 @@ def test_either_body_of_a_guide_may_be_the_parent(kind):
 
 
 def turning_crank(turns=3, **options):
-    """A slider-crank whose crank and rod are joined so that they slide too, along the pin: that joint closes the loop."""
+    """A slider-crank whose crank and rod are joined so that they slide too, along the pin: that
+    joint closes the loop.
+    """
     m = SpatialMechanism("crank")
     crank, rod, ram = (
         m.link("crank", length=0.1, mass=1.0),
@@ -154,11 +206,19 @@ def turning_crank(turns=3, **options):
     m.revolute("B", rod.tip, ram, axis=(0, 0, 1))
     m.prismatic("Q", m.ground, ram, axis=(1, 0, 0))
     posture = {"A:turn": -0.3, "A:slide": 0.0, "B": 0.1, "Q": 0.45}
-    return Scene(m, {"O": motion.polynomial(0.2, 6.0)}, t=(0, turns * math.tau / 6.0, 60 * turns + 1), posture=posture, **options)
+    return Scene(
+        m,
+        {"O": motion.polynomial(0.2, 6.0)},
+        t=(0, turns * math.tau / 6.0, 60 * turns + 1),
+        posture=posture,
+        **options,
+    )
 
 
 def test_angles_that_loops_set_go_on():
-    """Whether they are coordinates or are measured: over turns each grows by what its rate gives."""
+    """Whether they are coordinates or are measured: over turns each grows by
+    what its rate gives.
+    """
     solution = evaluate(turning_crank())
     assert solution.certified
     for name in ("A:turn", "B"):
@@ -166,7 +226,9 @@ def test_angles_that_loops_set_go_on():
         assert np.abs(np.diff(own.value)).max() < 1.0, name
         steps = np.diff(solution.t) * (own.rate[1:] + own.rate[:-1]) / 2
         assert np.abs(np.diff(own.value) - steps).max() < 1e-2, name
-    assert solution.motion("A:turn").value[-1] - solution.motion("A:turn").value[0] == pytest.approx(-3 * math.tau, abs=1e-9)
+    assert solution.motion("A:turn").value[-1] - solution.motion("A:turn").value[
+        0
+    ] == pytest.approx(-3 * math.tau, abs=1e-9)
     assert solution.motion("B").value[-1] == pytest.approx(solution.motion("B").value[0], abs=1e-9)
 
 
@@ -182,15 +244,24 @@ def test_angles_that_loops_set_go_on():
     ids=["planar", "skew", "out of phase", "in phase"],
 )
 def test_a_table_of_the_cycle_gives_the_same(made, values):
-    """In phase, no force goes with the rate: all that do are rounding, and none is taken for what does not repeat."""
+    """In phase, no force goes with the rate: all that do are rounding, and none is taken for what
+    does not repeat.
+    """
     scene = made()
-    exact, found = evaluate(scene, parameters=values), evaluate(scene, parameters=values, table=1e-6)
+    exact, found = (
+        evaluate(scene, parameters=values),
+        evaluate(scene, parameters=values, table=1e-6),
+    )
     assert found.certified
     assert found.undetermined == exact.undetermined
     assert set(residuals(found.certificate)) == ({"closure"} if found.left_open else WHOLE)
     for name in exact.names():
         if exact.determined(name):
-            like = [other for other in exact.names() if exact.unit(other) == exact.unit(name) and exact.determined(other)]
+            like = [
+                other
+                for other in exact.names()
+                if exact.unit(other) == exact.unit(name) and exact.determined(other)
+            ]
             size = max(np.abs(exact.array(other)).max() for other in like)
             assert np.abs(found.array(name) - exact.array(name)).max() <= 2e-6 * size + 1e-12, name
 
@@ -198,7 +269,11 @@ def test_a_table_of_the_cycle_gives_the_same(made, values):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("family", "options", "limit"),
-    [("loop", {"newton": 3}, 1e-9), ("rsup", {"backend": "vm"}, 1e-12), ("rsup", {"precision": "single"}, 1e-3)],
+    [
+        ("loop", {"newton": 3}, 1e-9),
+        ("rsup", {"backend": "vm"}, 1e-12),
+        ("rsup", {"precision": "single"}, 1e-3),
+    ],
 )
 def test_other_ways_to_evaluate_are_certified_too(family, options, limit):
     drawn = plain(FAMILIES[family](1))
@@ -211,7 +286,9 @@ def test_other_ways_to_evaluate_are_certified_too(family, options, limit):
 def test_estimates_bound_what_rounding_does():
     """Of every output: what single precision is off, beside what it is estimated to be."""
     drawn = plain(FAMILIES["rsur"](1))
-    exact, single = (evaluate(declared(drawn), xi=(0, 1, RATIOS), precision=p) for p in ("double", "single"))
+    exact, single = (
+        evaluate(declared(drawn), xi=(0, 1, RATIOS), precision=p) for p in ("double", "single")
+    )
     for name in exact.names():
         gap = np.abs(exact.array(name) - single.array(name)).max()
         assert exact.errors[name] <= 1e-9 * (np.abs(exact.array(name)).max() + 1.0), name
@@ -224,7 +301,9 @@ def test_a_point_that_slides_off_its_link_is_noted():
     beam, nut = m.link("beam", length=0.5, mass=1.0), m.link("nut", length=0.05, mass=0.2)
     m.revolute("A", m.ground, beam, axis=(0, 0, 1))
     m.screw("N", beam.at(0.4), nut, axis=(1, 0, 0), lead=0.1)
-    scene = Scene(m, {"A": motion.polynomial(0.1), "N": motion.polynomial(0.0, math.tau)}, t=(0, 2, 5))
+    scene = Scene(
+        m, {"A": motion.polynomial(0.1), "N": motion.polynomial(0.0, math.tau)}, t=(0, 2, 5)
+    )
     for wanted in (["all"], ["motion"]):
         (told,) = evaluate(scene, wanted=wanted).notes
         assert told.startswith("joint 'N' leaves link 'beam' at t = 1.5 s (xi/l from 0.8 to 1.2)")

@@ -1,4 +1,6 @@
-"""Friction in space: random trees and loops whose pins, guides, sleeves and threads rub, and what a cycle takes."""
+"""Friction in space: random trees and loops whose pins, guides, sleeves and threads rub, and what a
+cycle takes.
+"""
 
 import math
 
@@ -23,15 +25,24 @@ _RUBS = 4
 
 
 def rubbing(case):
-    """A random mechanism, an instant, and friction in up to four of its coordinates that move; none in others."""
+    """A random mechanism, an instant, and friction in up to four of its coordinates that move; none
+    in others.
+    """
     name, seed = case
     drawn = plain(tree(seed, kinds=RUBBING) if name == "tree" else FAMILIES[name](seed))
     rng, t = np.random.default_rng((seed, 78)), 0.4 * drawn.span
     found, rubs = drawn.solve(t), []
     open_ = {joint for joint, _ in found.open}
     for joint in drawn.mechanism.joints:
-        own = [Rub(joint, k) for k in (range(1) if joint.kind == "spherical" else range(joint.count))]
-        if joint.kind not in RUBBING or joint.name in open_ or len(rubs) >= _RUBS or (drawn.idle and joint.kind == "spherical"):
+        own = [
+            Rub(joint, k) for k in (range(1) if joint.kind == "spherical" else range(joint.count))
+        ]
+        if (
+            joint.kind not in RUBBING
+            or joint.name in open_
+            or len(rubs) >= _RUBS
+            or (drawn.idle and joint.kind == "spherical")
+        ):
             continue
         if min(abs(rub.rate(found)) for rub in own) < 1e-3:
             continue
@@ -47,7 +58,9 @@ def rubbing(case):
 
 
 def compare(case):
-    """The largest gap of forces over the largest of them; None where nothing rubs, or what rubs jams."""
+    """The largest gap of forces over the largest of them; None where nothing rubs, or what rubs
+    jams.
+    """
     drawn, t, rubs = rubbing(case)
     if not rubs:
         return None
@@ -62,23 +75,34 @@ def compare(case):
     true, frictions = solve_rubbing(drawn, rubs, t)
     force = max(1.0, *(np.abs(r[:3]).max() for r in true.reactions.values()))
     moment = max(force * true.size, *(np.abs(r[3:]).max() for r in true.reactions.values()))
-    gaps = [abs(solution.series[f"friction:{name}:along"][0] - found) / moment for name, found in frictions.items()]
+    gaps = [
+        abs(solution.series[f"friction:{name}:along"][0] - found) / moment
+        for name, found in frictions.items()
+    ]
     for (joint, k), effort in true.efforts.items():
-        gaps.append(abs(solution.effort(coordinate(drawn.mechanism.joint(joint), k))[0] - effort) / moment)
+        gaps.append(
+            abs(solution.effort(coordinate(drawn.mechanism.joint(joint), k))[0] - effort) / moment
+        )
     for joint, reaction in true.reactions.items():
         for value, member in zip(reaction, REACTION, strict=True):
             name = f"reaction:{joint}:{member}"
             if (joint, member) not in true.open and name in solution.series:
-                gaps.append(abs(solution.series[name][0] - value) / (force if member[0] == "f" else moment))
+                gaps.append(
+                    abs(solution.series[name][0] - value) / (force if member[0] == "f" else moment)
+                )
     for rod in (name for name in drawn.rods if not (drawn.idle and name == "coupler")):
         for k, xi in enumerate(RATIOS[:2]):
             shut, own = true.open_section(rod, xi), solution.section(rod)
-            for value, member, is_open in zip(true.sections[rod].at(xi), SECTION, shut, strict=True):
+            for value, member, is_open in zip(
+                true.sections[rod].at(xi), SECTION, shut, strict=True
+            ):
                 size = force if member in ("axial", "shear_y", "shear_z") else moment
                 gaps.append(0.0 if is_open else abs(getattr(own, member)[0, k] - value) / size)
     for rub in rubs:
         taken = -frictions[rub.name] * rub.rate(true)
-        assert solution.series[f"friction:{rub.name}:loss"][0] == pytest.approx(taken, rel=1e-9, abs=1e-10 * moment)
+        assert solution.series[f"friction:{rub.name}:loss"][0] == pytest.approx(
+            taken, rel=1e-9, abs=1e-10 * moment
+        )
     return max(gaps)
 
 
@@ -97,7 +121,9 @@ def test_most_of_them_rub_and_every_kind_does():
 
 
 def balanced(scene, period, instants=721):
-    """Of a cycle, what drives give and what friction takes; forces that depend on places alone give back what they took."""
+    """Of a cycle, what drives give and what friction takes; forces that depend on places alone give
+    back what they took.
+    """
     solution = evaluate(scene, t=(0.0, period, instants))
     assert solution.certified
     drives = list(scene.laws)
@@ -105,7 +131,8 @@ def balanced(scene, period, instants=721):
     losses = {name: values for name, values in solution.series.items() if name.endswith(":loss")}
     assert all((values >= 0.0).all() and values.max() > 0.0 for values in losses.values())
     step = period / (instants - 1)
-    # The powers jump where something turns back; their sum, the gain of energy, does not, so trapezia are exact.
+    # The powers jump where something turns back; their sum, the gain of energy, does not, so
+    # trapezia are exact.
     return np.sum(given[:-1]) * step, np.sum(sum(losses.values())[:-1]) * step
 
 
@@ -113,7 +140,9 @@ def test_over_a_turn_the_drive_gives_what_friction_takes():
     """A spatial slider-crank whose main bearing and guide rub."""
     m = SpatialMechanism("skew")
     crank, rod = m.link("crank", length=0.1, mass=0.4), m.link("rod", length=0.4, mass=0.8)
-    slider = m.link("slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3))
+    slider = m.link(
+        "slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3)
+    )
     main = m.revolute("O", m.ground, crank, axis=(0, 0, 1))
     m.spherical("A", crank.tip, rod)
     m.spherical("B", rod.tip, slider)
@@ -144,14 +173,18 @@ def test_over_a_turn_the_drive_gives_what_a_ball_takes():
     """The rod of a spatial slider-crank, whose spin a universal joint holds."""
     m = SpatialMechanism("ball")
     crank, rod = m.link("crank", length=0.1, mass=0.4), m.link("rod", length=0.4, mass=0.8)
-    slider = m.link("slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3))
+    slider = m.link(
+        "slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3)
+    )
     m.revolute("O", m.ground, crank, axis=(0, 0, 1))
     m.friction("rub", m.spherical("A", crank.tip, rod), mu=0.1, radius=0.02, viscous=1e-3)
     m.universal("B", rod.tip, slider, axis=(0, 0, 1), second=(0, 1, 0))
     m.prismatic("guide", m.ground.at(0.0, 0.05, 0.1), slider, axis=(1, 0, 0))
     m.force("push", slider, x=-150.0)
     posture = {"guide": 0.4, "B:turn_1": "-7 deg", "B:turn_2": "165 deg"}
-    given, taken = balanced(Scene(m, {"O": polynomial(0.0, 20.0)}, t=(0, 1, 2), posture=posture), math.tau / 20.0)
+    given, taken = balanced(
+        Scene(m, {"O": polynomial(0.0, 20.0)}, t=(0, 1, 2), posture=posture), math.tau / 20.0
+    )
     assert taken > 1.0
     assert given == pytest.approx(taken, rel=1e-10)
 
@@ -163,19 +196,29 @@ def on_a_ball(law):
     ball = m.spherical("ball", m.ground, wheel, axis=(0, 0, 1), second=(0, 1, 0))
     m.force("aside", wheel, x=30.0)
     m.friction("rub", ball, mu=0.2, radius=0.03)
-    return Scene(m, {"ball:turn_1": law, "ball:turn_2": polynomial(0.0), "ball:turn_3": polynomial(0.0)}, t=(0, 1, 5))
+    return Scene(
+        m,
+        {"ball:turn_1": law, "ball:turn_2": polynomial(0.0), "ball:turn_3": polynomial(0.0)},
+        t=(0, 1, 5),
+    )
 
 
 def test_a_ball_rubs_as_a_pin_where_it_turns_about_one_line():
-    """A couple mu r |F| against the turning: RecurDyn and Adams have the same, by the radius of the ball."""
+    """A couple mu r |F| against the turning: RecurDyn and Adams have the same, by the radius of the
+    ball.
+    """
     couple = 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0)
     for speed in (4.0, -4.0):
         solution = evaluate(on_a_ball(polynomial(0.1, speed)))
         assert solution.certified
-        assert solution.effort("ball:turn_1") == pytest.approx(math.copysign(couple, speed), rel=1e-12)
+        assert solution.effort("ball:turn_1") == pytest.approx(
+            math.copysign(couple, speed), rel=1e-12
+        )
         assert solution.series["friction:rub:along"] == pytest.approx(-couple, rel=1e-12)
         assert solution.series["friction:rub:loss"] == pytest.approx(4.0 * couple, rel=1e-12)
-        assert solution.series["load:rub:mz"] == pytest.approx(-math.copysign(couple, speed), rel=1e-12)
+        assert solution.series["load:rub:mz"] == pytest.approx(
+            -math.copysign(couple, speed), rel=1e-12
+        )
 
 
 def test_a_ball_at_rest_is_open_and_where_it_turns_back_it_goes_on():
@@ -190,15 +233,24 @@ def test_a_ball_at_rest_is_open_and_where_it_turns_back_it_goes_on():
         assert not solution.resting.any()
         inertia = 0.1 * solution.motion("ball:turn_1").acceleration[0]
         rubs = solution.effort("ball:turn_1")[0] - inertia
-        assert rubs == pytest.approx((-1) ** (k + 1) * 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0), rel=1e-9)
+        assert rubs == pytest.approx(
+            (-1) ** (k + 1) * 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0), rel=1e-9
+        )
 
 
 def test_what_a_ball_cannot_have_is_told():
     m = SpatialMechanism("wrong")
-    m.spherical("ball", m.ground, m.link("wheel", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1)))
+    m.spherical(
+        "ball",
+        m.ground,
+        m.link("wheel", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1)),
+    )
     told = {"mu": 0.1, "radius": 0.02}
     for more, words in (
-        ({"along": "turn_1"}, "joint 'ball' rubs along the way in which it turns, and not along 'turn_1'"),
+        (
+            {"along": "turn_1"},
+            "joint 'ball' rubs along the way in which it turns, and not along 'turn_1'",
+        ),
         ({"length": 0.1}, "joint 'ball' turns and has no length of guidance; valid: radius"),
         ({"radius": None}, "joint 'ball' turns; expected radius"),
     ):

@@ -16,13 +16,17 @@ def solved(instant, digits):
 
 
 def differences(instant, found, weighed=False):
-    """The largest difference from an entry's numbers, by kind, relative to the largest of that kind in the instant.
+    """The largest difference from an entry's numbers, by kind, relative to the largest of that kind
+    in the instant.
 
-    Where it is ``weighed``, weights are among the forces: a falling body's other forces are their differences.
+    Where it is ``weighed``, weights are among the forces: a falling body's other forces are their
+    differences.
     """
     data, gaps, sizes = instant.data, {}, {}
     if weighed:
-        weight = sum(float(body.mass) for body in instant.mechanism.bodies) * max(abs(float(g)) for g in instant.mechanism.gravity)
+        weight = sum(float(body.mass) for body in instant.mechanism.bodies) * max(
+            abs(float(g)) for g in instant.mechanism.gravity
+        )
         sizes = {"force": [weight], "moment": [weight * found.size]}
 
     def compare(kind, given, own):
@@ -37,7 +41,9 @@ def differences(instant, found, weighed=False):
         for kind, part in (("force", slice(3)), ("moment", slice(3, 6))):
             if kind in given:
                 compare(kind, given[kind], found.reactions[joint][part])
-    idle = {name for name, motions in found.idle.items() if np.max(np.abs(motions), initial=0.0) > 1e-9}
+    idle = {
+        name for name, motions in found.idle.items() if np.max(np.abs(motions), initial=0.0) > 1e-9
+    }
     for rod, given in data.get("sections", {}).items():
         for one in given:
             own, R = found.sections[rod].at(numbers(one["xi"]).item()), found.sections[rod].axes()
@@ -46,7 +52,10 @@ def differences(instant, found, weighed=False):
             local = numbers(one["local"])
             if rod in idle:
                 # The spin is anyone's. What is along the rod is not, nor the resultants across it.
-                local, own = (np.array([x[0], x[1:3] @ x[1:3], 0 * x[0], x[3], x[4:] @ x[4:], 0 * x[0]]) for x in (local, own))
+                local, own = (
+                    np.array([x[0], x[1:3] @ x[1:3], 0 * x[0], x[3], x[4:] @ x[4:], 0 * x[0]])
+                    for x in (local, own)
+                )
                 local[1::3], own[1::3] = local[1::3] ** 0.5, own[1::3] ** 0.5
             compare("force", local[:3], own[:3])
             compare("moment", local[3:], own[3:])
@@ -62,7 +71,9 @@ def test_the_numbers_are_met_in_doubles(name):
     entry = Entry(name)
     for k in range(entry.count):
         instant = entry.instant(k)
-        for kind, gap in differences(instant, solved(instant, None), weighed=name not in COMPUTED).items():
+        for kind, gap in differences(
+            instant, solved(instant, None), weighed=name not in COMPUTED
+        ).items():
             assert gap < 2e-14, (kind, k, gap)
 
 
@@ -84,7 +95,9 @@ def test_published_reactions_in_the_childs_axes(name):
         assert all(abs(effort) < 1e-10 for effort in found.efforts.values())
         for joint, given in instant.data["published_child_axes"].items():
             R = found.poses[instant.mechanism.joint(joint).child].R
-            own = np.concatenate([R.T @ found.reactions[joint][:3], R.T @ found.reactions[joint][3:]])
+            own = np.concatenate(
+                [R.T @ found.reactions[joint][:3], R.T @ found.reactions[joint][3:]]
+            )
             told = [float(x) for x in (*given["force"], *given["torque"])]
             assert np.max(np.abs(own - told)) < accuracy
 
@@ -98,10 +111,17 @@ def test_published_forces_on_the_ground(name):
         found, joint = solved(instant, None), instant.mechanism.joints[0]
         force, moment = found.reactions["joint"][:3], found.reactions["joint"][3:]
         arm = (found.poses["pendulum"].at(joint.at_child) - joint.at_parent).astype(float)
-        published = {key: np.array([float(x) for x in told]) for key, told in instant.data["published"].items()}
-        assert all(abs(effort) < 1e-10 * (1 + np.linalg.norm(arm)) for effort in found.efforts.values())
+        published = {
+            key: np.array([float(x) for x in told])
+            for key, told in instant.data["published"].items()
+        }
+        assert all(
+            abs(effort) < 1e-10 * (1 + np.linalg.norm(arm)) for effort in found.efforts.values()
+        )
         assert np.max(np.abs(-force - published["force"])) < 7e-4
-        assert np.max(np.abs(-(moment + np.cross(arm, force)) - published["torque"])) < 7e-4 * (1 + np.linalg.norm(arm))
+        assert np.max(np.abs(-(moment + np.cross(arm, force)) - published["torque"])) < 7e-4 * (
+            1 + np.linalg.norm(arm)
+        )
 
 
 @pytest.mark.parametrize("k", range(3))
@@ -110,8 +130,16 @@ def test_a_sphere_driven_by_three_angles_moves_as_one_driven_by_its_orientation(
     instant = Entry("sdfast_chain").instant(k)
     q, rate, acceleration = (numbers(row) for row in instant.data["gimbal_xyz_angles"])
     told = {("gimbal", i): (q[i], rate[i], acceleration[i]) for i in range(3)}
-    joints = [dataclasses.replace(j, orientation=AXES) if j.name == "gimbal" else j for j in instant.mechanism.joints]
-    found = solve(dataclasses.replace(instant.mechanism, joints=joints), instant.drives | told, instant.guess, 40)
+    joints = [
+        dataclasses.replace(j, orientation=AXES) if j.name == "gimbal" else j
+        for j in instant.mechanism.joints
+    ]
+    found = solve(
+        dataclasses.replace(instant.mechanism, joints=joints),
+        instant.drives | told,
+        instant.guess,
+        40,
+    )
     pose = instant.data["poses"]["body3"]
     assert np.max(np.abs(found.poses["body3"].R - numbers(pose["R"]))) < 1e-28
     for name, given in instant.data["reactions"].items():

@@ -1,4 +1,6 @@
-"""What follows from the section laws of a spatial scene: its solution and file, peaks between instants, sweeps, figures, C."""
+"""What follows from the section laws of a spatial scene: its solution and file, peaks between
+instants, sweeps, figures, C.
+"""
 
 import importlib
 import itertools
@@ -44,7 +46,10 @@ def dense(scene):
 def fine(scene, solution):
     """The peaks between instants by their names."""
     quantities = DesignEngine.of(scene, rung=Rung("vm")).quantities
-    return {peak.name: peak for peak in refine(scene, solution, [name for name in quantities if "load" not in name])}
+    return {
+        peak.name: peak
+        for peak in refine(scene, solution, [name for name in quantities if "load" not in name])
+    }
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +65,9 @@ def no_certificate(monkeypatch):
     def residuals(solution, *_):
         return {name: np.zeros(solution.t.size) for name in ("balance", "power", "closure", "ends")}
 
-    monkeypatch.setattr(importlib.import_module("lagrange_casadi.studies.solving"), "residuals_of", residuals)
+    monkeypatch.setattr(
+        importlib.import_module("lagrange_casadi.studies.solving"), "residuals_of", residuals
+    )
 
 
 def test_a_solution_names_its_quantities(solution):
@@ -69,12 +76,18 @@ def test_a_solution_names_its_quantities(solution):
     assert {f"reaction:A:{member}" for member in ("fx", "fy", "fz", "mx", "my", "mz")} <= names
     reaction, section = solution.reaction("A"), solution.section("beam")
     np.testing.assert_allclose(
-        solution.array("reaction:A:resultant"), np.linalg.norm([reaction.fx, reaction.fy, reaction.fz], axis=0)
+        solution.array("reaction:A:resultant"),
+        np.linalg.norm([reaction.fx, reaction.fy, reaction.fz], axis=0),
     )
-    np.testing.assert_allclose(solution.array("reaction:A:moment"), np.linalg.norm([reaction.mx, reaction.my, reaction.mz], axis=0))
+    np.testing.assert_allclose(
+        solution.array("reaction:A:moment"),
+        np.linalg.norm([reaction.mx, reaction.my, reaction.mz], axis=0),
+    )
     np.testing.assert_array_equal(reaction.resultant, solution.array("reaction:A:resultant"))
     np.testing.assert_array_equal(reaction.moment, solution.array("reaction:A:moment"))
-    np.testing.assert_allclose(section.bending, np.hypot(section.bending_y, section.bending_z), rtol=1e-14)
+    np.testing.assert_allclose(
+        section.bending, np.hypot(section.bending_y, section.bending_z), rtol=1e-14
+    )
     assert solution.unit("section:beam:torsion") == solution.unit("reaction:A:moment") == "N m"
     found = solution.statistics("section:beam:bending")
     assert 0.0 <= found.smallest.value <= np.min(section.bending)
@@ -86,7 +99,9 @@ def test_poses_have_axes(scene):
     pose = found.pose("bead")
     assert pose.angle is None
     assert pose.axes.shape == (61, 3, 3)
-    np.testing.assert_allclose(pose.axes @ np.swapaxes(pose.axes, 1, 2), np.broadcast_to(np.eye(3), (61, 3, 3)), atol=1e-14)
+    np.testing.assert_allclose(
+        pose.axes @ np.swapaxes(pose.axes, 1, 2), np.broadcast_to(np.eye(3), (61, 3, 3)), atol=1e-14
+    )
     np.testing.assert_array_equal(pose.axes[:, 2, 0], found.array("pose:bead:zx"))
     np.testing.assert_array_equal(pose.z, found.array("pose:bead:z"))
 
@@ -133,40 +148,79 @@ def test_peaks_between_instants_are_those_of_dense_ones(scene, solution, dense):
 
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
-    ("rung", "tolerance"), [(Rung("lanes"), 1e-11), (Rung("c"), 1e-11), (Rung("vm"), 1e-11), (Rung("lanes", "single"), 1e-5)]
+    ("rung", "tolerance"),
+    [
+        (Rung("lanes"), 1e-11),
+        (Rung("c"), 1e-11),
+        (Rung("vm"), 1e-11),
+        (Rung("lanes", "single"), 1e-5),
+    ],
 )
 def test_designs_have_the_same_peaks(scene, fine, half, rung, tolerance):
     designs = DesignEngine.of(scene, rung=rung)
     outcome = designs.evaluate(np.array([[6.0], [3.0]]))
     assert (outcome.status == 0).all()
-    largest = {unit: max(abs(peak.value) for peak in fine.values() if peak.unit == unit) for unit in ("N", "N m")}
-    assert {"reaction:A:resultant", "reaction:A:moment", "section:beam:bending", "section:taper:torsion"} <= set(fine)
+    largest = {
+        unit: max(abs(peak.value) for peak in fine.values() if peak.unit == unit)
+        for unit in ("N", "N m")
+    }
+    assert {
+        "reaction:A:resultant",
+        "reaction:A:moment",
+        "section:beam:bending",
+        "section:taper:torsion",
+    } <= set(fine)
     for k, name in enumerate(designs.quantities):
         peak = fine[name]
-        assert abs(abs(outcome.value[0, k]) - abs(peak.value)) <= tolerance * (abs(peak.value) + 1e-2 * largest[peak.unit]), name
+        assert abs(abs(outcome.value[0, k]) - abs(peak.value)) <= tolerance * (
+            abs(peak.value) + 1e-2 * largest[peak.unit]
+        ), name
     bending = designs.quantities.index("section:beam:bending")
-    assert outcome.value[1, bending] == pytest.approx(half.peak("section:beam:bending").value, rel=1e-6)
+    assert outcome.value[1, bending] == pytest.approx(
+        half.peak("section:beam:bending").value, rel=1e-6
+    )
 
 
 def test_a_sweep_keeps_peaks_along_links(scene, solution):
     engine, timing, xi = DesignEngine.of(scene), scene.timing(None), np.linspace(0, 1, 7)
     data = engine.graph.data
     harvest = Harvest(engine, data, engine.graph, "histories", InstantAxis.of(data, timing), xi)
-    found = dict(zip((column.name for column in harvest.columns), harvest.evaluate(np.array([[6.0], [2.0]])), strict=True))
+    found = dict(
+        zip(
+            (column.name for column in harvest.columns),
+            harvest.evaluate(np.array([[6.0], [2.0]])),
+            strict=True,
+        )
+    )
     attributes = {column.name: column.attributes for column in harvest.columns}
     for link in LINKS:
         law = solution.section(link).law
         for force in SPACE.forces:
             grid = law.on_grid(force, xi)
-            whole, largest = found[f"history:section:{link}:{force}"][0], found[f"peak_at:section:{link}:{force}"][0]
+            whole, largest = (
+                found[f"history:section:{link}:{force}"][0],
+                found[f"peak_at:section:{link}:{force}"][0],
+            )
             np.testing.assert_allclose(whole, grid, rtol=0, atol=1e-12 * (np.abs(grid).max() + 1.0))
-            np.testing.assert_allclose(np.abs(largest), np.abs(grid).max(axis=0), rtol=0, atol=1e-12 * (np.abs(grid).max() + 1.0))
-    assert attributes["peak:section:beam:shear"]["long_name"] == "largest in size over time: resultant shear force"
+            np.testing.assert_allclose(
+                np.abs(largest),
+                np.abs(grid).max(axis=0),
+                rtol=0,
+                atol=1e-12 * (np.abs(grid).max() + 1.0),
+            )
+    assert (
+        attributes["peak:section:beam:shear"]["long_name"]
+        == "largest in size over time: resultant shear force"
+    )
 
 
 def test_estimates_of_errors_bound_what_single_precision_loses(scene, no_certificate):
-    exact, single = (evaluate(scene, precision=precision, xi=(0, 1, 5)) for precision in ("double", "single"))
-    ratios = np.array([0.0, 0.1234, 0.7654, 1.0])  # no station is at one of them: single precision may put it on the other side
+    exact, single = (
+        evaluate(scene, precision=precision, xi=(0, 1, 5)) for precision in ("double", "single")
+    )
+    ratios = np.array(
+        [0.0, 0.1234, 0.7654, 1.0]
+    )  # no station is at one of them: single precision may put it on the other side
     for link, force in itertools.product(LINKS, SPACE.forces):
         here, there = (found.section(link).law.on_grid(force, ratios) for found in (exact, single))
         error = single.errors[f"section:{link}:{force}"]
@@ -179,7 +233,9 @@ def test_figures_show_six_maps_and_two_resultants(solution):
     assert SectionMaps("section_beam", "beam") in specs
     assert any(isinstance(spec, MechanismDrawing) for spec in specs)
     drawn = {spec.name: spec.quantities for spec in specs if spec.name.startswith("reaction_")}
-    assert drawn["reaction_A"] == tuple(f"reaction:A:{member}" for member in ("fx", "fy", "fz", "mx", "my", "mz"))
+    assert drawn["reaction_A"] == tuple(
+        f"reaction:A:{member}" for member in ("fx", "fy", "fz", "mx", "my", "mz")
+    )
     # On the joint's own axes only where what is open is not along the ground's.
     assert "reaction_own_A" not in drawn
     figure = SectionMaps("section_taper", "taper").draw(solution)
@@ -189,31 +245,44 @@ def test_figures_show_six_maps_and_two_resultants(solution):
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_exported_c_gives_the_section_forces(scene, precision, no_certificate, tmp_path):
-    """Its own test against golden vectors passes, without a warning; and each force is called by its name."""
+    """Its own test against golden vectors passes, without a warning; and each force is called by
+    its name.
+    """
     export(scene, tmp_path / "out", name="beams", precision=precision)
     header = (tmp_path / "out" / "beams.h").read_text()
     for force in SPACE.forces:
         assert f"beams_real {force};" in header
     result = cc(["cc", "-std=c99"], tmp_path / "out", "beams.c", "selftest.c")
     assert result.returncode == 0, result.stderr
-    told = subprocess.run([tmp_path / "out" / "program"], capture_output=True, text=True, check=False)
+    told = subprocess.run(
+        [tmp_path / "out" / "program"], capture_output=True, text=True, check=False
+    )
     assert told.returncode == 0, told.stdout
     assert "resultant bending moment" in (tmp_path / "out" / "selftest.c").read_text()
 
 
 def test_slides_that_stand_still_are_rounding_beside_what_turns():
-    """A loop that cannot move is carried about: no length changes, so no other length tells how little rounding is."""
+    """A loop that cannot move is carried about: no length changes, so no other length tells how
+    little rounding is.
+    """
     m = SpatialMechanism("carried")
-    a, b = m.link("a", length=0.5, mass=1.0), m.link("b", length=0.4, mass=2.0, centre=(0.1, 0.2, 0.0), inertia=(0.1, 0.1, 0.15))
+    a, b = (
+        m.link("a", length=0.5, mass=1.0),
+        m.link("b", length=0.4, mass=2.0, centre=(0.1, 0.2, 0.0), inertia=(0.1, 0.1, 0.15)),
+    )
     m.universal("U", m.ground, a, axis=(0.3, 0.5, 1.0), second=(1.0, 0.4, -0.5))
     m.cylindrical("C", a.tip, b, axis=(0.2, 1.0, -0.4))
     m.planar("P", a.at(0.1, 0.2, 0.1), b.at(0.3, 0.1, -0.2), axis=(1.0, -0.3, 0.5))
     laws = {"U": (motion.polynomial(0.0, 0.7, 0.2), motion.polynomial(0.0, -0.5, 0.1))}
     scene = Scene(m, laws, t=(0, 0.3, 9), posture={"C:slide": 0.0, "C:turn": 0.0})
-    found = {peak.name: abs(peak.value) for peak in refine(scene, evaluate(scene, wanted=["motion"]))}
+    found = {
+        peak.name: abs(peak.value) for peak in refine(scene, evaluate(scene, wanted=["motion"]))
+    }
     designs = DesignEngine.of(scene, ["motion"], rung=Rung("vm"))
     outcome = designs.evaluate(np.zeros((1, 0)))
     assert outcome.status.tolist() == [Status.OK]
     for name, value in zip(designs.quantities, outcome.value[0], strict=True):
-        if name.startswith(("motion:C:slide_", "motion:P:slide_")) and name.endswith(("rate", "acceleration")):
+        if name.startswith(("motion:C:slide_", "motion:P:slide_")) and name.endswith(
+            ("rate", "acceleration")
+        ):
             assert max(abs(value), found[name]) < 1e-13, name

@@ -1,4 +1,6 @@
-"""Loads along links in space: every backend, sweeps and exported C; random ones are held against Newton and Euler elsewhere."""
+"""Loads along links in space: every backend, sweeps and exported C; random ones are held against
+Newton and Euler elsewhere.
+"""
 
 import math
 
@@ -18,7 +20,9 @@ pytestmark = pytest.mark.quick
 
 
 def test_a_mast_in_the_wind():
-    """A cantilever under q u^2 along y and an even load along z: shear and bending of the textbooks, and their sizes."""
+    """A cantilever under q u^2 along y and an even load along z: shear and bending of the
+    textbooks, and their sizes.
+    """
     m, l = SpatialMechanism("mast"), 4.0
     m.set_gravity(0.0, 0.0, 0.0)
     mast = m.link("mast", length=l, mass=0.0)
@@ -46,7 +50,9 @@ def test_a_mast_in_the_wind():
 
 
 def scene(**keywords):
-    """Two links that swing about crossed axes, a tapered one with a load on a part of it, and one without mass."""
+    """Two links that swing about crossed axes, a tapered one with a load on a part of it, and one
+    without mass.
+    """
     m = SpatialMechanism("crane")
     gust, start = m.parameter("gust", 1.0), m.parameter("start", 0.1, "m", low=0.0, high=0.3)
     boom = m.link("boom", length=0.8, density=density.polynomial(3.0, -2.0))
@@ -55,9 +61,18 @@ def scene(**keywords):
     m.revolute("luff", boom.tip, jib, axis=(0.1, 1.0, 0.3), turned=[("z", "35 deg")])
     m.weld("hook", jib.tip, m.point_mass("ball", 0.7))
     blow = gust * (1 + 0.3 * ca.sin(4 * m.time))
-    m.line_load("wind", boom, x=8 * blow, y=lambda xi: blow * (30 - 200 * xi**2), z=(-5.0, 12.0), between=(start, 0.7))
+    m.line_load(
+        "wind",
+        boom,
+        x=8 * blow,
+        y=lambda xi: blow * (30 - 200 * xi**2),
+        z=(-5.0, 12.0),
+        between=(start, 0.7),
+    )
     m.line_load("own", boom, z=lambda xi: m.rate(slew) * (3 - 8 * xi), turning=True)
-    m.line_load("flow", jib, y=lambda xi: 40 * xi * (0.5 - xi), z=-2.0, between=(0.0, 0.4), turning=True)
+    m.line_load(
+        "flow", jib, y=lambda xi: 40 * xi * (0.5 - xi), z=-2.0, between=(0.0, 0.4), turning=True
+    )
     m.force("pull", boom.at(0.45, 0.02, -0.03), x=3.0, y=-2.0, z=5.0)
     inside = m.results.section(boom, 0.3)
     m.output("moment", inside.bending_y + 2 * inside.bending_z, unit="N m")
@@ -74,10 +89,15 @@ def test_every_way_of_evaluating_agrees(tmp_path):
         found = evaluate(scene(), **way)
         assert found.certified
         for name in expected_.names():
-            gap, size = np.abs(found.array(name) - expected_.array(name)).max(), np.abs(expected_.array(name)).max()
+            gap, size = (
+                np.abs(found.array(name) - expected_.array(name)).max(),
+                np.abs(expected_.array(name)).max(),
+            )
             assert gap <= (1e-12 if "backend" in way else 1e-5) * max(size, 1.0), (way, name)
     law = expected_.section("boom").law
-    moment = law.at("bending_y", np.full((5, 1), 0.3)) + 2 * law.at("bending_z", np.full((5, 1), 0.3))
+    moment = law.at("bending_y", np.full((5, 1), 0.3)) + 2 * law.at(
+        "bending_z", np.full((5, 1), 0.3)
+    )
     np.testing.assert_allclose(expected_.output("moment"), moment[:, 0], rtol=0, atol=1e-13)
     save(expected_, tmp_path / "crane.h5")
     for force in SPACE.forces:
@@ -91,7 +111,13 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     one = scene(t=(0.0, 1.0, 41))
     made, told = exported(one, tmp_path, precision=precision)
     solution = solve(one, precision)
-    compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(one, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, precision)),
+        expected(one, told, solution),
+        told,
+        made,
+        solution,
+    )
 
 
 @pytest.mark.long
@@ -108,13 +134,17 @@ def test_peaks_between_instants_and_of_sweeps():
         for peak in refine(one, evaluate(one, parameters=parameters), forces):
             size = max(abs(peak.value), 1e-9)
             for found in swept:
-                assert abs(found.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * size, peak.name
+                assert abs(found.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * size, (
+                    peak.name
+                )
             assert abs(fine.peak(peak.name).value - peak.value) <= 1e-5 * size, peak.name
 
 
 def test_a_point_mass_bears_none():
     m = SpatialMechanism("bare")
-    with pytest.raises(DeclarationError, match="load 'wind': a line load acts along a link, and 'ball' is none"):
+    with pytest.raises(
+        DeclarationError, match="load 'wind': a line load acts along a link, and 'ball' is none"
+    ):
         m.line_load("wind", m.point_mass("ball", 1.0), z=1.0)
 
 

@@ -50,15 +50,21 @@ def sources(tmp_path_factory):
 
 
 # A bound is nearest where functions are inlined in one another, and iterated loops are one more.
-BUILT = [(case, rung, name) for case in CASES for rung in ("double", "single") for name in COMPILERS]
+BUILT = [
+    (case, rung, name) for case in CASES for rung in ("double", "single") for name in COMPILERS
+]
 BUILT += [(case, "newton", name) for case in ITERATED for name in COMPILERS if name.endswith("-O2")]
-BUILT += [(case, "slopes", name) for case in ("slider_crank", "v_twin", "excavator") for name in COMPILERS]
+BUILT += [
+    (case, "slopes", name) for case in ("slider_crank", "v_twin", "excavator") for name in COMPILERS
+]
 BUILT += [(case, "table", name) for case in ("slider_crank", "six_bar") for name in COMPILERS]
 
 
 @pytest.mark.sampled(197)
 @pytest.mark.parametrize(("case", "rung", "compiler"), BUILT)
-def test_the_stack_that_the_header_states_is_never_exceeded(case, rung, compiler, sources, tmp_path):
+def test_the_stack_that_the_header_states_is_never_exceeded(
+    case, rung, compiler, sources, tmp_path
+):
     command = (*COMPILERS[compiler], *FLAGS)
     if shutil.which(command[0]) is None:
         pytest.skip(f"there is no {command[0]}")
@@ -70,7 +76,11 @@ def test_the_stack_that_the_header_states_is_never_exceeded(case, rung, compiler
 def test_the_statement_is_of_use(tmp_path):
     """A bound of megabytes would never be exceeded, either."""
     source = exported("slider_crank", "double", tmp_path / "slider_crank")
-    assert stated(source.with_suffix(".h")) < 2 * deepest(("gcc", "-O0", *FLAGS), source, tmp_path) < 16_384
+    assert (
+        stated(source.with_suffix(".h"))
+        < 2 * deepest(("gcc", "-O0", *FLAGS), source, tmp_path)
+        < 16_384
+    )
 
 
 SOURCE = """

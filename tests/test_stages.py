@@ -28,16 +28,20 @@ from lagrange_casadi.judge.reference import reference
 
 DOUBLE = [Rung("vm"), Rung("c"), Rung("lanes")]
 BOUNDS = {"jansen_leg": 1e-5, "excavator": 3e-5, "cardan_shaft": 5e-6, "five_link_suspension": 1e-5}
-"""The loops of the leg come near a dead centre; thrusts of 240 kN leave the excavator's cylinders moments of 580 N m.
+"""The loops of the leg come near a dead centre; thrusts of 240 kN leave the excavator's cylinders
+moments of 580 N m.
 
-The cardan shaft's torque of 80 N m and lever of 0.5 m leave forces that are nil; the suspension's condition number is 10.
+The cardan shaft's torque of 80 N m and lever of 0.5 m leave forces that are nil; the suspension's
+condition number is 10.
 """
 _NIL = 1e-30
 SINGLE = [Rung("c", "single"), Rung("lanes", "single")]
 
 
 def gap(graph, t, rung, truth=None):
-    """The largest error of any column on a rung, relative to the peak of its kind; angles up to whole turns."""
+    """The largest error of any column on a rung, relative to the peak of its kind; angles up to
+    whole turns.
+    """
     p, kind = values(graph), unit_in(graph.data.kinds) if graph.data.space else kind_of
     table, _ = run(graph, t, p, rung)
     assert not table.status.any()
@@ -51,13 +55,19 @@ def gap(graph, t, rung, truth=None):
         if name in map(str, graph.loop_angles):
             off = off - math.tau * np.rint(off / math.tau)
         if not name.startswith("_"):
-            worst = max(worst, np.max(np.abs(off)) / (size[kind(name)] if size[kind(name)] > _NIL else 1.0))
+            worst = max(
+                worst, np.max(np.abs(off)) / (size[kind(name)] if size[kind(name)] > _NIL else 1.0)
+            )
     return worst
 
 
 def unit_in(kinds):
-    """In space whole motions and moments are nil, and not by structure: what has the same unit is measured by one peak."""
-    return lambda name: name if name.startswith("_") else Output.of(name).unit(kinds).replace("rad", "1")
+    """In space whole motions and moments are nil, and not by structure: what has the same unit is
+    measured by one peak.
+    """
+    return lambda name: (
+        name if name.startswith("_") else Output.of(name).unit(kinds).replace("rad", "1")
+    )
 
 
 def values(graph):
@@ -65,14 +75,19 @@ def values(graph):
 
 
 def exact(graph, t, **beside):
-    return np.array([[float(x) for x in row] for row in reference(graph, t, values(graph), **beside)]).T
+    return np.array(
+        [[float(x) for x in row] for row in reference(graph, t, values(graph), **beside)]
+    ).T
 
 
 @functools.cache
 def case(name, later):
     """A case's graph, three instants of its cycle so much later, and every column there."""
     scene = load_case(CASES / name).scene
-    graph, t = derive(scene, ["all"]), np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later
+    graph, t = (
+        derive(scene, ["all"]),
+        np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later,
+    )
     z = None if graph.newton is None else run(graph, t, values(graph), Rung("vm"))[0].iterated
     return graph, t, exact(graph, t, z=z)
 
@@ -102,7 +117,9 @@ def test_doubles_after_days(name, rung, later):
 @pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
 def test_singles_after_hours(name, rung):
-    """Andrews' squeezer is left out: at its acceleration three hours are 10^12 rad, which no pair of singles knows a phase of."""
+    """Andrews' squeezer is left out: at its acceleration three hours are 10^12 rad, which no pair
+    of singles knows a phase of.
+    """
     graph, t, truth = case(name, 1e4)
     assert gap(graph, t, rung, truth) < max(1e-5, BOUNDS.get(name, 0.0))
 
@@ -124,16 +141,22 @@ LOADS = {
     "time": lambda m, angle: 50.0 * ca.sin(100 * m.time) * (1 + ca.cos(100 * m.time - angle)),
     "size": lambda m, angle: ca.sin(ca.fabs(0.3 - 2 * angle)),
     "tangent": lambda m, angle: ca.tan(angle / 4) / (1 + ca.tan(angle / 4) ** 2),
-    "parameters": lambda m, angle, k: ca.sin(ca.sqrt(k) * m.time + k / 3) + ca.sin(angle / k - k**3 * m.time),
+    "parameters": lambda m, angle, k: (
+        ca.sin(ca.sqrt(k) * m.time + k / 3) + ca.sin(angle / k - k**3 * m.time)
+    ),
     "squares": lambda m, angle: ca.sin(1e-3 * m.time**2 - 1 / (angle + 1)),
-    "switched": lambda m, angle: ca.if_else(ca.fmod(m.time, 0.02) > 0.01, 4.0, 1.0) * ca.fmin(m.time, 2.0),
+    "switched": lambda m, angle: (
+        ca.if_else(ca.fmod(m.time, 0.02) > 0.01, 4.0, 1.0) * ca.fmin(m.time, 2.0)
+    ),
 }
 
 
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", LOADS)
 def test_loads_that_count(name):
-    """After a million radians in double; in single, after an hour, as in :func:`test_singles_after_hours`."""
+    """After a million radians in double; in single, after an hour, as in
+    :func:`test_singles_after_hours`.
+    """
     scene = counting(RAMP, LOADS[name], **({"k": 3.0} if name == "parameters" else {}))
     graph = derive(scene, ["load:load", "effort"])
     for later, rungs, allowed in ((2.5e4, DOUBLE, 1e-13), (4e3, SINGLE, 2e-5)):
@@ -198,10 +221,15 @@ def test_gears(ratio):
 
 
 def sprung():
-    """Torsion springs on pins that no drive is on: between a crank and its rod, and at a rocker's foot."""
+    """Torsion springs on pins that no drive is on: between a crank and its rod, and at a rocker's
+    foot.
+    """
     scene = four_bar()
     m = Mechanism("sprung")
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True))
+    a, b, c = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.torsion_spring("coil", m.revolute("A", a.tip, b), stiffness=1.5, angle=0.2, damping=0.05)
     m.revolute("B", b.tip, c.tip)
@@ -240,7 +268,9 @@ def two_drives():
     m.revolute("S", crank.tip, arm)
     m.revolute("O", m.ground, crank)
     times = np.linspace(3600.0, 3602.0, 21)
-    return Scene(m, {"S": samples(times, np.sin(times)), "O": polynomial(0.1, 50.0)}, t=(3600.0, 3602.0, 21))
+    return Scene(
+        m, {"S": samples(times, np.sin(times)), "O": polynomial(0.1, 50.0)}, t=(3600.0, 3602.0, 21)
+    )
 
 
 def test_steady_drives_beside_samples():
@@ -269,20 +299,30 @@ def drag_link(**keywords):
 
 def wheel_on_drag_link():
     m = Mechanism("wheel")
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", (0.3, 0.35, 0.32), (0.3, 0.5, 0.4), strict=True))
+    a, b, c = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in zip("abc", (0.3, 0.35, 0.32), (0.3, 0.5, 0.4), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("A", a.tip, b)
     m.revolute("B", b.tip, c.tip)
     foot = m.revolute("C", m.ground.at(0.1, 0.02), c)
     wheel = m.revolute("W", m.ground.at(0.5, 0.0), m.link("wheel", length=0.1, mass=0.2))
     m.gear("mesh", foot, wheel, ratio=-0.3)
-    return Scene(m, {"O": polynomial(0.2, 3.0)}, posture={"b": 2.2, "c": 1.6, "wheel": 0.0}, t=(0.0, 1.0, 2))
+    return Scene(
+        m, {"O": polynomial(0.2, 3.0)}, posture={"b": 2.2, "c": 1.6, "wheel": 0.0}, t=(0.0, 1.0, 2)
+    )
 
 
 def test_iterated_angles_are_kept_within_a_turn():
-    """Ten thousand turns of every link, in steps of a fifth of one; at their end as near as at their start."""
+    """Ten thousand turns of every link, in steps of a fifth of one; at their end as near as at
+    their start.
+    """
     law = {"O": polynomial(0.2, 2 * math.pi)}
-    scenes = (Scene(drag_link(pin=pin).mechanism, law, posture=TURNING, t=(0.0, 1.0, 2)) for pin in (pinned, Mechanism.revolute))
+    scenes = (
+        Scene(drag_link(pin=pin).mechanism, law, posture=TURNING, t=(0.0, 1.0, 2))
+        for pin in (pinned, Mechanism.revolute)
+    )
     iterated, closed = (derive(scene, ["reaction:C", "effort"]) for scene in scenes)
     assert iterated.newton is not None
     assert all(iterated.newton.turning)
@@ -296,10 +336,16 @@ def test_iterated_angles_are_kept_within_a_turn():
             assert np.max(gaps[-100:]) < allowed * np.max(np.abs(two.out[closed.names.index(name)]))
 
 
-@pytest.mark.parametrize(("rungs", "later", "allowed"), [(DOUBLE, 1e6, 1e-13), (SINGLE, 1e4, 1e-5)], ids=["double", "single"])
+@pytest.mark.parametrize(
+    ("rungs", "later", "allowed"),
+    [(DOUBLE, 1e6, 1e-13), (SINGLE, 1e4, 1e-5)],
+    ids=["double", "single"],
+)
 def test_iterated_loops_after_a_million_turns(rungs, later, allowed):
     m = drag_link(pin=pinned).mechanism
-    scene = Scene(m, {"O": polynomial(0.2, 2 * math.pi)}, posture=TURNING, t=(later, later + 1.0, 41))
+    scene = Scene(
+        m, {"O": polynomial(0.2, 2 * math.pi)}, posture=TURNING, t=(later, later + 1.0, 41)
+    )
     graph, t = derive(scene, ["reaction:C", "effort"]), np.linspace(*scene.span, scene.t[2])
     for rung in rungs:
         assert gap(graph, t, rung) < allowed
@@ -343,15 +389,35 @@ def test_from_few_turns_to_many():
 @pytest.mark.parametrize(
     ("scene", "instants", "expected"),
     [
-        (lambda: counting(polynomial(0.3), LOADS["harmonics"]), (1e6, 1e6 + 1), False),  # nothing turns
+        (
+            lambda: counting(polynomial(0.3), LOADS["harmonics"]),
+            (1e6, 1e6 + 1),
+            False,
+        ),  # nothing turns
         (lambda: counting(polynomial(0.3), LOADS["time"]), (1e6, 1e6 + 1), True),
         (lambda: counting(polynomial(0.3), LOADS["time"]), (0.0, 1.2), False),
         (lambda: counting(harmonic(0.0, 1.0, 1.0), LOADS["harmonics"]), (0.0, 20.0), False),
         (lambda: counting(harmonic(0.0, 1.0, 1.0), LOADS["harmonics"]), (0.0, 21.0), True),
-        (lambda: counting(polynomial(0.3), lambda m, angle, k: ca.sin(k), k=1e5), (0.0, 1.0), False),  # a parameter does not turn
-        (lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.fmod(angle, 1.0)), (0.0, 120.0), False),
-        (lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.fmod(angle, 1.0)), (-129.0, 0.0), True),
-        (lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.sin(50 * ca.sin(angle))), (0.0, 100.0), False),
+        (
+            lambda: counting(polynomial(0.3), lambda m, angle, k: ca.sin(k), k=1e5),
+            (0.0, 1.0),
+            False,
+        ),  # a parameter does not turn
+        (
+            lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.fmod(angle, 1.0)),
+            (0.0, 120.0),
+            False,
+        ),
+        (
+            lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.fmod(angle, 1.0)),
+            (-129.0, 0.0),
+            True,
+        ),
+        (
+            lambda: counting(polynomial(0.3, 1.0), lambda m, angle: ca.sin(50 * ca.sin(angle))),
+            (0.0, 100.0),
+            False,
+        ),
     ],
 )
 def test_what_counts(scene, instants, expected):
@@ -360,11 +426,15 @@ def test_what_counts(scene, instants, expected):
 
 
 def test_fixed_parameters_keep_the_phase_of_a_motion():
-    """Numbers for parameters that come after the arithmetic of pairs is written would be folded in doubles: rests were lost."""
+    """Numbers for parameters that come after the arithmetic of pairs is written would be folded in
+    doubles: rests were lost.
+    """
     m = Mechanism("arm")
     speed = m.parameter("speed", 7.3, "rad/s")
     m.revolute("O", m.ground, m.link("arm", length=0.5, mass=1.0))
-    law = controlled(derive(Scene(m, {"O": polynomial(0.0, speed)}), ["effort"]), "single", (7.3,)).law
+    law = controlled(
+        derive(Scene(m, {"O": polynomial(0.0, speed)}), ["effort"]), "single", (7.3,)
+    ).law
     single = dataclasses.replace(numpy_arithmetic(), constant=np.float32)
     for t in (1.1, 1e5 / 7, 1e6 / 3):
         high = np.float32(t)
@@ -378,12 +448,16 @@ def test_what_cannot_be_followed_is_not_in_single():
     scene = counting(RAMP, lambda m, angle: doubled(angle))
     graph = derive(scene, ["load:load"])
     assert not turns_many(graph, np.array([1e6]), values(graph))
-    with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
+    with pytest.raises(
+        DeclarationError, match="function 'instant' cannot be followed: it calls another one"
+    ):
         evaluate(scene, precision="single", wanted=["load:load"])
 
 
 def test_the_certificate_knows_what_reported_angles_can_tell():
-    """A thousand seconds on, angles are reported to 1e-11 rad; results are better, and are not said to be worse."""
+    """A thousand seconds on, angles are reported to 1e-11 rad; results are better, and are not said
+    to be worse.
+    """
     scene = load_case(CASES / "engine").scene
     solution = evaluate(scene, t=(1000.0, 1000.04, 201))
     assert np.max(solution.certificate["balance"]) < 1e-13

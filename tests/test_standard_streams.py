@@ -1,4 +1,6 @@
-"""The program: as a module; where its streams are closed, broken or full it does its work, and nothing goes into its files."""
+"""The program: as a module; where its streams are closed, broken or full it does its work, and
+nothing goes into its files.
+"""
 
 import os
 import shlex
@@ -36,11 +38,15 @@ def _case(tmp_path_factory):
 
 
 def shell(line, **keywords):
-    return subprocess.run(line, shell=True, capture_output=True, text=True, timeout=120, check=False, **keywords)
+    return subprocess.run(
+        line, shell=True, capture_output=True, text=True, timeout=120, check=False, **keywords
+    )
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("closed", ["2>&-", "<&-", "<&- 2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"])
+@pytest.mark.parametrize(
+    "closed", ["2>&-", "<&-", "<&- 2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"]
+)
 def test_streams_that_are_closed_stop_nothing(here, closed):
     done = shell(f"{PROGRAM} {RUN} {closed} && {PROGRAM} {SWEEP} {closed}")
     assert (done.returncode, done.stderr) == (0, "")
@@ -73,13 +79,19 @@ def test_a_reader_that_goes_early_is_no_error(here, command):
 def test_a_warning_that_nobody_hears_stops_nothing(here):
     """As of a cache that cannot be written."""
     (here / "file").write_text("")
-    done = shell(f"{PROGRAM} {RUN} --no-figures 2>/dev/full", env={**os.environ, "XDG_CACHE_HOME": str(here / "file")})
+    done = shell(
+        f"{PROGRAM} {RUN} --no-figures 2>/dev/full",
+        env={**os.environ, "XDG_CACHE_HOME": str(here / "file")},
+    )
     assert done.returncode == 0
     assert (here / "x.h5").exists()
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://nowhere.at_all", "nonsense", "TkAgg"])
+@pytest.mark.parametrize(
+    "backend",
+    ["module://matplotlib_inline.backend_inline", "module://nowhere.at_all", "nonsense", "TkAgg"],
+)
 def test_a_backend_that_a_notebook_set_draws_all_the_same(here, backend):
     done = shell(f"{PROGRAM} {RUN} --figures f", env={**os.environ, "MPLBACKEND": backend})
     assert (done.returncode, done.stderr) == (0, "")
@@ -100,7 +112,9 @@ def scene():
 """
 
 
-@pytest.mark.parametrize("raised", ["SystemExit('gone')", "BaseException('gone')", "ValueError('gone')"])
+@pytest.mark.parametrize(
+    "raised", ["SystemExit('gone')", "BaseException('gone')", "ValueError('gone')"]
+)
 def test_what_a_case_raises_later_is_one_line(here, tmp_path_factory, capfd, raised):
     path = tmp_path_factory.mktemp("late") / "case.py"
     path.write_text(LATE.format(raised=raised))

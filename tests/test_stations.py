@@ -1,4 +1,6 @@
-"""Stations at one place of a link, whose shares are open where their sum is not; and what acts beyond the link's ends."""
+"""Stations at one place of a link, whose shares are open where their sum is not; and what acts
+beyond the link's ends.
+"""
 
 import itertools
 import subprocess
@@ -27,14 +29,18 @@ RATIOS = np.append(np.linspace(0.0, 1.0, 27), (0.123, 0.4567, 0.777))
 
 
 def unique(scene, parameters=None, **rung):
-    """The section forces that are given, (link, force): what the oracle calls unique, each right at all ratios and instants."""
+    """The section forces that are given, (link, force): what the oracle calls unique, each right at
+    all ratios and instants.
+    """
     solution, m = evaluate(scene, parameters=parameters, **rung), scene.mechanism
     assert solution.certified
     values, graph = m.values(parameters), derive(scene)
     open_, exact = {}, {}
     for t in solution.t:
         found, drives = columns_at(graph, float(t), values)
-        solved = oracle_of(m, values, loads=[lambda place: LOADS.get(m.name, [])]).solve(drives, postures(m, found, drives, 0.0))
+        solved = oracle_of(m, values, loads=[lambda place: LOADS.get(m.name, [])]).solve(
+            drives, postures(m, found, drives, 0.0)
+        )
         for link, u in itertools.product(solution.links_with_sections, RATIOS):
             told = solved.open_sections[link](u)
             for force, there, value in zip(FORCES, told, solved.sections[link](u), strict=True):
@@ -44,20 +50,34 @@ def unique(scene, parameters=None, **rung):
     size = max(abs(x) for forces in exact.values() for x in forces)
     for link, force in given:
         assert not open_[link, force], f"{force} of {link} is given, and is not unique"
-        law, true = solution.section(link).law, np.reshape(exact[link, force], (solution.t.size, -1))
+        law, true = (
+            solution.section(link).law,
+            np.reshape(exact[link, force], (solution.t.size, -1)),
+        )
         mine = law.on_grid(force, RATIOS)
-        assert np.abs(mine - true).max() < (1e-5 if rung.get("precision") == "single" else 1e-11) * size, (link, force)
+        assert (
+            np.abs(mine - true).max()
+            < (1e-5 if rung.get("precision") == "single" else 1e-11) * size
+        ), (link, force)
         peak = solution.peak(f"section:{link}:{force}")
         assert abs(peak.value) >= np.abs(mine).max()
-        assert abs(peak.value - law.at(force, np.full((solution.t.size, 1), peak.xi))).min() < 2 * size
+        assert (
+            abs(peak.value - law.at(force, np.full((solution.t.size, 1), peak.xi))).min() < 2 * size
+        )
         assert f"section:{link}:{force}" in solution.errors
-    withheld = {f"{force} of {link}" for (link, force), told in open_.items() if not told} - {f"{f} of {l}" for l, f in given}
+    withheld = {f"{force} of {link}" for (link, force), told in open_.items() if not told} - {
+        f"{f} of {l}" for l, f in given
+    }
     assert not withheld, "unique, and withheld"
     return {force for _, force in given}
 
 
-def beam(*places, tip=False, root=True, defaults=(0.4, 0.4, 0.4), joint="revolute", y=0.0, **keywords):
-    """A beam of a metre on the ground: a pin at its base, one at its tip, and joints at ``places`` of the parameters a, b, c, l."""
+def beam(
+    *places, tip=False, root=True, defaults=(0.4, 0.4, 0.4), joint="revolute", y=0.0, **keywords
+):
+    """A beam of a metre on the ground: a pin at its base, one at its tip, and joints at ``places``
+    of the parameters a, b, c, l.
+    """
     m = Mechanism("beam")
     a, b, c = (m.parameter(name, value, "m") for name, value in zip("abc", defaults, strict=True))
     l = m.parameter("l", 1.0, "m")
@@ -89,15 +109,21 @@ BENT = {"shear", "bending"}
 
 
 @pytest.mark.sampled(5)
-@pytest.mark.parametrize("rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str)
+@pytest.mark.parametrize(
+    "rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str
+)
 def test_two_pins_at_one_place_bear_one_sum(rung):
-    """What both bear together holds the beam on its base's pin; along it, the base and they share the thrust."""
+    """What both bear together holds the beam on its base's pin; along it, the base and they share
+    the thrust.
+    """
     assert unique(beam(at_a, at_b), **rung) == BENT
     assert unique(beam(at_a, at_b, root=False, joint="weld"), **rung) == {*FORCES}
 
 
 def test_a_beam_on_two_pins_at_one_place_is_the_one_of_a_textbook():
-    """Supports at 0 and s, weight W, load F at x: the bending over the second support is -(F (x - s) + W (1 - s)^2 / 2)."""
+    """Supports at 0 and s, weight W, load F at x: the bending over the second support is -(F (x -
+    s) + W (1 - s)^2 / 2).
+    """
     section = evaluate(beam(at_a, at_b), xi=(0, 1, 6)).section("bar")
     over = 7.0 * 0.5 + 2.0 * 9.81 * 0.6**2 / 2
     np.testing.assert_allclose(section.bending[0, 2], -over, rtol=1e-13)
@@ -201,13 +227,19 @@ def test_a_crank_on_two_bearings():
     m.revolute("P", m.ground, a.at(0.2))
     m.force("f", a.tip, y=-3.0)
     solution = evaluate(Scene(m, {"O": polynomial(0.3, 1.0)}, t=(0, 1, 5)))
-    assert set(solution.undetermined) == {f"reaction:{joint}:{member}" for joint in "OP" for member in ("fx", "fy")}
-    np.testing.assert_allclose(solution.section("a").law.at("shear", np.full((5, 1), 0.0))[:, 0], 0.0, atol=1e-14)
+    assert set(solution.undetermined) == {
+        f"reaction:{joint}:{member}" for joint in "OP" for member in ("fx", "fy")
+    }
+    np.testing.assert_allclose(
+        solution.section("a").law.at("shear", np.full((5, 1), 0.0))[:, 0], 0.0, atol=1e-14
+    )
     assert solution.certified
 
 
 def pair(**keywords):
-    """A crank carries a bar that lies along it, on a weld and a pin at places of the parameters a and b."""
+    """A crank carries a bar that lies along it, on a weld and a pin at places of the parameters a
+    and b.
+    """
     m = Mechanism("pair")
     a, b = m.parameter("a", 0.4, "m"), m.parameter("b", 0.4, "m")
     crank, bar = m.link("crank", length=1.0, mass=1.0), m.link("bar", length=1.0, mass=2.0)
@@ -223,7 +255,9 @@ def test_a_weld_and_a_pin_between_two_links():
 
 
 def shaper(slots, length, base, **keywords):
-    """A crank's pin slides along a rail, in as many slots as have names; the rail is pinned to the ground at ``base``."""
+    """A crank's pin slides along a rail, in as many slots as have names; the rail is pinned to the
+    ground at ``base``.
+    """
     m = Mechanism("shaper")
     crank, rail = m.link("crank", length=0.2, mass=1.0), m.link("rail", length=length, mass=2.0)
     m.revolute("O", m.ground.at(0, 0.5), crank)
@@ -232,7 +266,14 @@ def shaper(slots, length, base, **keywords):
         m.slot(name, rail, crank.tip, axis=(1, 0))
     m.force("f", rail.at(0.31), x=20.0, y=3.0)
     lean = 1.2 if base == 0.0 else 1.2 + np.pi
-    return Scene(m, {"O": polynomial(0.3, 6.0)}, posture={"rail": lean}, t=(0, 1.0, 41), xi=(0, 1, 12), **keywords)
+    return Scene(
+        m,
+        {"O": polynomial(0.3, 6.0)},
+        posture={"rail": lean},
+        t=(0, 1.0, 41),
+        xi=(0, 1, 12),
+        **keywords,
+    )
 
 
 SHAPERS = {"within": (0.9, 0.0), "past the tip": (0.6, 0.0), "before the base": (0.9, 0.45)}
@@ -241,13 +282,18 @@ SHAPERS = {"within": (0.9, 0.0), "past the tip": (0.6, 0.0), "before the base": 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", SHAPERS)
 def test_what_slides_along_together_is_felt_as_a_sum(name):
-    """The slots are at one place, which moves: within the rail, past its tip and back, before its base and back."""
+    """The slots are at one place, which moves: within the rail, past its tip and back, before its
+    base and back.
+    """
     one, two = (evaluate(shaper(slots, *SHAPERS[name])) for slots in ("S", "ST"))
     station = two.series["section:rail:S:station"]
     low, high = station.min() < 0.0, station.max() > 1.0
     assert (low, high) == (name == "before the base", name == "past the tip")
     assert unique(shaper("ST", *SHAPERS[name]), t=(0, 1.0, 4)) == {*FORCES}
-    peaks = [{p.name: p for p in refine(shaper(slots, *SHAPERS[name]), s)} for slots, s in (("S", one), ("ST", two))]
+    peaks = [
+        {p.name: p for p in refine(shaper(slots, *SHAPERS[name]), s)}
+        for slots, s in (("S", one), ("ST", two))
+    ]
     for force in FORCES:
         mine, true = (peak[f"section:rail:{force}"].value for peak in peaks)
         assert mine == pytest.approx(true, rel=1e-11)
@@ -264,7 +310,9 @@ def test_a_table_holds_the_sums():
 
 
 def rail(guides=("P", "Q"), **keywords):
-    """A rail turns about its base; a block slides along it on two guides a tenth apart, one too many, ``x`` to ``x + 0.2`` far."""
+    """A rail turns about its base; a block slides along it on two guides a tenth apart, one too
+    many, ``x`` to ``x + 0.2`` far.
+    """
     m = Mechanism("rail")
     x = m.parameter("x", 1.1, "m")
     base, block = m.link("rail", length=1.0, mass=2.0), m.link("block", length=0.3, mass=1.5)
@@ -277,17 +325,28 @@ def rail(guides=("P", "Q"), **keywords):
 
 
 def given(scene, parameters, **rung):
-    """The forces of the rail that are given, and right beside the same mechanism with one guide, which shares nothing."""
-    two, one = evaluate(scene, parameters=parameters, **rung), evaluate(rail(("P",)), parameters=parameters)
+    """The forces of the rail that are given, and right beside the same mechanism with one guide,
+    which shares nothing.
+    """
+    two, one = (
+        evaluate(scene, parameters=parameters, **rung),
+        evaluate(rail(("P",)), parameters=parameters),
+    )
     found = {force for force in FORCES if two.determined(f"section:rail:{force}")}
     for force in found:
         mine, true = (solution.array(f"section:rail:{force}") for solution in (two, one))
-        np.testing.assert_allclose(mine, true, atol=(2e-5 if rung.get("precision") == "single" else 1e-12) * np.abs(true).max())
+        np.testing.assert_allclose(
+            mine,
+            true,
+            atol=(2e-5 if rung.get("precision") == "single" else 1e-12) * np.abs(true).max(),
+        )
     return found
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str)
+@pytest.mark.parametrize(
+    "rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str
+)
 def test_what_acts_beyond_the_ends_is_felt_as_a_sum(rung):
     scene = rail()
     assert given(scene, {"x": 1.1}, **rung) == {*FORCES}
@@ -308,7 +367,9 @@ def test_the_oracle_says_the_same_beyond_the_ends():
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("length", [0.3, 1.0, 3.0])
 def test_guides_that_pass_before_the_base_are_not_felt(length):
-    """A bar carries the line of two guides, both always before its base or past its tip; it is held by both."""
+    """A bar carries the line of two guides, both always before its base or past its tip; it is held
+    by both.
+    """
     m = Mechanism("guided")
     bar = m.link("bar", length=length, mass=1.4)
     x = m.parameter("x", -1.0, "m")
@@ -377,8 +438,11 @@ def test_exported_c_has_the_sums_and_a_status_for_what_is_open(precision, tmp_pa
           if (pair_prepare(&model, &apart) != PAIR_OK) return 2;
           return pair_evaluate(&model, &inputs, &outputs) == PAIR_UNDETERMINED ? 0 : 3;
         }
-    """
+    """  # noqa: E501
     (tmp_path / "program.c").write_text(program)
     sources = [tmp_path / "program.c", tmp_path / "pair.c"]
-    subprocess.run([*codegen.find_compiler().command, "-std=c99", *sources, "-o", tmp_path / "program", "-lm"], check=True)
+    subprocess.run(
+        [*codegen.find_compiler().command, "-std=c99", *sources, "-o", tmp_path / "program", "-lm"],
+        check=True,
+    )
     assert subprocess.run([tmp_path / "program"], check=False).returncode == 0

@@ -12,7 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mechanisms import parallelogram, slider_crank
 
-from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, SpatialMechanism, evaluate, load_case, refine, sweep
+from lagrange_casadi import (
+    LagrangeCasadiError,
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    evaluate,
+    load_case,
+    refine,
+    sweep,
+)
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants.statistics import Statistics
@@ -34,7 +43,11 @@ def test_a_sine_over_its_turn():
     assert found.mean == pytest.approx(1.0, abs=1e-15)
     assert found.rms == pytest.approx(math.sqrt(3.0), rel=1e-15)
     assert (found.smallest.value, found.smallest.t) == (pytest.approx(-1.0), 0.75)
-    assert (found.largest.value, found.largest.t, found.largest.xi) == (pytest.approx(3.0), 0.25, None)
+    assert (found.largest.value, found.largest.t, found.largest.xi) == (
+        pytest.approx(3.0),
+        0.25,
+        None,
+    )
     assert found.peak == found.largest
     assert (
         Statistics.over("x", "N", t, np.cos(math.pi * t) - 0.5).peak
@@ -42,17 +55,26 @@ def test_a_sine_over_its_turn():
     )
 
 
-@given(st.lists(st.floats(1e-3, 1e3), min_size=1, max_size=30), st.floats(-10, 10), st.floats(-10, 10))
+@given(
+    st.lists(st.floats(1e-3, 1e3), min_size=1, max_size=30), st.floats(-10, 10), st.floats(-10, 10)
+)
 def test_instants_need_not_be_even(steps, start, slope):
     """The mean of a straight line is its value in the middle, wherever the instants are."""
     t = np.concatenate([[0.0], np.cumsum(steps)])
     found = Statistics.over("x", "1", t, start + slope * t)
-    assert found.mean == pytest.approx(start + slope * t[-1] / 2, rel=1e-9, abs=1e-9 * (10 + abs(slope) * t[-1]))
+    assert found.mean == pytest.approx(
+        start + slope * t[-1] / 2, rel=1e-9, abs=1e-9 * (10 + abs(slope) * t[-1])
+    )
 
 
 def test_one_instant_is_its_own_mean():
     found = Statistics.over("x", "N", np.array([2.0]), np.array([-3.0]))
-    assert (found.mean, found.rms, found.smallest, found.largest.t) == (-3.0, 3.0, found.largest, 2.0)
+    assert (found.mean, found.rms, found.smallest, found.largest.t) == (
+        -3.0,
+        3.0,
+        found.largest,
+        2.0,
+    )
 
 
 def test_means_are_those_of_a_sweep(here, solution):
@@ -65,7 +87,9 @@ def test_means_are_those_of_a_sweep(here, solution):
 
 @pytest.mark.parametrize("case", ["slider_crank", "quick_return", "engine"])
 def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
-    """Also beside a pin that slides along its link, on either side of it; and the places have these values."""
+    """Also beside a pin that slides along its link, on either side of it; and the places have these
+    values.
+    """
     found = evaluate(load_case(case).scene, wanted=["section"])
     for link in found.links_with_sections:
         law = found.section(link).law
@@ -82,7 +106,10 @@ def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
             assert (told.mean, told.rms) == (None, None)
             for extreme in (told.smallest, told.largest):
                 i = int(np.flatnonzero(found.t == extreme.t)[0])
-                sides = [law.during(slice(i, i + 1)).at(force, np.array([[extreme.xi]]), side)[0, 0] for side in ("base", "tip")]
+                sides = [
+                    law.during(slice(i, i + 1)).at(force, np.array([[extreme.xi]]), side)[0, 0]
+                    for side in ("base", "tip")
+                ]
                 assert min(abs(side - extreme.value) for side in sides) <= 1e-12 * size
 
 
@@ -92,7 +119,9 @@ def test_resultants(solution):
     np.testing.assert_array_equal(solution.array("reaction:guide:resultant"), reaction.resultant)
     assert solution.unit("reaction:guide:resultant") == "N"
     assert solution.peak("reaction:guide:resultant").value == reaction.resultant.max()
-    assert solution.statistics("reaction:guide:resultant").smallest.value == reaction.resultant.min()
+    assert (
+        solution.statistics("reaction:guide:resultant").smallest.value == reaction.resultant.min()
+    )
     assert "reaction:guide:resultant" not in list(solution.names())
     with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:nowhere:resultant'"):
         solution.peak("reaction:nowhere:resultant")
@@ -101,7 +130,9 @@ def test_resultants(solution):
 
 
 def test_peaks_of_resultants_between_instants():
-    """From few instants as exact as from many: the peaks of A and B lie within the cycle or at its end."""
+    """From few instants as exact as from many: the peaks of A and B lie within the cycle or at its
+    end.
+    """
     scene = load_case("slider_crank").scene
     few, many = (evaluate(scene, t=(0, 0.08, count), wanted=["reaction"]) for count in (41, 40_001))
     names = resultants(few)
@@ -128,18 +159,33 @@ def test_to_pandas(solution):
     assert "motion:O_acceleration [rad/s^2]" in table
     bending = solution.section("rod").law.on_grid("bending", np.array([0.25]))[:, 0]
     np.testing.assert_array_equal(table["section:rod:bending xi/l=0.25 [N m]"], bending)
-    assert len(table.columns) == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
+    assert (
+        len(table.columns)
+        == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
+    )
 
 
 def test_without_pandas_it_says_so(solution, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(LagrangeCasadiError, match="to_pandas needs pandas; install it with: pip install pandas"):
+    with pytest.raises(
+        LagrangeCasadiError, match="to_pandas needs pandas; install it with: pip install pandas"
+    ):
         solution.to_pandas()
 
 
 def test_run_writes_rows(here, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    arguments = ["--no-figures", "--t", "0:0.08:5", "--xi", "0:1:3", "--want", "effort", "--want", "section:rod"]
+    arguments = [
+        "--no-figures",
+        "--t",
+        "0:0.08:5",
+        "--xi",
+        "0:1:3",
+        "--want",
+        "effort",
+        "--want",
+        "section:rod",
+    ]
     assert main(["run", "slider_crank", *arguments, "--csv", "rows.csv"]) == 0
     assert "wrote slider_crank.h5, and rows.csv" in capsys.readouterr().out
     with open("rows.csv", newline="") as file:
@@ -154,7 +200,9 @@ def test_run_writes_rows(here, capsys, monkeypatch):
 
 @pytest.mark.parametrize("kind", [Mechanism, SpatialMechanism])
 def test_a_load_at_the_tip_is_seen_where_a_force_is_smallest(kind):
-    """Between the load and the tip there is no section at which it is not felt: the pull is nowhere less than at the tip."""
+    """Between the load and the tip there is no section at which it is not felt: the pull is nowhere
+    less than at the tip.
+    """
     m = kind("pulled")
     length = m.parameter("l", 2.0, "m")
     bar = m.link("bar", length=length, mass=3.0)
@@ -163,7 +211,9 @@ def test_a_load_at_the_tip_is_seen_where_a_force_is_smallest(kind):
     solution = evaluate(Scene(m, {"O": polynomial(0, -0.3)}, t=(0, 1, 9)), backend="vm")
     for force in solution.table.forces:
         smallest = solution.section("bar").law.on_grid(force, np.linspace(0.0, 1.0, 101)).min()
-        assert solution.statistics(f"section:bar:{force}").smallest.value == pytest.approx(smallest, rel=1e-12)
+        assert solution.statistics(f"section:bar:{force}").smallest.value == pytest.approx(
+            smallest, rel=1e-12
+        )
     assert solution.statistics("section:bar:axial").smallest.value > 199.0
 
 
@@ -187,8 +237,19 @@ def test_run_tells_resultants_and_statistics(here, capsys):
     assert any(line.startswith("  reaction:guide:resultant          35.7198 +- ") for line in lines)
     head = next(k for k, line in enumerate(lines) if line.startswith("over 0.08 s"))
     assert lines[head].split()[3:] == ["smallest", "largest", "mean", "rms"]
-    assert lines[head + 1].split() == ["effort:O", "-8.15166", "8.31361", "3.63742e-05", "4.65909", "N", "m"]
-    assert "  section:rod:bending             -0.896639      0.941724                             N m" in lines
+    assert lines[head + 1].split() == [
+        "effort:O",
+        "-8.15166",
+        "8.31361",
+        "3.63742e-05",
+        "4.65909",
+        "N",
+        "m",
+    ]
+    assert (
+        "  section:rod:bending             -0.896639      0.941724                             N m"
+        in lines
+    )
     assert main(["run", "slider_crank", "--no-figures", "--t", "0:0.08:21", "--refine-peaks"]) == 0
     refined = capsys.readouterr().out
     assert "  reaction:guide:resultant          35.7199 +- " in refined

@@ -6,7 +6,13 @@ from lagrange_casadi.base.status import Status
 from lagrange_casadi.portable.statuses import SHARED, STATUSES
 
 PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}
-OF_DESIGNS = {Status.PASSES_DEAD_CENTRE, Status.UNCERTIFIED, Status.PEAK_NOT_TOLD, Status.NO_INSTANTS, Status.CORNER}
+OF_DESIGNS = {
+    Status.PASSES_DEAD_CENTRE,
+    Status.UNCERTIFIED,
+    Status.PEAK_NOT_TOLD,
+    Status.NO_INSTANTS,
+    Status.CORNER,
+}
 
 
 def test_every_reason_of_an_instant_is_told_in_the_same_words():
@@ -20,7 +26,26 @@ def test_every_reason_of_an_instant_is_told_in_the_same_words():
 def test_numbers_in_c_stay():
     """Programs compare with them."""
     assert list(STATUSES) == [
-        *("OK", "NOT_PREPARED", "BAD_PARAMETER", "BAD_INPUT", "BAD_TIME", "BAD_RATIO", "NO_LINK", "NOT_ASSEMBLED", "DEAD_CENTRE"),
-        *("NOT_CONVERGED", "JUMPED", "SLOW", "INCONSISTENT", "NOT_CLOSED", "UNDETERMINED", "NOT_FINITE", "TURNED"),
+        *(
+            "OK",
+            "NOT_PREPARED",
+            "BAD_PARAMETER",
+            "BAD_INPUT",
+            "BAD_TIME",
+            "BAD_RATIO",
+            "NO_LINK",
+            "NOT_ASSEMBLED",
+            "DEAD_CENTRE",
+        ),
+        *(
+            "NOT_CONVERGED",
+            "JUMPED",
+            "SLOW",
+            "INCONSISTENT",
+            "NOT_CLOSED",
+            "UNDETERMINED",
+            "NOT_FINITE",
+            "TURNED",
+        ),
         *("BEYOND_ENDS", "JAMS", "AT_REST"),
     ]

@@ -47,7 +47,16 @@ def test_layout(solution, file):
     with h5py.File(file) as h:
         assert h["section/rod/bending"].shape == (801, 101)
         assert h["section/rod/law/n0"].shape == (801,)
-        assert set(h) == {"t", "xi", "motion", "pose", "effort", "reaction", "section", "certificate"}
+        assert set(h) == {
+            "t",
+            "xi",
+            "motion",
+            "pose",
+            "effort",
+            "reaction",
+            "section",
+            "certificate",
+        }
         assert dict(h["t"].attrs)["units"] == "s"
         assert list(h.attrs)[-1] == "complete"
         assert h.attrs["schema"] == "lagrange-casadi"
@@ -98,14 +107,32 @@ def test_check_passes_a_whole_file(file):
 @pytest.mark.parametrize(
     ("change", "finding"),
     [
-        (lambda h: h["section/rod/bending"].__setitem__((3, 4), 7.0), "section/rod/bending: differs from its law by"),
-        (lambda h: h["effort/O"].__setitem__(5, np.nan), "effort/O: holds values that are not finite"),
-        (lambda h: h["effort/O"].attrs.__setitem__("units", "lbf ft"), "effort/O: units 'lbf ft', expected 'N m'"),
-        (lambda h: h["effort/O"].attrs.__setitem__("sign", "whatever"), "effort/O: sign is not the schema's"),
+        (
+            lambda h: h["section/rod/bending"].__setitem__((3, 4), 7.0),
+            "section/rod/bending: differs from its law by",
+        ),
+        (
+            lambda h: h["effort/O"].__setitem__(5, np.nan),
+            "effort/O: holds values that are not finite",
+        ),
+        (
+            lambda h: h["effort/O"].attrs.__setitem__("units", "lbf ft"),
+            "effort/O: units 'lbf ft', expected 'N m'",
+        ),
+        (
+            lambda h: h["effort/O"].attrs.__setitem__("sign", "whatever"),
+            "effort/O: sign is not the schema's",
+        ),
         (lambda h: h["effort/O"].dims[0].detach_scale(h["t"]), "effort/O: axis 0 has no scale /t"),
         (lambda h: h.__delitem__("effort"), "effort/O: missing"),
-        (lambda h: h["effort/O"].__setitem__(5, 3.0), "power: .*, computed anew, is worse than the tolerance|balance: "),
-        (lambda h: h["certificate/power"].__setitem__(5, 0.1), "certificate/power: 0.1 is worse than the tolerance 1e-09"),
+        (
+            lambda h: h["effort/O"].__setitem__(5, 3.0),
+            "power: .*, computed anew, is worse than the tolerance|balance: ",
+        ),
+        (
+            lambda h: h["certificate/power"].__setitem__(5, 0.1),
+            "certificate/power: 0.1 is worse than the tolerance 1e-09",
+        ),
     ],
 )
 def test_check_names_what_is_wrong(file, change, finding):
@@ -142,7 +169,9 @@ def test_a_flipped_byte_is_found(file, read):
     with h5py.File(file) as h:
         chunk = h["section/rod/bending"].id.get_chunk_info(0)
     flip(file, chunk.byte_offset + 100)
-    with pytest.raises(StoreError, match=r"result\.h5: damaged: its bytes are not those that were written$"):
+    with pytest.raises(
+        StoreError, match=r"result\.h5: damaged: its bytes are not those that were written$"
+    ):
         read(file)
 
 
@@ -150,7 +179,10 @@ def test_a_flipped_byte_is_found(file, read):
 def test_a_truncated_file_is_refused(file, keep):
     data = file.read_bytes()
     file.write_bytes(data[: int(len(data) * keep)])
-    with pytest.raises(StoreError, match=r"result\.h5: (it has no seal: cut short|not a file of this program: it begins)"):
+    with pytest.raises(
+        StoreError,
+        match=r"result\.h5: (it has no seal: cut short|not a file of this program: it begins)",
+    ):
         load(file)
 
 
@@ -237,7 +269,9 @@ def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
         (b"MATLAB".ljust(512) + b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, FOREIGN),
     ],
 )
-def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(solution, tmp_path, content, says):
+def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(
+    solution, tmp_path, content, says
+):
     target = tmp_path / "x.h5"
     target.write_bytes(content)
     with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
@@ -248,7 +282,10 @@ def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(solution, t
 @pytest.mark.parametrize("mode", ["r+", "a"])
 def test_a_run_that_another_program_writes_is_left_alone(solution, file, mode):
     before = file.stat().st_ino
-    program = f"import h5py, sys; h = h5py.File({str(file)!r}, {mode!r}); print('open', flush=True); sys.stdin.read()"
+    program = (
+        f"import h5py, sys; h = h5py.File({str(file)!r}, {mode!r}); print('open', flush=True);"
+        " sys.stdin.read()"
+    )
     with sweeps.process(sys.executable, "-c", program, stdin=subprocess.PIPE) as holder:
         assert holder.stdout.readline() == "open\n"
         with pytest.raises(BusyError, match=r"result\.h5: another program has it open to write"):
@@ -276,7 +313,10 @@ def test_what_cannot_be_opened_is_left_alone(solution, file, monkeypatch):
 
     monkeypatch.setattr(Path, "open", refuse)
     monkeypatch.setattr(store, "kind_of", lambda _: None)
-    with pytest.raises(PathError, match=r"cannot write .*result\.h5: what is there cannot be read: Permission denied"):
+    with pytest.raises(
+        PathError,
+        match=r"cannot write .*result\.h5: what is there cannot be read: Permission denied",
+    ):
         save(solution, file)
 
 
@@ -284,7 +324,12 @@ def test_what_cannot_be_opened_is_left_alone(solution, file, monkeypatch):
 def test_a_damaged_run_is_left_to_its_owner(solution, file, keep):
     """It might be what is left of something else."""
     file.write_bytes(file.read_bytes()[:keep])
-    with pytest.raises(PathError, match=r"cannot write .*result\.h5: it is an HDF5 file of something else, or without its seal"):
+    with pytest.raises(
+        PathError,
+        match=(
+            r"cannot write .*result\.h5: it is an HDF5 file of something else, or without its seal"
+        ),
+    ):
         save(solution, file)
 
 
@@ -293,7 +338,9 @@ def test_what_hdf5_refuses_is_one_line(solution, tmp_path, monkeypatch):
         raise RuntimeError("Unspecified error in H5DSattach_scale (return value <0)")
 
     monkeypatch.setattr(store.Scales, "finish", refuse)
-    with pytest.raises(StoreError, match=r"cannot write .*x\.h5: Unspecified error in H5DSattach_scale"):
+    with pytest.raises(
+        StoreError, match=r"cannot write .*x\.h5: Unspecified error in H5DSattach_scale"
+    ):
         save(solution, tmp_path / "x.h5")
     assert not list(tmp_path.iterdir())
 
@@ -303,10 +350,16 @@ def test_nothing_is_left_out_without_a_trace(file):
 
     def lose(h):
         name = "section/rod/bending"
-        attributes, scales, shape = dict(h[name].attrs), [dim[0] for dim in h[name].dims], h[name].shape
+        attributes, scales, shape = (
+            dict(h[name].attrs),
+            [dim[0] for dim in h[name].dims],
+            h[name].shape,
+        )
         assert np.isnan(h[name].fillvalue)
         del h[name]
-        new = h.create_dataset(name, shape, float, chunks=(100, 101), fillvalue=np.nan, fletcher32=True)
+        new = h.create_dataset(
+            name, shape, float, chunks=(100, 101), fillvalue=np.nan, fletcher32=True
+        )
         new[:700] = 0.0
         for key in ("units", "long_name", "sign"):
             new.attrs[key] = attributes[key]
@@ -319,7 +372,13 @@ def test_nothing_is_left_out_without_a_trace(file):
 
 
 def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.store.runs.shutil.disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6))
-    with pytest.raises(StoreError, match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left"):
+    monkeypatch.setattr(
+        "lagrange_casadi.store.runs.shutil.disk_usage",
+        lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6),
+    )
+    with pytest.raises(
+        StoreError,
+        match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left",
+    ):
         save(solution, tmp_path / "x.h5")
     assert not list(tmp_path.iterdir())

@@ -1,4 +1,7 @@
-"""Pipes, devices and standard output as outputs: written straight to or refused, never replaced. All nodes are the tests' own."""
+"""Pipes, devices and standard output as outputs: written straight to or refused, never replaced.
+
+All nodes are the tests' own.
+"""
 
 import csv
 import os
@@ -138,7 +141,10 @@ def test_a_device_that_is_full_is_one_line(here, capfd):
         (here / "full").open("wb").close()
     except OSError as error:
         pytest.skip(f"no device can be made here: {error}")
-    with pytest.raises(StoreError, match=r"cannot write .*full: No space left on device$"), writing(here / "full") as (opened,):
+    with (
+        pytest.raises(StoreError, match=r"cannot write .*full: No space left on device$"),
+        writing(here / "full") as (opened,),
+    ):
         opened.write(b"x")
     assert stat.S_ISCHR(os.stat(here / "full").st_mode)
 
@@ -147,7 +153,9 @@ def test_a_device_that_is_full_is_one_line(here, capfd):
 @pytest.mark.parametrize("command", TABLES)
 @pytest.mark.parametrize("onto", ["pipe", "file"])
 def test_standard_output_is_the_csv_alone(file, here, command, onto):
-    """By a link of the test's own to what the process has as its standard output, as /dev/stdout is."""
+    """By a link of the test's own to what the process has as its standard output, as /dev/stdout
+    is.
+    """
     (here / "out.csv").symlink_to("/proc/self/fd/1")
     main([*command, "--csv", "x.csv"])
     arguments = [sys.executable, "-m", "lagrange_casadi", *command, "--csv", "out.csv"]
@@ -156,7 +164,9 @@ def test_standard_output_is_the_csv_alone(file, here, command, onto):
         came = done.stdout
     else:
         with open("came", "w") as output:
-            done = subprocess.run(arguments, stdout=output, stderr=subprocess.PIPE, text=True, check=True)
+            done = subprocess.run(
+                arguments, stdout=output, stderr=subprocess.PIPE, text=True, check=True
+            )
         came = Path("came").read_text()
     assert came == Path("x.csv").read_text()
     assert done.stderr.startswith("wrote out.csv: ")
@@ -210,7 +220,9 @@ def test_what_is_in_a_folder_and_not_a_file_is_not_replaced(tmp_path, kind):
     folder.mkdir()
     (folder / "a.png").write_text("old")
     there = folder / "b.png"
-    {"pipe": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to("a.png")}[kind](there)
+    {"pipe": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to("a.png")}[kind](
+        there
+    )
 
     def fill():
         with filling(folder) as draft:
@@ -281,5 +293,7 @@ def test_a_table_that_cannot_be_written_leaves_the_files_of_before(here, capfd, 
         assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures"]) == 0
     there = {path.name: path.read_bytes() for path in here.iterdir()}
     assert main(["run", str(CASE), "--t", "0:0.08:9", "--csv", "/dev/full"]) == 1
-    assert capfd.readouterr().err.endswith("error: cannot write /dev/full: No space left on device\n")
+    assert capfd.readouterr().err.endswith(
+        "error: cannot write /dev/full: No space left on device\n"
+    )
     assert {path.name: path.read_bytes() for path in here.iterdir()} == there

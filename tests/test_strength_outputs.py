@@ -1,4 +1,6 @@
-"""Stress and utilisation at every instant, against what is told of a whole solution; in files, prepared scenes and optima."""
+"""Stress and utilisation at every instant, against what is told of a whole solution; in files,
+prepared scenes and optima.
+"""
 
 import numpy as np
 import pytest
@@ -11,8 +13,14 @@ I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
 LINKS = {
     "rectangle": lambda: (press(beams.rectangle(0.03, 0.012)), "rod"),
     "sliding": lambda: (press(I_SECTION, sliding=True), "rod"),
-    "steps": lambda: (press(beams.stepped([0.4], [beams.round_bar(0.03), beams.round_bar(0.02)])), "rod"),
-    "tapered": lambda: (press(beams.tapered(I_SECTION, beams.i_section(0.03, 0.02, 0.003, 0.005))), "rod"),
+    "steps": lambda: (
+        press(beams.stepped([0.4], [beams.round_bar(0.03), beams.round_bar(0.02)])),
+        "rod",
+    ),
+    "tapered": lambda: (
+        press(beams.tapered(I_SECTION, beams.i_section(0.03, 0.02, 0.003, 0.005))),
+        "rod",
+    ),
     "tube in space": lambda: (robot(beams.tube(0.04, 0.003)), "upper"),
     "C in space": lambda: (robot(beams.c_section(0.04, 0.03, 0.004, 0.005)), "upper"),
 }
@@ -21,9 +29,13 @@ LINKS = {
 @pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", LINKS)
 def test_series_are_the_largest_along_the_link(name):
-    """Against all zeros of slopes along the link, by other code; a cross-section that changes is followed less closely."""
+    """Against all zeros of slopes along the link, by other code; a cross-section that changes is
+    followed less closely.
+    """
     scene, link = LINKS[name]()
-    solution = evaluate(scene, wanted=[f"stress:{link}", f"safety:{link}"], backend="vm", certificate=False)
+    solution = evaluate(
+        scene, wanted=[f"stress:{link}", f"safety:{link}"], backend="vm", certificate=False
+    )
     exact, safety = np.abs(solution.stress(link).largest("von_mises").value), solution.safety(link)
     found = solution.array(f"stress:{link}:von_mises")
     assert np.all(found <= exact * (1.0 + 1e-12))
@@ -39,7 +51,11 @@ def test_what_is_not_wanted_is_not_derived():
     wants = (["section"], ["life", "section"], ["stress:rod", "section"])
     sections, life, stress = (derive(scene, wanted).instructions["instant"] for wanted in wants)
     assert sections == life < stress
-    assert not [output for output in derive(scene, ["all"]).outputs if output.group in ("stress", "utilisation")]
+    assert not [
+        output
+        for output in derive(scene, ["all"]).outputs
+        if output.group in ("stress", "utilisation")
+    ]
 
 
 @pytest.mark.long
@@ -48,11 +64,18 @@ def test_gradients_of_peaks_of_stress_and_utilisation_are_exact():
     f = prepare(slider(), wanted=["stress", "safety"])
     base = {"r": 0.1, "l": 0.4, "h": 0.014}
     slopes = f.gradient(base)
-    for name in ("stress:crank:von_mises", "stress:rod:von_mises", "utilisation:rod:yield", "utilisation:rod:buckling"):
+    for name in (
+        "stress:crank:von_mises",
+        "stress:rod:von_mises",
+        "utilisation:rod:yield",
+        "utilisation:rod:buckling",
+    ):
         k = f.quantities.index(name)
         for parameter, value in base.items():
             step = 1e-5 * value
-            ends = [f.peaks({**base, parameter: value + way * step}).value[k].copy() for way in (1, -1)]
+            ends = [
+                f.peaks({**base, parameter: value + way * step}).value[k].copy() for way in (1, -1)
+            ]
             size = abs(slopes[name][parameter]) + 1e-3 * abs(slopes.value[k]) / value
             assert abs(slopes[name][parameter] - (ends[0] - ends[1]) / (2 * step)) <= 1e-5 * size
 
@@ -60,14 +83,25 @@ def test_gradients_of_peaks_of_stress_and_utilisation_are_exact():
 def test_the_lightest_that_is_safe_is_found():
     scene = slider()
     limits = ["least:safety:rod >= 2", "least:safety:crank>=2"]
-    found = optimise(scene, minimise="mass:all", over={"h": (0.004, 0.04)}, subject_to=limits, starts=2, screen=16)
+    found = optimise(
+        scene,
+        minimise="mass:all",
+        over={"h": (0.004, 0.04)},
+        subject_to=limits,
+        starts=2,
+        screen=16,
+    )
     assert found.converged
     assert found.feasible
     assert found.unit == "kg"
     h = found.values["h"]
     assert found.objective == pytest.approx(15.0 + 7850.0 * 0.012 * h * 0.5)
-    solution = evaluate(scene, parameters={"h": h}, t=(0, 0.2094395, 1001), wanted=["safety"], certificate=False)
-    assert min(solution.safety(link).factor for link in ("crank", "rod")) == pytest.approx(2.0, rel=1e-4)
+    solution = evaluate(
+        scene, parameters={"h": h}, t=(0, 0.2094395, 1001), wanted=["safety"], certificate=False
+    )
+    assert min(solution.safety(link).factor for link in ("crank", "rod")) == pytest.approx(
+        2.0, rel=1e-4
+    )
 
 
 @pytest.mark.parametrize(
@@ -100,7 +134,10 @@ def test_files_keep_what_was_wanted(tmp_path):
 
 
 def test_no_table_holds_what_is_largest_along_a_link():
-    with pytest.raises(DeclarationError, match=r"table: stress:rod:von_mises is no polynomial of the rate; want section:rod"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"table: stress:rod:von_mises is no polynomial of the rate; want section:rod",
+    ):
         evaluate(slider(), wanted=["stress:rod"], table=64)
 
 
@@ -108,7 +145,8 @@ def test_peaks_between_instants_are_sought():
     """A coarse cycle refined, against a fine one."""
     scene = slider()
     coarse, fine = (
-        evaluate(scene, t=(0, 0.2094395, n), wanted=["stress:rod"], backend="vm", certificate=False) for n in (33, 8193)
+        evaluate(scene, t=(0, 0.2094395, n), wanted=["stress:rod"], backend="vm", certificate=False)
+        for n in (33, 8193)
     )
     (peak,) = (peak for peak in refine(scene, coarse) if peak.name == "stress:rod:von_mises")
     assert peak.value == pytest.approx(fine.array("stress:rod:von_mises").max(), rel=1e-7)

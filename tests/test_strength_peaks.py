@@ -1,4 +1,6 @@
-"""Stresses and factors of safety between instants, against closed forms, finer instants, and what the graph's own series say."""
+"""Stresses and factors of safety between instants, against closed forms, finer instants, and what
+the graph's own series say.
+"""
 
 import math
 
@@ -20,7 +22,9 @@ SPEED, PUSH, LENGTH, HEIGHT, WIDTH = 40.0, 500.0, 0.4, 0.03, 0.012
 
 @pytest.fixture(scope="module")
 def turning():
-    """A bar that turns evenly without weight, with a force on its tip that keeps its direction; and its solution."""
+    """A bar that turns evenly without weight, with a force on its tip that keeps its direction; and
+    its solution.
+    """
     m = Mechanism("turning")
     m.set_gravity(0.0, 0.0)
     bar = m.link("bar", length=LENGTH, beam=beams.Beam(beams.rectangle(HEIGHT, WIDTH), STEEL))
@@ -31,7 +35,9 @@ def turning():
 
 
 def test_the_stress_of_a_turning_bar_is_its_closed_form(turning):
-    """N/A + M/W at the base: the mass beyond it pulls evenly, and the force is N at one angle and M a quarter turn away."""
+    """N/A + M/W at the base: the mass beyond it pulls evenly, and the force is N at one angle and M
+    a quarter turn away.
+    """
     scene, solution = turning
     area, modulus = HEIGHT * WIDTH, WIDTH * HEIGHT**2 / 6
     exact = 7850.0 * SPEED**2 * LENGTH**2 / 2 + PUSH * math.hypot(1 / area, LENGTH / modulus)
@@ -42,7 +48,9 @@ def test_the_stress_of_a_turning_bar_is_its_closed_form(turning):
     times = np.mod(np.array([angle - math.pi / 2, -angle - math.pi / 2]), 2 * math.pi) / SPEED
     assert np.abs(times - peak.t).min() < 1e-6 / SPEED
     assert peak.xi == 0.0
-    assert refine_safety(scene, solution, "bar").against("yield") == pytest.approx(STEEL.yield_strength / exact, rel=1e-6)
+    assert refine_safety(scene, solution, "bar").against("yield") == pytest.approx(
+        STEEL.yield_strength / exact, rel=1e-6
+    )
 
 
 NOTCHES = [beams.Notch(0.25, bending=3.0)]
@@ -53,15 +61,23 @@ LINKS = {
 }
 
 
-@pytest.mark.parametrize("name", ["rod", *(pytest.param(name, marks=pytest.mark.long) for name in ("notched", "space"))])
+@pytest.mark.parametrize(
+    "name", ["rod", *(pytest.param(name, marks=pytest.mark.long) for name in ("notched", "space"))]
+)
 def test_peaks_are_those_of_finer_instants_and_of_the_graph(name):
     make, link = LINKS[name]
     scene = make()
     start, stop, _ = scene.t
-    coarse, fine = (evaluate(scene, t=(start, stop, n), wanted=[f"section:{link}"], certificate=False) for n in (33, 257))
+    coarse, fine = (
+        evaluate(scene, t=(start, stop, n), wanted=[f"section:{link}"], certificate=False)
+        for n in (33, 257)
+    )
     for kind in KINDS:
         for notches in {False, name == "notched"}:
-            peak, below = (refine_stress(scene, coarse, link, kind, notches=notches), fine.stress(link).peak(kind, notches=notches))
+            peak, below = (
+                refine_stress(scene, coarse, link, kind, notches=notches),
+                fine.stress(link).peak(kind, notches=notches),
+            )
             assert below.value * (1 - 1e-12) <= peak.value <= below.value * (1 + 5e-4)
             assert abs(coarse.stress(link).peak(kind, notches=notches).value) <= peak.value
     graph = evaluate(scene, t=(start, stop, 33), wanted=[f"safety:{link}"], certificate=False)
@@ -69,8 +85,12 @@ def test_peaks_are_those_of_finer_instants_and_of_the_graph(name):
     safety = refine_safety(scene, coarse, link)
     assert safety.against("yield") == pytest.approx(1 / used[0].value, rel=1e-9)
     assert safety.against("buckling") == pytest.approx(1 / used[1].value, rel=1e-5)
-    assert [verdict.against for verdict in safety.verdicts] == [v.against for v in coarse.safety(link).verdicts]
-    assert safety.against("fatigue") == pytest.approx(coarse.safety(link).against("fatigue"), nan_ok=True)
+    assert [verdict.against for verdict in safety.verdicts] == [
+        v.against for v in coarse.safety(link).verdicts
+    ]
+    assert safety.against("fatigue") == pytest.approx(
+        coarse.safety(link).against("fatigue"), nan_ok=True
+    )
 
 
 def test_of_one_instant_and_of_steps_that_are_not_equal(turning):
@@ -78,7 +98,9 @@ def test_of_one_instant_and_of_steps_that_are_not_equal(turning):
     one = evaluate(scene, t=(0.01, 0.01, 1), certificate=False)
     assert refine_stress(scene, one, "bar") == one.stress("bar").peak("von_mises")
     uneven = even.during(~np.isin(np.arange(even.t.size), (3, 4, 9)))
-    assert refine_stress(scene, uneven, "bar").value == pytest.approx(refine_stress(scene, even, "bar").value, rel=1e-12)
+    assert refine_stress(scene, uneven, "bar").value == pytest.approx(
+        refine_stress(scene, even, "bar").value, rel=1e-12
+    )
 
 
 def test_what_cannot_be_refined(turning):
@@ -86,7 +108,9 @@ def test_what_cannot_be_refined(turning):
     with pytest.raises(UnknownNameError, match="unknown kind of stress 'von'"):
         refine_stress(scene, solution, "bar", "von")
     with pytest.raises(DeclarationError, match="is not one of this scene"):
-        refine_stress(Scene(scene.mechanism, {"O": polynomial(0.0, 50.0)}, t=scene.t), solution, "bar")
+        refine_stress(
+            Scene(scene.mechanism, {"O": polynomial(0.0, 50.0)}, t=scene.t), solution, "bar"
+        )
 
 
 def test_lines_are_of_all_times_where_the_scene_is_told(turning):

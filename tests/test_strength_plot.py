@@ -12,14 +12,21 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 
 @pytest.fixture(scope="module")
 def pressed():
-    return evaluate(strong.press(beams.rectangle(0.012, 0.006), t=(0, 0.2, 41)), xi=(0, 1, 21), certificate=False)
+    return evaluate(
+        strong.press(beams.rectangle(0.012, 0.006), t=(0, 0.2, 41)),
+        xi=(0, 1, 21),
+        certificate=False,
+    )
 
 
 def test_links_with_a_beam_have_pictures(pressed, tmp_path):
     names = [spec.name for spec in figures.default_figures(pressed)]
     assert {"strength_rod", "utilisation"} <= set(names)
     assert "strength_crank" not in names
-    specs = [figures.StrengthPlot("strength_rod", "rod"), figures.UtilisationPlot("utilisation", ("rod",))]
+    specs = [
+        figures.StrengthPlot("strength_rod", "rod"),
+        figures.UtilisationPlot("utilisation", ("rod",)),
+    ]
     drawn = list(figures.draw(pressed, specs, tmp_path))
     assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
     from lagrange_casadi.shapes.kept import dump_specs, parse_specs
@@ -31,8 +38,12 @@ def test_the_map_and_the_diagram_show_what_is_told(pressed):
     figure = draw_strength(pressed, "rod", pressed.t, "t [s]")
     mapped, diagram = figure.axes[0], figure.axes[1]
     values = mapped.collections[0].get_array()
-    np.testing.assert_allclose(np.ravel(values), pressed.stress("rod").grid("von_mises").T.ravel() / 1e6)
-    assert f"peak {pressed.stress('rod').peak('von_mises').value / 1e6:.4g} MPa" in mapped.get_title()
+    np.testing.assert_allclose(
+        np.ravel(values), pressed.stress("rod").grid("von_mises").T.ravel() / 1e6
+    )
+    assert (
+        f"peak {pressed.stress('rod').peak('von_mises').value / 1e6:.4g} MPa" in mapped.get_title()
+    )
     line = {l.get_label(): l.get_xydata() for l in diagram.get_lines()}
     assert line["Goodman"].tolist() == [[0.0, 350.0], [700.0, 0.0]]
     mean, amplitude = line["swings, every fibre"].T
@@ -47,8 +58,13 @@ def test_the_diagram_shows_what_notches_do():
     solution = evaluate(scene, certificate=False)
     diagram = draw_strength(solution, "rod", solution.t, "t [s]").axes[1]
     line = {l.get_label(): l.get_xydata() for l in diagram.get_lines()}
-    used = {name: (line[name] @ [1 / 700, 1 / 350]).max() for name in ("swings, every fibre", "in notches")}
-    assert used["in notches"] == pytest.approx(1 / solution.safety("rod").against("fatigue"), rel=1e-12)
+    used = {
+        name: (line[name] @ [1 / 700, 1 / 350]).max()
+        for name in ("swings, every fibre", "in notches")
+    }
+    assert used["in notches"] == pytest.approx(
+        1 / solution.safety("rod").against("fatigue"), rel=1e-12
+    )
     assert used["in notches"] > 2 * used["swings, every fibre"]
     assert "in the notch at $\\xi/l$ = 0.500" in diagram.get_title()
 
@@ -61,6 +77,11 @@ def test_bars_are_utilisations(pressed):
 
 def test_without_an_endurance_limit_there_is_the_map_alone():
     solution = evaluate(
-        strong.press(beams.round_bar(0.02), material=beams.material("EN AW-6082-T6"), t=(0, 0.2, 21)), certificate=False
+        strong.press(
+            beams.round_bar(0.02), material=beams.material("EN AW-6082-T6"), t=(0, 0.2, 21)
+        ),
+        certificate=False,
     )
-    assert len(draw_strength(solution, "rod", solution.t, "t [s]").axes) == 2  # with its scale of colours
+    assert (
+        len(draw_strength(solution, "rod", solution.t, "t [s]").axes) == 2
+    )  # with its scale of colours

@@ -17,7 +17,9 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 I = beams.i_section(0.03, 0.02, 0.003, 0.004)
 SHAPES = {
     "even": I,
-    "tapered": beams.tapered(beams.box(0.05, 0.03, 0.003, 0.004), beams.box(0.02, 0.03, 0.003, 0.004)),
+    "tapered": beams.tapered(
+        beams.box(0.05, 0.03, 0.003, 0.004), beams.box(0.02, 0.03, 0.003, 0.004)
+    ),
     "sharp": beams.tapered(beams.rectangle(0.04, 0.02), beams.rectangle(0.003, 0.002)),
     "stepped": beams.stepped([0.5], [beams.tube(0.04, 0.003), beams.tube(0.03, 0.003)]),
     "leaning": beams.polygon([(0.0, 0.0), (0.03, 0.005), (0.035, 0.03), (0.01, 0.02)]),
@@ -27,7 +29,9 @@ SHAPES = {
 @pytest.fixture(scope="module")
 def solutions():
     return {
-        name: evaluate(strong.press(shape, sliding=name == "even", t=(0, 0.2, 25)), certificate=False)
+        name: evaluate(
+            strong.press(shape, sliding=name == "even", t=(0, 0.2, 25)), certificate=False
+        )
         for name, shape in SHAPES.items()
     }
 
@@ -42,12 +46,16 @@ def test_the_largest_is_that_of_a_fine_grid(solutions, name, kind):
     peak = stress.peak(kind)
     size = abs(peak.value)
     gaps = np.abs(found.value) - grid
-    # No place of the grid is above what was found; the grid misses summits by the square of its step, and jumps by a step.
+    # No place of the grid is above what was found; the grid misses summits by the square of its
+    # step, and jumps by a step.
     assert gaps.min() >= -1e-11 * size
     assert gaps.max() <= 8e-3 * size
     assert size == pytest.approx(np.abs(found.value).max(), rel=1e-13)
     k = int(np.argmin(np.abs(stress.member.t - peak.t)))
-    there = [stress.at(peak.xi, side)[:, stress.fibres(peak.xi, side).index(peak.fibre), k] for side in ("base", "tip")]
+    there = [
+        stress.at(peak.xi, side)[:, stress.fibres(peak.xi, side).index(peak.fibre), k]
+        for side in ("base", "tip")
+    ]
     squares = [KINDS[kind][0] * s**2 + KINDS[kind][1] * (y**2 + z**2) for s, y, z in there]
     if kind == "normal":
         assert np.sign(peak.value) == np.sign(there[int(np.argmax(squares))][0])
@@ -56,7 +64,9 @@ def test_the_largest_is_that_of_a_fine_grid(solutions, name, kind):
 
 @pytest.mark.parametrize("name", ["even", "leaning"])
 def test_normal_stresses_make_up_the_forces(solutions, name):
-    """Over the corners' own plane: axial force and both moments are integrals of it, by triangles of the outline."""
+    """Over the corners' own plane: axial force and both moments are integrals of it, by triangles
+    of the outline.
+    """
     solution = solutions[name]
     stress, section = solution.stress("rod"), solution.section("rod").law
     u = np.full((solution.t.size, 1), 0.41)
@@ -66,33 +76,54 @@ def test_normal_stresses_make_up_the_forces(solutions, name):
     plane, rest, _, _ = np.linalg.lstsq(places, values, rcond=None)
     assert rest.size == 0 or rest.max() < 1e-18 * np.abs(values).max() ** 2
     force, about_z = section.at("axial", u)[:, 0], section.at("bending", u)[:, 0]
-    np.testing.assert_allclose(plane[0] * properties.area, force, rtol=1e-9, atol=1e-9 * np.abs(force).max())
     np.testing.assert_allclose(
-        -(plane[1] * properties.iz + plane[2] * properties.iyz), about_z, rtol=1e-9, atol=1e-9 * abs(about_z).max()
+        plane[0] * properties.area, force, rtol=1e-9, atol=1e-9 * np.abs(force).max()
+    )
+    np.testing.assert_allclose(
+        -(plane[1] * properties.iz + plane[2] * properties.iyz),
+        about_z,
+        rtol=1e-9,
+        atol=1e-9 * abs(about_z).max(),
     )
     none = plane[1] * properties.iyz + plane[2] * properties.iy
     assert np.abs(none).max() < 1e-9 * np.abs(about_z).max()
 
 
-@pytest.mark.parametrize("kind", ["i_section", "t_section", "c_section", "box", "rectangle", "tube"])
+@pytest.mark.parametrize(
+    "kind", ["i_section", "t_section", "c_section", "box", "rectangle", "tube"]
+)
 def test_shear_stresses_carry_the_shear_force(kind):
-    """Jourawski's stress summed over slices of the outline is the force; at the fibres it is what the closed forms say."""
+    """Jourawski's stress summed over slices of the outline is the force; at the fibres it is what
+    the closed forms say.
+    """
     h, b, t = 0.05, 0.03, 0.004
-    shape = {"rectangle": beams.rectangle(h, b), "tube": beams.tube(h, t)}.get(kind) or getattr(beams, kind)(h, b, t, t)
+    shape = {"rectangle": beams.rectangle(h, b), "tube": beams.tube(h, t)}.get(kind) or getattr(
+        beams, kind
+    )(h, b, t, t)
     p = shape.properties()
     top, bottom = max(f.y for f in p.fibres), min(f.y for f in p.fibres)
     edges = np.linspace(bottom, top, 20001)
     y, step = (edges[1:] + edges[:-1]) / 2, edges[1] - edges[0]
     if kind == "tube":
-        width = 2 * np.sqrt((h / 2) ** 2 - y**2) - 2 * np.sqrt(np.maximum((h / 2 - t) ** 2 - y**2, 0.0))
+        width = 2 * np.sqrt((h / 2) ** 2 - y**2) - 2 * np.sqrt(
+            np.maximum((h / 2 - t) ** 2 - y**2, 0.0)
+        )
     else:
         flange = (y > top - t) | ((y < bottom + t) & (kind not in ("t_section",)))
-        width = np.where(flange, b, 2 * t if kind == "box" else t) if kind != "rectangle" else np.full_like(y, b)
+        width = (
+            np.where(flange, b, 2 * t if kind == "box" else t)
+            if kind != "rectangle"
+            else np.full_like(y, b)
+        )
     first = np.cumsum((y * width)[::-1])[::-1] * step
     stress = first / (p.iz * width)
     assert (stress * width).sum() * step == pytest.approx(1.0, rel=2e-3)
     # Of a tube the whole width is a place of it on the middle line alone.
-    inside = [f for f in p.fibres if f.along_y[0] > 0 and (abs(f.y) < 1e-9 if kind == "tube" else abs(f.y) < 0.999 * top)]
+    inside = [
+        f
+        for f in p.fibres
+        if f.along_y[0] > 0 and (abs(f.y) < 1e-9 if kind == "tube" else abs(f.y) < 0.999 * top)
+    ]
     assert inside
     for fibre in inside:
         k = min(int(np.searchsorted(y, fibre.y)), y.size - 2)
@@ -115,7 +146,9 @@ def robots():
         "round": beams.round_bar(0.03),
         "c": beams.c_section(0.05, 0.03, 0.004, 0.005),
     }
-    return {name: evaluate(strong.robot(shape), certificate=False) for name, shape in shapes.items()}
+    return {
+        name: evaluate(strong.robot(shape), certificate=False) for name, shape in shapes.items()
+    }
 
 
 @pytest.mark.parametrize("name", ["box", "round", "c"])
@@ -129,12 +162,16 @@ def test_in_space_the_largest_is_that_of_a_fine_grid(robots, name):
 
 
 def test_a_round_bar_in_space_is_the_textbooks_shaft(robots):
-    """32 sqrt(M^2 + (N d/8)^2 ...) aside: at the outermost fibre s = N/A + M/W and t = T/(2 W), fibres within 7.5 degrees of it."""
+    """32 sqrt(M^2 + (N d/8)^2 ...) aside: at the outermost fibre s = N/A + M/W and t = T/(2 W),
+    fibres within 7.5 degrees of it.
+    """
     solution, d = robots["round"], 0.03
     section, modulus = solution.section("upper").law, math.pi * d**3 / 32
     ends = np.zeros((solution.t.size, 1))
     n, m, t = (section.at(force, ends)[:, 0] for force in ("axial", "bending", "torsion"))
-    expected = np.hypot(np.abs(n) / (math.pi * d * d / 4) + m / modulus, math.sqrt(3) * t / (2 * modulus))
+    expected = np.hypot(
+        np.abs(n) / (math.pi * d * d / 4) + m / modulus, math.sqrt(3) * t / (2 * modulus)
+    )
     found = solution.stress("upper").grid("von_mises", np.zeros(1))[:, 0]
     shear = np.abs(section.at("shear", ends)[:, 0]) * 4 / 3 / (math.pi * d * d / 4)
     assert np.all(found <= expected + 3 * shear)
@@ -142,7 +179,9 @@ def test_a_round_bar_in_space_is_the_textbooks_shaft(robots):
 
 
 def test_a_c_is_twisted_by_what_bends_it(robots):
-    """Its shear centre is beyond the web: a force along y at the centroid twists it by that lever."""
+    """Its shear centre is beyond the web: a force along y at the centroid
+    twists it by that lever.
+    """
     stress = robots["c"].stress("upper")
     p = stress.member.cross.properties(0, 0.0)
     k = stress.fibres(0.0).index("inside of the web, middle")
@@ -153,29 +192,41 @@ def test_a_c_is_twisted_by_what_bends_it(robots):
 
 
 def test_notches_take_their_factors():
-    solution = evaluate(strong.press(I, [beams.Notch(0.25, axial=2.0, bending=3.0, shear=1.5)]), certificate=False)
+    solution = evaluate(
+        strong.press(I, [beams.Notch(0.25, axial=2.0, bending=3.0, shear=1.5)]), certificate=False
+    )
     stress = solution.stress("rod")
     notch = stress.member.beam.notches[0]
     plain, local = stress.at(0.25), stress.at(0.25, "tip", notch)
     ends = np.full((solution.t.size, 1), 0.25)
     axial = solution.section("rod").law.at("axial", ends)[:, 0] / I.area
-    np.testing.assert_allclose(local[0] - 2.0 * axial, 3.0 * (plain[0] - axial), rtol=1e-12, atol=1e-3)
+    np.testing.assert_allclose(
+        local[0] - 2.0 * axial, 3.0 * (plain[0] - axial), rtol=1e-12, atol=1e-3
+    )
     np.testing.assert_allclose(local[1:], 1.5 * plain[1:], rtol=1e-12)
     peak = stress.peak("normal", notches=True)
-    assert (peak.xi, peak.notch, abs(peak.value)) == (0.25, True, pytest.approx(np.abs(local[0]).max()))
+    assert (peak.xi, peak.notch, abs(peak.value)) == (
+        0.25,
+        True,
+        pytest.approx(np.abs(local[0]).max()),
+    )
 
 
 def test_a_file_gives_the_same(tmp_path, solutions):
     save(solutions["even"], tmp_path / "press.h5")
     again = load(tmp_path / "press.h5")
-    assert again.stress("rod").peak("von_mises") == solutions["even"].stress("rod").peak("von_mises")
+    assert again.stress("rod").peak("von_mises") == solutions["even"].stress("rod").peak(
+        "von_mises"
+    )
     assert again.safety("rod") == solutions["even"].safety("rod")
 
 
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("degree", [1, 3, 5, 17])
 def test_summits_are_found_where_the_highest_powers_are_nothing_too(degree):
-    """Random polynomials of any lower degree, with rounding in the place of what is not there, against a fine grid."""
+    """Random polynomials of any lower degree, with rounding in the place of what is not there,
+    against a fine grid.
+    """
     draw, grid = np.random.default_rng(degree), np.cos(np.linspace(0.0, math.pi, 6001))
     for true in range(degree + 1):
         c = np.zeros((3, 40, degree + 1))
@@ -194,10 +245,14 @@ def test_summits_are_found_where_the_highest_powers_are_nothing_too(degree):
 def test_what_has_no_stress(solutions, robots):
     with pytest.raises(UnknownNameError, match="unknown kind of stress 'von'"):
         solutions["even"].stress("rod").peak("von")
-    with pytest.raises(DeclarationError, match="link 'crank' has no beam, which says what it is made of; links with one: rod"):
+    with pytest.raises(
+        DeclarationError,
+        match="link 'crank' has no beam, which says what it is made of; links with one: rod",
+    ):
         solutions["even"].stress("crank")
     with pytest.raises(
-        DeclarationError, match="link 'upper' is twisted, and for torsion of a polygon there is no formula; give its"
+        DeclarationError,
+        match="link 'upper' is twisted, and for torsion of a polygon there is no formula; give its",
     ):
         evaluate(strong.robot(SHAPES["leaning"]), certificate=False).stress("upper")
     with pytest.raises(DeclarationError, match="were not wanted; want section:rod too"):

@@ -1,4 +1,6 @@
-"""The search for peaks between instants, on signals of every kind: by CasADi's virtual machine, in C, and in both precisions."""
+"""The search for peaks between instants, on signals of every kind: by CasADi's virtual machine, in
+C, and in both precisions.
+"""
 
 import math
 
@@ -31,7 +33,9 @@ def signal(law, grid=GRID):
 
 
 def true(law, grid=GRID, places=()):
-    """The largest size, by 200 001 times and by some places of which it is known that they matter."""
+    """The largest size, by 200 001 times and by some places of which it
+    is known that they matter.
+    """
     x = ca.SX.sym("x")
     times = np.append(np.linspace(*grid[:2], 200_001), places)
     values = np.abs(ca.Function("law", [x], [law(x)])(times[None]).full())
@@ -39,7 +43,9 @@ def true(law, grid=GRID, places=()):
 
 
 def searched(scene, rungs=RUNGS):
-    """What each way says of the one quantity: its tolerance, and its value, NaN where it is not told."""
+    """What each way says of the one quantity: its tolerance, and its value, NaN where it is not
+    told.
+    """
     solution = evaluate(scene, backend="vm", certificate=False)
     (peak,) = refine(scene, solution, [NAME])
     assert not abs(peak.value) < abs(solution.peak(NAME).value)
@@ -69,33 +75,66 @@ SIGNALS = {
     "in the first interval": (lambda x: bell(x, 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
     "in the last interval": (lambda x: bell(x, 2 - 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
     "at an end": (lambda x: ca.sqrt(x), []),
-    "a spike of a tenth of a step": (lambda x: 3 * bell(x, 1.013, 0.1 * STEP) + 0.5 * ca.cos(x), [1.013]),
-    "one downwards, of a hundredth": (lambda x: -3 * bell(x, 1.013, 0.01 * STEP) + 0.5 * ca.cos(x), [1.013]),
-    "beside ordinary data": (lambda x: 1 / (1 + ((x - 0.513) / (0.05 * STEP)) ** 2) + ca.sin(7 * x), [0.513]),
+    "a spike of a tenth of a step": (
+        lambda x: 3 * bell(x, 1.013, 0.1 * STEP) + 0.5 * ca.cos(x),
+        [1.013],
+    ),
+    "one downwards, of a hundredth": (
+        lambda x: -3 * bell(x, 1.013, 0.01 * STEP) + 0.5 * ca.cos(x),
+        [1.013],
+    ),
+    "beside ordinary data": (
+        lambda x: 1 / (1 + ((x - 0.513) / (0.05 * STEP)) ** 2) + ca.sin(7 * x),
+        [0.513],
+    ),
     "forty equal summits": (lambda x: ca.sin(64 * x), []),
-    "as fast as the instants": (lambda x: ca.sin(50 * math.pi * x + 0.3) * (1 + 1e-3 * ca.sin(3.3 * x)), []),
+    "as fast as the instants": (
+        lambda x: ca.sin(50 * math.pi * x + 0.3) * (1 + 1e-3 * ca.sin(3.3 * x)),
+        [],
+    ),
     "ever faster": (lambda x: x * ca.sin(30 * x * x), []),
     "a plateau": (lambda x: ca.fmin(1.0, 3 * ca.sin(x)), []),
     "a kink": (lambda x: 1 - ca.fabs(x - 1.013), [1.013]),
     "a narrow kink": (lambda x: tent(x, 1.013, 0.1 * STEP) + 0.2 * ca.cos(x), [1.013]),
-    "two kinks between two instants": (lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x, [1.013, 1.023]),
+    "two kinks between two instants": (
+        lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x,
+        [1.013, 1.023],
+    ),
     "a jump": (lambda x: x * (x < 1.0137), [np.nextafter(1.0137, 0)]),
     "two jumps between two instants": (lambda x: (x > 1.013) * (x < 1.0133) + 0.1 * ca.cos(x), []),
     "the sign of a rate": (lambda x: (1 + 0.3 * x) * ca.sign(ca.sin(5 * x - 1.3)), []),
     "steps": (lambda x: ca.floor(30 * x) * (1 - 0.03 * x) - ca.floor(20 * x), []),
     "nearly a pole": (lambda x: 1 / ((x - 1.0137) ** 2 + 1e-6), [1.0137]),
-    "nearly one, on both sides": (lambda x: (x - 1.0137) / ((x - 1.0137) ** 2 + 1e-5) + 0.2 * ca.cos(x), []),
-    "a steep change and back": (lambda x: ca.tanh((x - 1.013) / 1e-3) - ca.tanh((x - 1.0135) / 1e-3) + 0.2 * ca.cos(x), []),
+    "nearly one, on both sides": (
+        lambda x: (x - 1.0137) / ((x - 1.0137) ** 2 + 1e-5) + 0.2 * ca.cos(x),
+        [],
+    ),
+    "a steep change and back": (
+        lambda x: ca.tanh((x - 1.013) / 1e-3) - ca.tanh((x - 1.0135) / 1e-3) + 0.2 * ca.cos(x),
+        [],
+    ),
     "a high power": (lambda x: ca.cos(x - 1.0137) ** 1000 + 0.2 * ca.cos(x), [1.0137]),
-    "a jump at the last instant": (lambda x: ca.fmod(x, 2.0) + 0.3 * ca.sin(x), [np.nextafter(2.0, 0)]),
+    "a jump at the last instant": (
+        lambda x: ca.fmod(x, 2.0) + 0.3 * ca.sin(x),
+        [np.nextafter(2.0, 0)],
+    ),
     "a jump at the first instant": (lambda x: (2.5 - x) * (x > 0), [np.nextafter(0.0, 1)]),
-    "a remainder, in the middle of a step": (lambda x: ca.fmod(x, 0.7137) * (1 - 0.2 * x), [np.nextafter(0.7137, 0)]),
+    "a remainder, in the middle of a step": (
+        lambda x: ca.fmod(x, 0.7137) * (1 - 0.2 * x),
+        [np.nextafter(0.7137, 0)],
+    ),
     "kinks of a remainder": (
         lambda x: ca.fabs(ca.fmod(x + 0.3, 0.9137) - 0.4) + 0.01 * ca.sin(9 * x),
         [0.6137 - 1e-15, 1.5274 - 1e-15],
     ),
-    "a kink beside an instant": (lambda x: 1 - ca.fabs(x - 1.0 - 1e-13) + 0.1 * x * x, [1.0, 1 + 1e-13]),
-    "a kink of a curved argument": (lambda x: 1 - ca.fabs(ca.exp(x) - 2.7713) / 5, [math.log(2.7713)]),
+    "a kink beside an instant": (
+        lambda x: 1 - ca.fabs(x - 1.0 - 1e-13) + 0.1 * x * x,
+        [1.0, 1 + 1e-13],
+    ),
+    "a kink of a curved argument": (
+        lambda x: 1 - ca.fabs(ca.exp(x) - 2.7713) / 5,
+        [math.log(2.7713)],
+    ),
     "constant": (lambda x: 3.0 + 0 * x, []),
     "nothing": (lambda x: 0 * x, []),
 }
@@ -116,7 +155,10 @@ def test_the_largest_is_found(name):
 
 
 @pytest.mark.sampled(7)
-@pytest.mark.parametrize("name", ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"])
+@pytest.mark.parametrize(
+    "name",
+    ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"],
+)
 def test_other_rungs_search_alike(name):
     """Singles come in other packs: a jump between the lanes of one must be seen too."""
     assert_found(name, OTHERS)
@@ -139,7 +181,9 @@ def test_a_hundred_summits(count):
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
 def test_few_instants(count):
-    """However few the instants are, the peak is that of all times between the first and the last."""
+    """However few the instants are, the peak is that of all times between
+    the first and the last.
+    """
 
     def law(x):
         return ca.sin(3 * x) + 0.3 * ca.cos(8 * x)
@@ -162,7 +206,9 @@ class Counted:
         return Samples(self.law(t)[None], np.full((1, t.size), np.nan), watched)
 
 
-@pytest.mark.parametrize("law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)])
+@pytest.mark.parametrize(
+    "law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)]
+)
 def test_what_goes_straight_on_to_an_end_needs_no_cuts(law):
     """It is looked at in the end step, and believed."""
     times = np.linspace(0.0, 2.0, 51)
@@ -194,7 +240,9 @@ def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
 
 
 def local(values, share):
-    """The local tops of values, all of them (down to the least) or those down to a share of the largest."""
+    """The local tops of values, all of them (down to the least) or those down to a share of the
+    largest.
+    """
     around = np.pad(values, 1, constant_values=-np.inf)
     tops = np.flatnonzero((values >= around[:-2]) & (values > around[2:]))
     return tops[values[tops] >= (values.min() if share is None else share * values.max())]
@@ -204,7 +252,9 @@ def local(values, share):
 @pytest.mark.parametrize("way", [0, 1, -1])
 @pytest.mark.parametrize("language", ["c", "c++", None])
 def test_local_peaks_are_listed(language, way):
-    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant the first instant."""
+    """Those of sizes, or of values one way, smooth, at a kink, and at the ends; of what is constant
+    the first instant.
+    """
     find = peaks if language is None else codegen.load_search(codegen.find_compiler(language)).peaks
     laws = (
         lambda x: np.sin(9 * x) + 0.4 * x,
@@ -220,7 +270,14 @@ def test_local_peaks_are_listed(language, way):
 
     times, fine = np.linspace(0.0, 2.0, 51), np.linspace(0.0, 2.0, 200_001)
     curves = Curves((0, 1, 2, 3), (0, 1, 2, 3), (), (Watch(Kind.SWITCH, (1.013,)),))
-    found = find(Source(), curves, times, Source().at(times), np.zeros(50, bool), Listed(0.51 if way else 0.3, way))
+    found = find(
+        Source(),
+        curves,
+        times,
+        Source().at(times),
+        np.zeros(50, bool),
+        Listed(0.51 if way else 0.3, way),
+    )
     plain = find(Source(), curves, times, Source().at(times), np.zeros(50, bool))
     assert found.told.all()
     for k, law in enumerate(laws):
@@ -230,7 +287,9 @@ def test_local_peaks_are_listed(language, way):
         assert (rows[:, 0] == 0).all()
         rows = rows[np.argsort(rows[:, 1])]
         np.testing.assert_allclose(rows[:, 3], law(rows[:, 1]), rtol=0, atol=1e-14)
-        assert found.value[k] == pytest.approx(rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13)
+        assert found.value[k] == pytest.approx(
+            rows[np.argmax(way * rows[:, 3] if way else np.abs(rows[:, 3])), 3], rel=1e-13
+        )
         if not way:
             assert found.value[k] == pytest.approx(plain.value[k], rel=1e-13)
         if k == 3:
@@ -246,14 +305,21 @@ def test_local_peaks_are_listed(language, way):
 
 
 def test_what_touches_zero_by_rounding_opens_few_steps():
-    """As the slope of a cam's lift where its cycle begins anew: its sign is that of its rounding, at all times that are near."""
+    """As the slope of a cam's lift where its cycle begins anew: its sign is that of its rounding,
+    at all times that are near.
+    """
 
     def slope(t):
         return (t - 1.0137) ** 3 + 6e-30 * np.sin(1e16 * t)
 
-    source, times = Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope), np.linspace(0.0, 2.0, 51)
+    source, times = (
+        Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope),
+        np.linspace(0.0, 2.0, 51),
+    )
     watches = (Watch(Kind.SWITCH, (0.0, 1e-30)),)
-    found = peaks(source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool))
+    found = peaks(
+        source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool)
+    )
     assert found.told.all()
     assert source.times < 1000
 
@@ -280,7 +346,9 @@ def test_what_grows_without_an_end_too_slowly_is_not_told():
 
 @pytest.mark.long
 def test_what_takes_too_many_times_is_not_told():
-    """Of 200 000 teeth each is a little larger than the one before; that of the instants must not pass for the peak."""
+    """Of 200 000 teeth each is a little larger than the one before; that of the instants must not
+    pass for the peak.
+    """
     law = lambda x: ca.fmod(x, 1e-5) * (1 + x)  # noqa: E731
     scene = signal(law)
     (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
@@ -290,18 +358,26 @@ def test_what_takes_too_many_times_is_not_told():
 
 
 @settings(max_examples=8, deadline=None)
-@example([(1.0, 2.0**-23, 1.0)], (2.0, 0.125, -1.0), 2)  # a steep flank, whose differences grow with their order
+@example(
+    [(1.0, 2.0**-23, 1.0)], (2.0, 0.125, -1.0), 2
+)  # a steep flank, whose differences grow with their order
 @given(
-    st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 60), st.floats(0, 6)), min_size=1, max_size=4),
+    st.lists(
+        st.tuples(st.floats(-1, 1), st.floats(0, 60), st.floats(0, 6)), min_size=1, max_size=4
+    ),
     st.tuples(st.floats(0, 2), st.floats(1e-4, 1.0), st.floats(-3, 3)),
     st.integers(2, 60),
 )
 def test_any_signal(waves, hump, count):
-    """Waves and a bell of any width, at any number of instants: no peak is short, but it may say that it cannot be told."""
+    """Waves and a bell of any width, at any number of instants: no peak is short, but it may say
+    that it cannot be told.
+    """
     place, width, height = hump
 
     def law(x):
-        return sum(a * ca.sin(w * x + phase) for a, w, phase in waves) + height * bell(x, place, width)
+        return sum(a * ca.sin(w * x + phase) for a, w, phase in waves) + height * bell(
+            x, place, width
+        )
 
     scene = signal(law, (0.0, 2.0, count))
     (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])

@@ -22,7 +22,9 @@ numbers = st.floats(-1e6, 1e6)
 def test_a_range_is_that_of_numpy_but_for_rounding(start, width, count):
     values = Range(start, start + width, count).at(np.arange(count))
     scale = max(abs(start), abs(start + width))
-    np.testing.assert_allclose(values, np.linspace(start, start + width, count), rtol=0, atol=4e-16 * scale)
+    np.testing.assert_allclose(
+        values, np.linspace(start, start + width, count), rtol=0, atol=4e-16 * scale
+    )
     assert values[0] == start
     assert values[-1] == start + width
 
@@ -42,7 +44,11 @@ def test_what_is_written_is_what_there_is():
 
 
 def test_equal_values_are_one_sweep_however_they_are_written():
-    assert Grid({"l": (0.2, 0.4, 3)}).describe() == Grid({"l": [0.2, 0.3, 0.4]}).describe() == {"l": "0.2:0.4:3"}
+    assert (
+        Grid({"l": (0.2, 0.4, 3)}).describe()
+        == Grid({"l": [0.2, 0.3, 0.4]}).describe()
+        == {"l": "0.2:0.4:3"}
+    )
     assert Grid({"l": [0.2, 0.4]}).describe() == {"l": "0.2:0.4:2"}
     for other in ([0.2, 0.31, 0.4], [0.4, 0.3, 0.2], [0.2, 0.30000000000000004, 0.4], [0.2]):
         assert Grid({"l": other}).describe() == {"l": ",".join(map(repr, other))}
@@ -51,7 +57,15 @@ def test_equal_values_are_one_sweep_however_they_are_written():
 @pytest.mark.parametrize(
     "designs",
     [
-        Grid({"l": (0.1, 0.4, 31), "r": [1.0, 2.0, 4.0], "m": np.arange(50.0) ** 2, "n": (1.0, 9.0, 7, True), "o": [2.0]}),
+        Grid(
+            {
+                "l": (0.1, 0.4, 31),
+                "r": [1.0, 2.0, 4.0],
+                "m": np.arange(50.0) ** 2,
+                "n": (1.0, 9.0, 7, True),
+                "o": [2.0],
+            }
+        ),
         Listed(("l", "r"), np.zeros((12345, 2))),
         Listed(("l",), np.zeros((1, 1))),
     ],
@@ -61,7 +75,12 @@ def test_the_words_tell_how_many(designs):
 
 
 def test_counts_in_words():
-    assert [counted(n) for n in (0, 1, 2, 12345)] == ["0 designs", "1 design", "2 designs", "12 345 designs"]
+    assert [counted(n) for n in (0, 1, 2, 12345)] == [
+        "0 designs",
+        "1 design",
+        "2 designs",
+        "12 345 designs",
+    ]
 
 
 @given(st.floats(1e-6, 1e3), st.floats(1.5, 1e6), st.integers(2, 300))
@@ -91,7 +110,14 @@ def test_a_grid_too_large_to_hold_is_no_matter():
 
 def test_what_python_gives_becomes_axes():
     grid = Grid(
-        {"a": (0.0, 1.0, 3), "b": [1.0, 2.0, 4.0], "c": np.array([3.0]), "d": 4.0, "e": (1.0, 2.0), "f": (1.0, 100.0, 3, True)}
+        {
+            "a": (0.0, 1.0, 3),
+            "b": [1.0, 2.0, 4.0],
+            "c": np.array([3.0]),
+            "d": 4.0,
+            "e": (1.0, 2.0),
+            "f": (1.0, 100.0, 3, True),
+        }
     )
     assert grid.describe() == {
         "a": "0.0:1.0:3",
@@ -113,7 +139,10 @@ def test_long_lists_are_told_apart_by_their_digest():
 @pytest.mark.parametrize(
     ("given", "says"),
     [
-        ((0.4, 0.1, 5), "grid of l: STOP must be after START, got 0.4:0.1:5: the range is reversed"),
+        (
+            (0.4, 0.1, 5),
+            "grid of l: STOP must be after START, got 0.4:0.1:5: the range is reversed",
+        ),
         ((0.1, 0.4, 0), "grid of l: COUNT must be at least 1, got 0.1:0.4:0: the range is empty"),
         ((0.1, np.nan, 5), "grid of l: START and STOP must be finite, got 0.1:nan:5"),
         ((0.1, np.inf, 5), "START and STOP must be finite"),
@@ -174,17 +203,32 @@ def test_all_values_out_of_range_are_named_at_once():
 
     mechanism = load_case(CASES / "slider_crank").scene.mechanism
     with pytest.raises(ParameterError) as caught:
-        check_designs(Grid({"l": (-0.1, 0.4, 6), "r": [0.1, 0.2], "m1": [0.1, -1.0, -2.0]}), mechanism.parameters, {})
-    assert str(caught.value) == "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its range [0, inf]"
+        check_designs(
+            Grid({"l": (-0.1, 0.4, 6), "r": [0.1, 0.2], "m1": [0.1, -1.0, -2.0]}),
+            mechanism.parameters,
+            {},
+        )
+    assert (
+        str(caught.value)
+        == "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its range [0, inf]"
+    )
     with pytest.raises(ParameterError) as caught:
         check_designs(
-            Listed(("l", "r"), [[-1, 1], [1, 1], [1, -3]], np.array([2, 3, 5])), mechanism.parameters, {"m1": -4.0, "m2": 0.1}
+            Listed(("l", "r"), [[-1, 1], [1, 1], [1, -3]], np.array([2, 3, 5])),
+            mechanism.parameters,
+            {"m1": -4.0, "m2": 0.1},
         )
-    told = "l = -1 in line 2, out of its range [0, inf]; r = -3 in line 5, out of its range [0, inf]; parameter 'm1' = -4 kg is "
+    told = (
+        "l = -1 in line 2, out of its range [0, inf]; r = -3 in line 5, out of its range [0, inf];"
+        " parameter 'm1' = -4 kg is "
+    )
     assert str(caught.value) == f"{told}out of its range [0, inf]"
     with pytest.raises(ParameterError) as caught:
         check_designs(Grid({"l": [0.2]}), mechanism.parameters, {"r": -1.0, "m1": np.nan})
-    told = "parameter 'r' = -1 m is out of its range [0, inf]; parameter 'm1' must be a finite number, got nan"
+    told = (
+        "parameter 'r' = -1 m is out of its range [0, inf]; parameter 'm1' must be a finite number,"
+        " got nan"
+    )
     assert str(caught.value) == told
 
 
@@ -196,9 +240,16 @@ def test_names_are_checked():
     mechanism = sweeps.scene().mechanism
     with pytest.raises(UnknownNameError, match=r"unknown parameter 'q'; valid: r, l, m1, m2, m3"):
         check_designs(Grid({"q": [1.0]}), mechanism.parameters, {})
-    with pytest.raises(UnknownNameError, match=r"unknown parameters 'q', 'k', 'x'; valid: r, l, m1, m2, m3"):
-        check_designs(Grid({"q": [1.0], "l": [1.0], "k": [1.0]}), mechanism.parameters, {"x": 1.0, "r": 0.1})
+    with pytest.raises(
+        UnknownNameError, match=r"unknown parameters 'q', 'k', 'x'; valid: r, l, m1, m2, m3"
+    ):
+        check_designs(
+            Grid({"q": [1.0], "l": [1.0], "k": [1.0]}), mechanism.parameters, {"x": 1.0, "r": 0.1}
+        )
     with pytest.raises(DeclarationError, match=r"parameter 'l' is swept and set to 0\.3 as well"):
         check_designs(Grid({"l": [1.0]}), mechanism.parameters, {"l": 0.3})
-    with pytest.raises(DeclarationError, match=r"'design' is a result of a sweep, not a parameter: take the results out"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"'design' is a result of a sweep, not a parameter: take the results out",
+    ):
         check_designs(Listed(("design", "l"), [[0.0, 1.0]]), mechanism.parameters, {})

@@ -41,13 +41,19 @@ def test_the_best_is_the_least_in_size(swept):
 def test_what_has_no_result_is_never_best(swept):
     failed = np.flatnonzero(swept["status"].ravel())
     assert failed.size
-    for objectives in ({"minimise": ["l"]}, {"maximise": ["r"]}, {"minimise": ["l"], "maximise": ["r"]}):
+    for objectives in (
+        {"minimise": ["l"]},
+        {"maximise": ["r"]},
+        {"minimise": ["l"], "maximise": ["r"]},
+    ):
         found = best(swept, **objectives, count=1000)
         assert not {design.number for design in found} & set(failed.tolist())
 
 
 def test_conditions_hold(swept):
-    found = best(swept, minimise=[BENDING], where=["l < 0.3", "r>=0.06", f"{EFFORT}<=0.5"], count=1000)
+    found = best(
+        swept, minimise=[BENDING], where=["l < 0.3", "r>=0.06", f"{EFFORT}<=0.5"], count=1000
+    )
     sizes, efforts = (np.abs(swept[name]) for name in (BENDING, EFFORT))
     there = (swept["l"][:, None] < 0.3) & (swept["r"] >= 0.06) & (efforts <= 0.5) & ~np.isnan(sizes)
     assert {design.number for design in found} == set(np.flatnonzero(there))
@@ -55,11 +61,20 @@ def test_conditions_hold(swept):
 
 
 def test_one_name_may_stand_alone(swept):
-    assert best(swept, minimise=BENDING, columns=EFFORT) == best(swept, minimise=[BENDING], columns=[EFFORT])
-    assert best(swept, maximise=BENDING, where="l<0.3") == best(swept, maximise=[BENDING], where=["l<0.3"])
+    assert best(swept, minimise=BENDING, columns=EFFORT) == best(
+        swept, minimise=[BENDING], columns=[EFFORT]
+    )
+    assert best(swept, maximise=BENDING, where="l<0.3") == best(
+        swept, maximise=[BENDING], where=["l<0.3"]
+    )
     condition = Condition("l", "<", 0.3)
-    assert best(swept, maximise=BENDING, where=condition) == best(swept, maximise=[BENDING], where=[condition])
-    assert sum(numbers.size for numbers, _ in chosen(swept, "l", "l<0.3")) == 6 * (swept["l"] < 0.3).sum()
+    assert best(swept, maximise=BENDING, where=condition) == best(
+        swept, maximise=[BENDING], where=[condition]
+    )
+    assert (
+        sum(numbers.size for numbers, _ in chosen(swept, "l", "l<0.3"))
+        == 6 * (swept["l"] < 0.3).sum()
+    )
 
 
 def test_values_that_never_are_are_told_with_the_nearest(swept):
@@ -67,7 +82,8 @@ def test_values_that_never_are_are_told_with_the_nearest(swept):
     assert missed(swept, wanted) == "; no design has l = 0.151; nearest: 0.15, 0.1631578947"
     assert (
         missed(swept, ["l=1", "r==0"])
-        == "; no design has l = 1; nearest: 0.4, 0.3868421053; no design has r = 0; nearest: 0.05, 0.06"
+        == "; no design has l = 1; nearest: 0.4, 0.3868421053; no design has r = 0; nearest: 0.05,"
+        " 0.06"
     )
 
 
@@ -87,7 +103,7 @@ def test_the_front_of_two(swept):
     pairs = np.stack([np.abs(swept[name]).ravel() for name in (BENDING, EFFORT)], axis=1)
     there = np.flatnonzero(~np.isnan(pairs).any(axis=1))
     expected = [
-        i for i in there if not any((pairs[j] <= pairs[i]).all() and (pairs[j] < pairs[i]).any() for j in there)
+        i for i in there if not any((pairs[j] <= pairs[i]).all() and (pairs[j] < pairs[i]).any() for j in there)  # noqa: E501
     ]  # fmt: skip
     assert sorted(front) == expected
     assert (np.diff(pairs[front, 0]) > 0).all()
@@ -97,14 +113,24 @@ def test_the_front_of_two(swept):
 def test_a_front_is_what_nothing_beats(pairs):
     costs = np.array(pairs, float).reshape(-1, 2).T
     found = {pairs[i] for i in _front(costs)}
-    beaten = {p for p, q in itertools.product(pairs, pairs) if q[0] <= p[0] and q[1] <= p[1] and q != p}
+    beaten = {
+        p for p, q in itertools.product(pairs, pairs) if q[0] <= p[0] and q[1] <= p[1] and q != p
+    }
     assert found == set(pairs) - beaten
     assert len(_front(costs)) == len(found)
 
 
 @pytest.mark.parametrize(
     ("relation", "expected"),
-    [("<", [1]), ("<=", [1, 2]), (">", [3]), (">=", [2, 3]), ("==", [2]), ("=", [2]), ("!=", [1, 3])],
+    [
+        ("<", [1]),
+        ("<=", [1, 2]),
+        (">", [3]),
+        (">=", [2, 3]),
+        ("==", [2]),
+        ("=", [2]),
+        ("!=", [1, 3]),
+    ],
 )
 def test_relations(relation, expected):
     values = np.array([1.0, 2.0, 3.0, np.nan])
@@ -113,7 +139,10 @@ def test_relations(relation, expected):
 
 def test_peaks_are_compared_by_size():
     assert Condition.parse("peak:effort:O>2").holds(np.array([-3.0, 1.0])).tolist() == [True, False]
-    assert Condition.parse("mean:effort:O>2").holds(np.array([-3.0, 1.0])).tolist() == [False, False]
+    assert Condition.parse("mean:effort:O>2").holds(np.array([-3.0, 1.0])).tolist() == [
+        False,
+        False,
+    ]
 
 
 def test_what_a_grid_rounds_is_what_was_meant():
@@ -133,7 +162,10 @@ def test_what_is_no_condition_is_named(text):
 
 
 def test_what_cannot_be_asked_is_named(swept):
-    with pytest.raises(DeclarationError, match="expected one column to minimise or maximise, or two for their front, got 0"):
+    with pytest.raises(
+        DeclarationError,
+        match="expected one column to minimise or maximise, or two for their front, got 0",
+    ):
         best(swept)
     with pytest.raises(DeclarationError, match="got 3"):
         best(swept, minimise=[EFFORT, BENDING], maximise=["l"])
@@ -153,5 +185,7 @@ def test_what_cannot_be_asked_is_named(swept):
 
 def test_what_is_selected_is_what_is_searched(swept):
     cut = swept.select(l=(0.2, 0.3))
-    assert all(0.2 <= design.values["l"] <= 0.3 for design in best(cut, minimise=[BENDING], count=10))
+    assert all(
+        0.2 <= design.values["l"] <= 0.3 for design in best(cut, minimise=[BENDING], count=10)
+    )
     assert sum(numbers.size for numbers, _ in chosen(cut, ["l"])) == cut.size

@@ -1,4 +1,6 @@
-"""A sweep carried out: the same bytes however it was cut, stopped and resumed; and nothing half-written is believed."""
+"""A sweep carried out: the same bytes however it was cut, stopped and resumed; and nothing
+half-written is believed.
+"""
 
 import os
 import random
@@ -78,7 +80,11 @@ def test_a_part_lost_or_damaged_is_done_again(whole, tmp_path):
     content[-3] ^= 1
     second.write_bytes(content)
     with pytest.raises(
-        StoreError, match=r"was damaged, in column .*, and is deleted; \d+ of 420 designs are kept in .*resume=True"
+        StoreError,
+        match=(
+            r"was damaged, in column .*, and is deleted; \d+ of 420 designs are kept in"
+            r" .*resume=True"
+        ),
     ):
         run(path, resume=True)
     assert run(path, resume=True) == whole
@@ -108,13 +114,18 @@ def test_resume_starts_where_there_is_nothing(whole, tmp_path):
 
 def test_what_is_there_is_not_overwritten(whole, tmp_path):
     path = tmp_path / "whole.h5"
-    with pytest.raises(PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True goes on"):
+    with pytest.raises(
+        PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True goes on"
+    ):
         run(path)
     assert path.read_bytes() == whole
     with pytest.raises(StopError):
         run(path, force=True, progress=stop_after(2))
     assert path.read_bytes() == whole
-    with pytest.raises(PathError, match=r"whole\.h5\.parts holds an unfinished sweep: go on with resume=True, or start anew"):
+    with pytest.raises(
+        PathError,
+        match=r"whole\.h5\.parts holds an unfinished sweep: go on with resume=True, or start anew",
+    ):
         run(path)
     assert run(path, resume=True) == whole
     assert run(path, force=True) == whole
@@ -136,11 +147,16 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
 def test_a_file_that_another_program_writes_is_left_alone(whole, tmp_path):
     path = tmp_path / "whole.h5"
     before = path.stat().st_ino
-    program = f"import h5py, sys; h = h5py.File({str(path)!r}, 'r+'); print('open', flush=True); sys.stdin.read()"
+    program = (
+        f"import h5py, sys; h = h5py.File({str(path)!r}, 'r+'); print('open', flush=True);"
+        " sys.stdin.read()"
+    )
     with sweeps.process(sys.executable, "-c", program, stdin=subprocess.PIPE) as holder:
         assert holder.stdout.readline() == "open\n"
         for keywords in ({}, {"force": True}, {"resume": True}):
-            with pytest.raises(BusyError, match=r"cannot write .*whole\.h5: another program has it open to write"):
+            with pytest.raises(
+                BusyError, match=r"cannot write .*whole\.h5: another program has it open to write"
+            ):
                 run(path, **keywords)
     assert path.stat().st_ino == before
     assert os.listdir(tmp_path) == ["whole.h5"]
@@ -150,9 +166,15 @@ def test_a_file_that_another_program_writes_is_left_alone(whole, tmp_path):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"grid": {"l": (0.15, 0.4, 61), "r": (0.05, 0.1, 7)}}, "grid l was 0.15:0.4:60 and is 0.15:0.4:61"),
+        (
+            {"grid": {"l": (0.15, 0.4, 61), "r": (0.05, 0.1, 7)}},
+            "grid l was 0.15:0.4:60 and is 0.15:0.4:61",
+        ),
         ({"grid": {"l": (0.15, 0.4, 60)}}, "grid r was there, and is not"),
-        ({"grid": {"r": (0.05, 0.1, 7), "l": (0.15, 0.4, 60)}}, "the axes of the grid were l, r and are r, l"),
+        (
+            {"grid": {"r": (0.05, 0.1, 7), "l": (0.15, 0.4, 60)}},
+            "the axes of the grid were l, r and are r, l",
+        ),
         ({"parameters": {"m3": 0.2}}, "mechanism parameters m3 value was 0.1 and is 0.2"),
         ({"wanted": ["effort"]}, "wanted reactions was "),
         ({"t": (0, 0.08, 9)}, "t was [0.0, 0.08, 7] and is [0.0, 0.08, 9]"),
@@ -176,8 +198,12 @@ def test_another_sweep_is_refused_with_the_difference(whole, tmp_path, change, s
 def test_another_version_is_refused(whole, engine, tmp_path, monkeypatch):
     from dataclasses import replace
 
-    monkeypatch.setattr(engine, "provenance", replace(engine.provenance, versions={"lagrange_casadi": "9.9"}))
-    with pytest.raises(StoreError, match=r"another sweep: versions lagrange_casadi was .* and is 9\.9"):
+    monkeypatch.setattr(
+        engine, "provenance", replace(engine.provenance, versions={"lagrange_casadi": "9.9"})
+    )
+    with pytest.raises(
+        StoreError, match=r"another sweep: versions lagrange_casadi was .* and is 9\.9"
+    ):
         run(tmp_path / "whole.h5", resume=True)
 
 
@@ -187,7 +213,9 @@ def test_another_law_of_motion_is_refused(whole, tmp_path):
 
     scene = sweeps.scene()
     other = Scene(scene.mechanism, {"O": polynomial(0, 1)}, t=scene.t, posture=scene.posture)
-    with pytest.raises(StoreError, match="an expression, a law of motion or the posture of the scene has changed"):
+    with pytest.raises(
+        StoreError, match="an expression, a law of motion or the posture of the scene has changed"
+    ):
         sweep(other, GRID, out=tmp_path / "whole.h5", resume=True)
 
 
@@ -209,7 +237,12 @@ def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
     (folder / "plan.json").unlink()
     (folder / "000000000900-000000000901.part").write_text("damaged")
     before = sorted(os.listdir(folder))
-    with pytest.raises(PathError, match=r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"):
+    with pytest.raises(
+        PathError,
+        match=(
+            r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"
+        ),
+    ):
         run(path, **keywords)
     assert sorted(os.listdir(folder)) == before
     assert run(path, force=True) == whole

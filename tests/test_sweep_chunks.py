@@ -63,7 +63,9 @@ def test_the_checksum_of_any_bytes(content):
 
 
 def test_the_checksum_of_many_bytes():
-    """Where sums of words of 16 bits would not fit into 32: there a word counts as often as words follow it."""
+    """Where sums of words of 16 bits would not fit into 32: there a word counts as often as words
+    follow it.
+    """
     count = 1 << 25
     assert fletcher32(b"\xff" * count + b"\0\1") == 1 << 16 | 1
     assert fletcher32(b"\0\1" + bytes(2 * count)) == (count + 1) % 0xFFFF << 16 | 1
@@ -78,5 +80,7 @@ def test_zlib_reads_what_is_partly_stored(rows, size, value):
 
 
 def test_noise_is_stored_and_the_rest_is_small():
-    planes = np.vstack([RANDOM.integers(0, 256, (5, 30_000), np.uint8), np.zeros((3, 30_000), np.uint8)])
+    planes = np.vstack(
+        [RANDOM.integers(0, 256, (5, 30_000), np.uint8), np.zeros((3, 30_000), np.uint8)]
+    )
     assert 5 * 30_000 < len(deflated(planes)) < 5 * 30_000 + 1000

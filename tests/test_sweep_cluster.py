@@ -20,7 +20,9 @@ from lagrange_casadi.cluster.sweeps import Cluster
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.studies.sweep import columns, sweep
 
-distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
+distributed = pytest.importorskip(
+    "distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'"
+)
 
 # Workers build as users do, and give numbers of the same code only.
 pytestmark = pytest.mark.usefixtures("released")
@@ -37,13 +39,18 @@ def small_blocks():
         yield
 
 
-WITHOUT = "import runpy, sys; sys.modules['lagrange_casadi'] = None; runpy.run_module('dask', run_name='__main__')"
+WITHOUT = (
+    "import runpy, sys; sys.modules['lagrange_casadi'] = None; runpy.run_module('dask',"
+    " run_name='__main__')"
+)
 """Dask where this package is not."""
 
 
 @contextlib.contextmanager
 def started(folder, workers, without=()):
-    """The address of a scheduler, its process, and those of its workers; ``without`` this package those of which it says so."""
+    """The address of a scheduler, its process, and those of its workers; ``without`` this package
+    those of which it says so.
+    """
     told = folder / "scheduler.json"
 
     def dask(who):
@@ -51,12 +58,33 @@ def started(folder, workers, without=()):
 
     quiet = {"env": {**os.environ, "DASK_LOGGING__DISTRIBUTED": "critical"}}
     with contextlib.ExitStack() as stack:
-        begun = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(told))
+        begun = (
+            "scheduler",
+            "--host",
+            "127.0.0.1",
+            "--port",
+            "0",
+            "--no-dashboard",
+            "--scheduler-file",
+            str(told),
+        )
         scheduler = stack.enter_context(sweeps.process(*dask("scheduler"), *begun, **quiet))
         sweeps.wait_for(lambda: told.exists() and told.read_text().endswith("}"))
         address = json.loads(told.read_text())["address"]
-        begin = ("worker", address, "--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
-        found = [stack.enter_context(sweeps.process(*dask(k), *begin, cwd=folder, **quiet)) for k in range(workers)]
+        begin = (
+            "worker",
+            address,
+            "--nworkers",
+            "1",
+            "--nthreads",
+            "1",
+            "--no-dashboard",
+            "--no-nanny",
+        )
+        found = [
+            stack.enter_context(sweeps.process(*dask(k), *begin, cwd=folder, **quiet))
+            for k in range(workers)
+        ]
         if workers:
             with distributed.Client(address, set_as_default=False) as client:
                 client.wait_for_workers(workers)
@@ -91,18 +119,29 @@ def test_two_worker_processes_give_the_same_bytes(slider_crank, two_workers, who
 SPACE = {
     "rssr": {"grid": {"r": (0.05, 0.1, 60)}, "wanted": ["effort"]},
     "cardan_shaft": {"grid": {"aside": (0.02, 0.1, 60)}, "wanted": ["effort"]},
-    "spatial_slider_crank": {"grid": {"l": (0.4, 0.5, 60)}, "wanted": ["effort", "section:rod"], "xi": (0, 1, 5)},
+    "spatial_slider_crank": {
+        "grid": {"l": (0.4, 0.5, 60)},
+        "wanted": ["effort", "section:rod"],
+        "xi": (0, 1, 5),
+    },
 }
 """Loops of closed forms, iterated loops, and the peaks of resultants along a link."""
 
 
 def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tmp_path):
-    words = {"minimise": "peak:effort:O", "over": {"l": (0.12, 0.8), "r": (0.05, 0.1)}, "subject_to": ["r >= 0.07"], "starts": 3}
+    words = {
+        "minimise": "peak:effort:O",
+        "over": {"l": (0.12, 0.8), "r": (0.05, 0.1)},
+        "subject_to": ["r >= 0.07"],
+        "starts": 3,
+    }
     words |= {"t": (0, 0.08, 41), "screen": 16}
     here, there = tmp_path / "here.h5", tmp_path / "there.h5"
     found = optimise(slider_crank, **words, out=here)
     assert found.converged
-    assert optimise(slider_crank, **words, out=there, dask=two_workers).starts[2].ending == "converged"
+    assert (
+        optimise(slider_crank, **words, out=there, dask=two_workers).starts[2].ending == "converged"
+    )
     assert there.read_bytes() == here.read_bytes()
 
 
@@ -111,7 +150,9 @@ def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tm
 def test_mechanisms_in_space_give_the_same_bytes_too(name, two_workers, tmp_path):
     case, asked = load_case(name), SPACE[name] | {"t": (0, 0.1, 17)}
     local = sweep(case, **asked, out=tmp_path / "here.h5").path.read_bytes()
-    assert sweep(case, **asked, out=tmp_path / "there.h5", dask=two_workers).path.read_bytes() == local
+    assert (
+        sweep(case, **asked, out=tmp_path / "there.h5", dask=two_workers).path.read_bytes() == local
+    )
 
 
 def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_path):
@@ -125,7 +166,12 @@ def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_
     with pytest.raises(StoppedError, match=r"stopped; \d+ of 480 designs are kept"):
         sweep(slider_crank, GRID, **ASKED, out=path, dask=two_workers, progress=progress)
     assert 1 < parts(path) <= 6
-    assert sweep(slider_crank, GRID, **ASKED, out=path, dask=two_workers, resume=True).path.read_bytes() == whole
+    assert (
+        sweep(
+            slider_crank, GRID, **ASKED, out=path, dask=two_workers, resume=True
+        ).path.read_bytes()
+        == whole
+    )
 
 
 def test_ctrl_c_comes_through_while_there_is_no_worker(slider_crank, tmp_path):
@@ -150,12 +196,19 @@ def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path):
                 workers[0].send_signal(signal.SIGKILL)
                 killed.append(workers[0].wait())
 
-        assert sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress).path.read_bytes() == whole
+        assert (
+            sweep(
+                slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress
+            ).path.read_bytes()
+            == whole
+        )
     assert killed == [-signal.SIGKILL]
 
 
 @pytest.mark.long
-def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, capfd):
+def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(
+    slider_crank, whole, tmp_path, capfd
+):
     path = tmp_path / "x.h5"
     with started(tmp_path, 1) as (address, scheduler, _):
 
@@ -164,7 +217,10 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
                 scheduler.send_signal(signal.SIGKILL)
                 scheduler.wait()
 
-        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with resume=True"
+        told = (
+            rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in"
+            r" .*: go on with resume=True"
+        )
         with pytest.raises(ClusterError, match=told):
             sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)
     assert capfd.readouterr().err == ""
@@ -176,9 +232,29 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("frozen", ["scheduler", "worker"])
 def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, number, frozen):
-    asked = ["sweep", str(slider_crank.path), "--grid", "l=0.12:0.4:4000", "--grid", "r=0.05:0.1:250", "--t", "0:0.08:21"]
+    asked = [
+        "sweep",
+        str(slider_crank.path),
+        "--grid",
+        "l=0.12:0.4:4000",
+        "--grid",
+        "r=0.05:0.1:250",
+        "--t",
+        "0:0.08:21",
+    ]
     with started(tmp_path, 1) as (address, scheduler, (worker,)):
-        command = [sys.executable, "-m", "lagrange_casadi", *asked, "--want", "effort", "--out", "x.h5", "--dask", address]
+        command = [
+            sys.executable,
+            "-m",
+            "lagrange_casadi",
+            *asked,
+            "--want",
+            "effort",
+            "--out",
+            "x.h5",
+            "--dask",
+            address,
+        ]
         with sweeps.process(*command, cwd=tmp_path) as stopped:
             sweeps.wait_for(lambda: parts(tmp_path / "x.h5"))
             stuck = {"scheduler": scheduler, "worker": worker}[frozen]
@@ -190,7 +266,11 @@ def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, n
             assert time.monotonic() - began < 10.0
         stuck.send_signal(signal.SIGCONT)
     assert (stopped.returncode, out) == (130, "")
-    assert re.fullmatch(r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n", err)
+    assert re.fullmatch(
+        r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with"
+        r" --resume\n",
+        err,
+    )
 
 
 @pytest.mark.long
@@ -204,19 +284,39 @@ def test_a_worker_that_is_frozen_for_a_while_is_waited_for(slider_crank, whole, 
                 held.append(threading.Timer(1.5, worker.send_signal, (signal.SIGCONT,)))
                 held[0].start()
 
-        assert sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress).path.read_bytes() == whole
+        assert (
+            sweep(
+                slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress
+            ).path.read_bytes()
+            == whole
+        )
     assert held
 
 
 def test_workers_without_the_package_are_named_at_once(slider_crank, two_workers, tmp_path):
-    begin = ("worker", two_workers, "--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
+    begin = (
+        "worker",
+        two_workers,
+        "--nworkers",
+        "1",
+        "--nthreads",
+        "1",
+        "--no-dashboard",
+        "--no-nanny",
+    )
     with distributed.Client(two_workers, set_as_default=False) as client:
         with sweeps.process(sys.executable, "-c", WITHOUT, *begin, cwd=tmp_path):
             client.wait_for_workers(3)
-            lacking = [name for name, there in client.run(eval, cluster._PROBE).items() if not there]
+            lacking = [
+                name for name, there in client.run(eval, cluster._PROBE).items() if not there
+            ]
             assert len(lacking) == 1
             with pytest.raises(
-                ClusterError, match=rf"^no lagrange_casadi on worker {lacking[0]}: install it there too; nothing was done yet$"
+                ClusterError,
+                match=(
+                    rf"^no lagrange_casadi on worker {lacking[0]}: install it there too; nothing"
+                    r" was done yet$"
+                ),
             ):
                 sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=two_workers)
         sweeps.wait_for(lambda: len(client.nthreads()) == 2)
@@ -225,37 +325,64 @@ def test_workers_without_the_package_are_named_at_once(slider_crank, two_workers
 
 @pytest.mark.long
 def test_a_worker_without_the_package_that_comes_later_is_named(slider_crank, tmp_path):
-    asked = {"grid": {"l": (0.12, 0.4, 4000), "r": (0.05, 0.1, 250)}, "t": (0, 0.08, 21), "wanted": ["effort"]}
+    asked = {
+        "grid": {"l": (0.12, 0.4, 4000), "r": (0.05, 0.1, 250)},
+        "t": (0, 0.08, 21),
+        "wanted": ["effort"],
+    }
     with started(tmp_path, 1) as (address, *_), contextlib.ExitStack() as stack:
-        later = [sys.executable, "-c", WITHOUT, "worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny"]
+        later = [
+            sys.executable,
+            "-c",
+            WITHOUT,
+            "worker",
+            address,
+            "--nthreads",
+            "1",
+            "--no-dashboard",
+            "--no-nanny",
+        ]
 
         def progress(_what, done, _total, begun=[]):  # noqa: B006
             if done and not begun:
                 begun.append(stack.enter_context(sweeps.process(*later, cwd=tmp_path)))
 
         with pytest.raises(
-            ClusterError, match=r"^no lagrange_casadi on worker tcp://\S+: install it there too; [\d ]+ of 1 000 000"
+            ClusterError,
+            match=(
+                r"^no lagrange_casadi on worker tcp://\S+: install it there too; [\d ]+ of 1"
+                r" 000 000"
+            ),
         ):
             sweep(slider_crank, **asked, out=tmp_path / "x.h5", dask=address, progress=progress)
 
 
-@pytest.mark.parametrize("address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"])
+@pytest.mark.parametrize(
+    "address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"]
+)
 def test_what_is_no_address_is_one_line(slider_crank, tmp_path, address):
-    with pytest.raises(DeclarationError, match=f"dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'"):
+    with pytest.raises(
+        DeclarationError,
+        match=f"dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'",
+    ):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1"])
 def test_what_cannot_be_reached_is_one_line(slider_crank, tmp_path, monkeypatch, address):
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
-    with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {re.escape(address)}: ") as caught:
+    with pytest.raises(
+        ClusterError, match=f"no Dask scheduler answers at {re.escape(address)}: "
+    ) as caught:
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
     assert "\n" not in str(caught.value)
 
 
 @contextlib.contextmanager
 def answering(says):
-    """The address of what accepts connections and says this, or goodbye at once, and the connections it has accepted."""
+    """The address of what accepts connections and says this, or goodbye at once, and the
+    connections it has accepted.
+    """
 
     def serve():
         with contextlib.suppress(OSError):
@@ -298,7 +425,9 @@ def test_what_is_no_scheduler_is_one_line(slider_crank, tmp_path, monkeypatch, c
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
     with (
         answering(says) as (address, _),
-        pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}: {told}") as caught,
+        pytest.raises(
+            ClusterError, match=f"no Dask scheduler answers at {address}: {told}"
+        ) as caught,
     ):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
     assert "\n" not in str(caught.value)
@@ -309,7 +438,9 @@ def test_what_is_no_scheduler_is_one_line(slider_crank, tmp_path, monkeypatch, c
 def test_a_worker_is_no_scheduler(slider_crank, two_workers, tmp_path):
     with distributed.Client(two_workers, set_as_default=False) as client:
         address = next(iter(client.nthreads()))
-    with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}: it is a worker"):
+    with pytest.raises(
+        ClusterError, match=f"no Dask scheduler answers at {address}: it is a worker"
+    ):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
@@ -319,7 +450,9 @@ def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path
     asked = ["sweep", str(slider_crank.path), "--grid", "l=0.2,0.3", "--out", "x.h5"]
     with (
         answering(b"") as (address, accepted),
-        sweeps.process(sys.executable, "-m", "lagrange_casadi", *asked, "--dask", address, cwd=tmp_path) as stopped,
+        sweeps.process(
+            sys.executable, "-m", "lagrange_casadi", *asked, "--dask", address, cwd=tmp_path
+        ) as stopped,
     ):
         sweeps.wait_for(lambda: accepted)
         stopped.send_signal(number)
@@ -330,12 +463,17 @@ def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path
 
 def test_a_cluster_and_threads_exclude_each_other(slider_crank, tmp_path):
     with pytest.raises(DeclarationError, match="workers and dask exclude each other"):
-        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2)
+        sweep(
+            slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2
+        )
 
 
 def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ClusterError, match=r"a cluster needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
+    with pytest.raises(
+        ClusterError,
+        match=r"a cluster needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'",
+    ):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
     assert isinstance(load_case(slider_crank.path), Case)
     assert Cluster("tcp://x:1").address == "tcp://x:1"

@@ -29,7 +29,9 @@ def swept(slider_crank):
 def plain(slider_crank):
     """Every design evaluated by itself."""
     return {
-        (i, j): evaluate(slider_crank.scene, parameters={"l": l, "r": r, "m3": 0.3}, t=SPAN, xi=(0, 1, 5))
+        (i, j): evaluate(
+            slider_crank.scene, parameters={"l": l, "r": r, "m3": 0.3}, t=SPAN, xi=(0, 1, 5)
+        )
         for i, l in enumerate(LENGTHS)
         for j, r in enumerate(CRANKS)
     }
@@ -40,7 +42,9 @@ def test_peaks_are_those_between_the_instants(slider_crank, swept, plain):
     for place, solution in plain.items():
         for peak in refine(slider_crank.scene, solution, forces(solution)):
             if solution.unit(peak.name) and abs(peak.value) > 1e-9:
-                np.testing.assert_allclose(swept[f"peak:{peak.name}"][place], peak.value, rtol=1e-8, err_msg=peak.name)
+                np.testing.assert_allclose(
+                    swept[f"peak:{peak.name}"][place], peak.value, rtol=1e-8, err_msg=peak.name
+                )
                 compared += 1
             if peak.xi is not None:
                 assert 0.0 <= swept[f"peak_xi:{peak.name}"][place] <= 1.0
@@ -49,8 +53,12 @@ def test_peaks_are_those_between_the_instants(slider_crank, swept, plain):
 
 def test_the_instant_and_the_ratio_of_a_peak_give_its_value(slider_crank, swept):
     for i, l in enumerate(LENGTHS):
-        at, xi = (float(swept[f"{kind}:section:rod:bending"][i, 0]) for kind in ("peak_t", "peak_xi"))
-        there = evaluate(slider_crank.scene, parameters={"l": l, "r": CRANKS[0], "m3": 0.3}, t=(at, at, 1))
+        at, xi = (
+            float(swept[f"{kind}:section:rod:bending"][i, 0]) for kind in ("peak_t", "peak_xi")
+        )
+        there = evaluate(
+            slider_crank.scene, parameters={"l": l, "r": CRANKS[0], "m3": 0.3}, t=(at, at, 1)
+        )
         value = there.section("rod").law.at("bending", np.array([[xi]]))[0, 0]
         np.testing.assert_allclose(value, swept["peak:section:rod:bending"][i, 0], rtol=1e-9)
 
@@ -65,7 +73,9 @@ def test_resultants_are_no_less_than_their_members(swept, plain):
 def test_means_are_over_time(swept, plain):
     for place, solution in plain.items():
         effort = solution.effort("O")
-        np.testing.assert_allclose(swept["rms:effort:O"][place], np.sqrt(np.mean(effort**2)), rtol=0.05)
+        np.testing.assert_allclose(
+            swept["rms:effort:O"][place], np.sqrt(np.mean(effort**2)), rtol=0.05
+        )
         assert abs(swept["mean:effort:O"][place]) < swept["rms:effort:O"][place]
 
 
@@ -74,7 +84,12 @@ def test_histories_are_those_of_a_plain_evaluation(swept, plain):
         assert swept[f"history:{name}"].shape == (2, 2, 129)
         for place, solution in plain.items():
             size = np.abs(solution.series[name]).max()
-            np.testing.assert_allclose(swept[f"history:{name}"][place], solution.series[name], atol=1e-11 * size, err_msg=name)
+            np.testing.assert_allclose(
+                swept[f"history:{name}"][place],
+                solution.series[name],
+                atol=1e-11 * size,
+                err_msg=name,
+            )
 
 
 def test_section_forces_along_the_link(swept, plain):
@@ -84,7 +99,11 @@ def test_section_forces_along_the_link(swept, plain):
         for place, solution in plain.items():
             expected = getattr(solution.section("rod"), force)
             np.testing.assert_allclose(grid[place], expected, atol=1e-11 * np.abs(expected).max())
-            np.testing.assert_allclose(np.abs(largest[place]), np.abs(expected).max(axis=0), atol=1e-11 * np.abs(expected).max())
+            np.testing.assert_allclose(
+                np.abs(largest[place]),
+                np.abs(expected).max(axis=0),
+                atol=1e-11 * np.abs(expected).max(),
+            )
 
 
 def test_a_tapered_link_and_what_acts_along_it(tmp_path):
@@ -96,15 +115,34 @@ def test_a_tapered_link_and_what_acts_along_it(tmp_path):
     case = load_case(CASES / "quick_return")
     name, parameter = next(iter(case.scene.mechanism.parameters.items()))
     values = [parameter.default, parameter.default * 1.02]
-    found = sweep(case, {name: values}, t=(0, 0.1, 5), xi=(0, 1, 7), keep="histories", wanted=["section:rocker"])
+    found = sweep(
+        case,
+        {name: values},
+        t=(0, 0.1, 5),
+        xi=(0, 1, 7),
+        keep="histories",
+        wanted=["section:rocker"],
+    )
     for i, value in enumerate(values):
-        solution = evaluate(case.scene, parameters={name: value}, t=(0, 0.1, 5), xi=(0, 1, 7), wanted=["section:rocker"])
+        solution = evaluate(
+            case.scene,
+            parameters={name: value},
+            t=(0, 0.1, 5),
+            xi=(0, 1, 7),
+            wanted=["section:rocker"],
+        )
         expected = solution.section("rocker").bending
-        np.testing.assert_allclose(found["history:section:rocker:bending"][i], expected, atol=1e-11 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            found["history:section:rocker:bending"][i],
+            expected,
+            atol=1e-11 * np.abs(expected).max(),
+        )
 
 
 def test_a_design_without_a_result_is_a_row_without_numbers(slider_crank):
-    found = sweep(slider_crank, {"l": [0.05, 0.2], "r": [0.1]}, t=SPAN, xi=(0, 1, 3), keep="histories")
+    found = sweep(
+        slider_crank, {"l": [0.05, 0.2], "r": [0.1]}, t=SPAN, xi=(0, 1, 3), keep="histories"
+    )
     word, sentence = found.statuses[int(found["status"][0, 0])]
     assert word != "ok"
     assert sentence
@@ -139,7 +177,12 @@ def test_what_is_kept(slider_crank):
 
 def test_units(swept):
     units = {name: kept.unit for name, kept in swept.columns.items()}
-    assert units["peak:effort:O"] == units["rms:effort:O"] == units["peak:section:rod:bending"] == "N m"
+    assert (
+        units["peak:effort:O"]
+        == units["rms:effort:O"]
+        == units["peak:section:rod:bending"]
+        == "N m"
+    )
     assert units["peak:reaction:A:resultant"] == units["peak_at:section:rod:axial"] == "N"
     assert units["peak_t:effort:O"] == "s"
     assert units["peak_xi:section:rod:bending"] == units["status"] == "1"
@@ -147,9 +190,14 @@ def test_units(swept):
 
 def test_what_cannot_be_kept_is_named(slider_crank):
     grid = {"l": [0.2, 0.3]}
-    with pytest.raises(UnknownNameError, match="unknown choice of what to keep 'all'; valid: peaks, laws, histories"):
+    with pytest.raises(
+        UnknownNameError,
+        match="unknown choice of what to keep 'all'; valid: peaks, laws, histories",
+    ):
         sweep(slider_crank, grid, keep="all")
-    with pytest.raises(DeclarationError, match="xi: ratios are kept of section forces, and none is wanted"):
+    with pytest.raises(
+        DeclarationError, match="xi: ratios are kept of section forces, and none is wanted"
+    ):
         sweep(slider_crank, grid, wanted=["effort"], xi=(0, 1, 3))
     with pytest.raises(DeclarationError, match="keep laws: the laws are those of section forces"):
         sweep(slider_crank, grid, wanted=["effort"], keep="laws")
@@ -158,17 +206,38 @@ def test_what_cannot_be_kept_is_named(slider_crank):
 
 
 def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
-    with pytest.raises(SizeError, match=r"history:section:crank:axial of one design takes 4\.48 GiB, a chunk 2 GiB at most"):
-        sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 1_000_000), xi=(0, 1, 601), keep="histories", out=tmp_path / "x.h5")
+    with pytest.raises(
+        SizeError,
+        match=r"history:section:crank:axial of one design takes 4\.48 GiB, a chunk 2 GiB at most",
+    ):
+        sweep(
+            slider_crank,
+            {"l": [0.2, 0.3]},
+            t=(0, 0.08, 1_000_000),
+            xi=(0, 1, 601),
+            keep="histories",
+            out=tmp_path / "x.h5",
+        )
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.base.room.memory", lambda: 2.05e7)
     with pytest.raises(
-        SizeError, match=r"no room for a design and what it is made from: 4 x .* GB, and this machine has 0\.0205 GB"
+        SizeError,
+        match=(
+            r"no room for a design and what it is made from: 4 x .* GB, and this machine has"
+            r" 0\.0205 GB"
+        ),
     ):
-        sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 1001), xi=(0, 1, 201), keep="histories", out=tmp_path / "x.h5")
+        sweep(
+            slider_crank,
+            {"l": [0.2, 0.3]},
+            t=(0, 0.08, 1001),
+            xi=(0, 1, 201),
+            keep="histories",
+            out=tmp_path / "x.h5",
+        )
     assert list(tmp_path.iterdir()) == []
 
 

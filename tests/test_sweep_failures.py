@@ -1,4 +1,6 @@
-"""A sweep that fails or is killed: what was done is kept, nothing half-written is believed, and it is resumed to the same bytes."""
+"""A sweep that fails or is killed: what was done is kept, nothing half-written is believed, and it
+is resumed to the same bytes.
+"""
 
 import os
 import random
@@ -39,7 +41,12 @@ def test_out_of_memory_is_one_line_and_keeps_what_was_done(whole, engine, tmp_pa
         return fine(p, **keywords)
 
     monkeypatch.setattr(engine, "evaluate", fail)
-    with pytest.raises(SizeError, match=r"out of memory: fewer workers take less; 28 of 420 designs are kept in .*resume=True"):
+    with pytest.raises(
+        SizeError,
+        match=(
+            r"out of memory: fewer workers take less; 28 of 420 designs are kept in .*resume=True"
+        ),
+    ):
         run(tmp_path / "x.h5", workers=1)
     assert run(tmp_path / "x.h5", resume=True) == whole
 
@@ -58,7 +65,12 @@ def test_a_part_that_cannot_be_read_is_named(whole, tmp_path, monkeypatch):
 
     with monkeypatch.context() as patch:
         patch.setattr(Folder, "parts", listed)
-        with pytest.raises(StoreError, match=rf"cannot read {lost}: .*No such file or directory.*; \d+ of 420 designs are kept"):
+        with pytest.raises(
+            StoreError,
+            match=(
+                rf"cannot read {lost}: .*No such file or directory.*; \d+ of 420 designs are kept"
+            ),
+        ):
             run(path, resume=True)
     assert run(path, resume=True) == whole
 
@@ -82,7 +94,11 @@ def test_a_disk_without_room_is_told_after_the_first_block(whole, engine, tmp_pa
     monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**4))
     engine.calls.clear()
     with pytest.raises(
-        StoreError, match=r"what is still to be written takes about \S+ GB, and the disk has 1e-05 GB left; 14 of 420"
+        StoreError,
+        match=(
+            r"what is still to be written takes about \S+ GB, and the disk has 1e-05 GB left; 14"
+            r" of 420"
+        ),
     ):
         run(tmp_path / "x.h5", workers=1)
     assert len(engine.calls) < 4
@@ -111,14 +127,18 @@ PROGRAM = """
 
 
 def program(out, *, pause=0.0, limit=resource.RLIM_INFINITY, grid=GRID):
-    text = PROGRAM.format(tests=os.path.dirname(__file__), out=str(out), pause=pause, limit=limit, grid=grid)
+    text = PROGRAM.format(
+        tests=os.path.dirname(__file__), out=str(out), pause=pause, limit=limit, grid=grid
+    )
     return sweeps.process(sys.executable, "-c", textwrap.dedent(text))
 
 
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("limit", [500, 2_900, 30_000, 60_000])
 def test_a_full_disk_is_one_line_and_loses_nothing(whole, tmp_path, limit):
-    """Real writes that fail, of the plan, of a part, and at places of the file; the system's limit stands for a full disk."""
+    """Real writes that fail, of the plan, of a part, and at places of the file; the system's limit
+    stands for a full disk.
+    """
     path = tmp_path / "x.h5"
     with program(path, limit=limit) as full:
         out, err = full.communicate(timeout=60)
@@ -133,14 +153,18 @@ def test_a_full_disk_is_one_line_and_loses_nothing(whole, tmp_path, limit):
 
 
 def test_killed_at_random_moments(whole, tmp_path):
-    """kill -9, while blocks are evaluated, committed, joined and put in place; and resumed each time."""
+    """kill -9, while blocks are evaluated, committed, joined and put in place; and resumed each
+    time.
+    """
     path, chance, phases = tmp_path / "x.h5", random.Random(20), set()
     kills = 0
     while kills < 4 or (kills < 24 and not phases >= {"beginning", "blocks"}):
         with program(path, pause=2e-4) as running:
             assert running.stdout.readline() == "ready\n"
             if kills % 2:
-                sweeps.wait_for(lambda: any(tmp_path.glob("x.h5.parts/*.part")) or running.poll() is not None)
+                sweeps.wait_for(
+                    lambda: any(tmp_path.glob("x.h5.parts/*.part")) or running.poll() is not None
+                )
             try:
                 # The first time at once, before there is anything.
                 running.wait(timeout=chance.uniform(0.0, 0.25) if kills else 0.0)

@@ -25,7 +25,21 @@ def file(monkeypatch, tmp_path):
 
 def test_layout(file):
     with h5py.File(file) as h:
-        assert set(h) == {"grid", "l", "r", "t", "xi", "status", "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history"}
+        assert set(h) == {
+            "grid",
+            "l",
+            "r",
+            "t",
+            "xi",
+            "status",
+            "peak",
+            "peak_t",
+            "peak_xi",
+            "mean",
+            "rms",
+            "peak_at",
+            "history",
+        }
         np.testing.assert_array_equal(h["grid/l"], [0.15, 0.2, 0.25, 0.3, 0.35, 0.4])
         assert h["grid/l"] == h["l"]
         assert h["l"].attrs["units"] == "m"
@@ -87,17 +101,25 @@ def test_xarray_opens_a_list(monkeypatch, tmp_path, engine):
 def test_columns_stand_at_their_designs(file, monkeypatch):
     """Against the formula itself, called for all designs at once in an order written out here."""
     engine = sweeps.Formula()
-    designs = [[r, l, 0.1, 0.1, 0.1] for l in [0.15, 0.2, 0.25, 0.3, 0.35, 0.4] for r in (0.05, 0.1, 0.07)]
+    designs = [
+        [r, l, 0.1, 0.1, 0.1] for l in [0.15, 0.2, 0.25, 0.3, 0.35, 0.4] for r in (0.05, 0.1, 0.07)
+    ]
     outcome = engine.evaluate(np.array(designs), histories=True)
     with h5py.File(file) as h:
         np.testing.assert_array_equal(h["status"][()].ravel(), outcome.status)
-        np.testing.assert_array_equal(h["peak/reaction/A/resultant"][()].ravel(), outcome.value[:, 1])
+        np.testing.assert_array_equal(
+            h["peak/reaction/A/resultant"][()].ravel(), outcome.value[:, 1]
+        )
         np.testing.assert_array_equal(h["peak/reaction/A/fx"][()].ravel(), outcome.value[:, 2])
         np.testing.assert_array_equal(h["peak_t/section/rod/axial"][()].ravel(), outcome.t[:, 3])
-        np.testing.assert_array_equal(h["peak_xi/section/rod/bending"][()].ravel(), outcome.xi[:, 5])
+        np.testing.assert_array_equal(
+            h["peak_xi/section/rod/bending"][()].ravel(), outcome.xi[:, 5]
+        )
         np.testing.assert_array_equal(h["mean/effort/O"][()].ravel(), outcome.mean[:, 0])
         np.testing.assert_array_equal(h["rms/effort/O"][()].ravel(), outcome.rms[:, 0])
-        np.testing.assert_array_equal(h["history/section/rod/law/f1"][()].reshape(18, 7), outcome.series[:, 5])
+        np.testing.assert_array_equal(
+            h["history/section/rod/law/f1"][()].reshape(18, 7), outcome.series[:, 5]
+        )
         assert (outcome.status != 0).any()
 
 
@@ -114,6 +136,9 @@ def test_names_that_the_file_keeps_are_refused(monkeypatch, tmp_path):
     link = m.link("a", length=m.parameter("t", 0.1, "m"), mass=1.0)
     m.revolute("O", m.ground, link)
     scene = Scene(m, {"O": polynomial(0, 1)})
-    with pytest.raises(DeclarationError, match="parameter 't' cannot be an axis: the file keeps that name for its own"):
+    with pytest.raises(
+        DeclarationError,
+        match="parameter 't' cannot be an axis: the file keeps that name for its own",
+    ):
         sweep(scene, {"t": [0.1, 0.2]}, out=tmp_path / "x.h5")
     assert list(tmp_path.iterdir()) == []

@@ -1,4 +1,6 @@
-"""Sweeps whose designs have instants of their own: the axis they share, in files, tables and xarray."""
+"""Sweeps whose designs have instants of their own: the axis they share, in files, tables and
+xarray.
+"""
 
 import math
 import pickle
@@ -26,7 +28,9 @@ TURN = math.tau
 def over(tmp_path_factory):
     path = tmp_path_factory.mktemp("over") / "x.h5"
     scene = press(wanted=["effort", "section:rod"])
-    return sweep(scene, GRID, over=("O", 0, "360 deg", 37), keep="histories", xi=(0, 1, 3), out=path)
+    return sweep(
+        scene, GRID, over=("O", 0, "360 deg", 37), keep="histories", xi=(0, 1, 3), out=path
+    )
 
 
 def test_histories_are_over_the_drives_coordinate(over):
@@ -35,10 +39,16 @@ def test_histories_are_over_the_drives_coordinate(over):
     assert over.unit("over") == "rad"
     assert over.column("history:effort:O").axes == ("over",)
     assert over.column("history:section:rod:bending").axes == ("over", "xi")
-    np.testing.assert_allclose(over["history:t"][:, 0], [np.arange(37) / 36, np.arange(37) / 360], rtol=1e-14)
+    np.testing.assert_allclose(
+        over["history:t"][:, 0], [np.arange(37) / 36, np.arange(37) / 360], rtol=1e-14
+    )
     solution = evaluate(press(), over=("O", 0, TURN, 37), parameters={"rpm": 60.0, "l": 0.4})
     np.testing.assert_allclose(over["history:effort:O"][0, 1], solution.effort("O"), atol=1e-12)
-    np.testing.assert_allclose(over["peak_over:effort:O"], over["peak_t:effort:O"] * TURN * np.array([[1.0], [10.0]]), rtol=1e-14)
+    np.testing.assert_allclose(
+        over["peak_over:effort:O"],
+        over["peak_t:effort:O"] * TURN * np.array([[1.0], [10.0]]),
+        rtol=1e-14,
+    )
     assert over.column("peak_over:effort:O").unit == "rad"
 
 
@@ -54,7 +64,16 @@ def test_the_file_is_whole_and_others_read_it(over):
 
 
 def test_tables_have_the_axis_as_a_column(over, tmp_path):
-    words = ["table", str(over.path), "--column", "history:t", "--column", "history:effort:O", "--csv", str(tmp_path / "x.csv")]
+    words = [
+        "table",
+        str(over.path),
+        "--column",
+        "history:t",
+        "--column",
+        "history:effort:O",
+        "--csv",
+        str(tmp_path / "x.csv"),
+    ]
     assert CliRunner().invoke(program, words).exit_code == 0
     lines = (tmp_path / "x.csv").read_text().splitlines()
     assert lines[0] == "rpm,l,over,history:t,history:effort:O"
@@ -65,7 +84,9 @@ def test_tables_have_the_axis_as_a_column(over, tmp_path):
 
 
 def test_bounds_that_are_expressions_make_each_design_whole(tmp_path):
-    """A sweep over the speed sees the whole turn, where one over fixed times leaves most of it out."""
+    """A sweep over the speed sees the whole turn, where one over fixed times
+    leaves most of it out.
+    """
     scene = press(wanted=["effort"], t=lambda rpm: (0, 60 / rpm, 61))
     found = sweep(scene, {"rpm": (60.0, 6000.0, 4)}, keep="histories", out=tmp_path / "x.h5")
     assert found.column("history:effort:O").axes == ("cycle",)
@@ -76,12 +97,20 @@ def test_bounds_that_are_expressions_make_each_design_whole(tmp_path):
     start, stop, count = found.identity["t"]
     assert (start, count) == (0.0, 61)
     assert stop.startswith("(60/rpm) #")
-    assert "t [s]: 0 to (60/rpm), 61 points" in CliRunner().invoke(program, ["info", str(found.path)]).output
+    assert (
+        "t [s]: 0 to (60/rpm), 61 points"
+        in CliRunner().invoke(program, ["info", str(found.path)]).output
+    )
     assert check_sweep(found.path) == []
 
 
 def test_a_design_without_instants_has_a_status_and_no_numbers():
-    found = sweep(press(wanted=["effort"]), {"rpm": [-60.0, 0.0, 60.0]}, over=("O", 0, TURN, 37), keep="histories")
+    found = sweep(
+        press(wanted=["effort"]),
+        {"rpm": [-60.0, 0.0, 60.0]},
+        over=("O", 0, TURN, 37),
+        keep="histories",
+    )
     assert found["status"].tolist() == [Status.NO_INSTANTS, Status.NO_INSTANTS, 0]
     assert found.statuses[Status.NO_INSTANTS][0] == "no_instants"
     for name in ("peak:effort:O", "peak_over:effort:O", "history:t"):
@@ -91,7 +120,9 @@ def test_a_design_without_instants_has_a_status_and_no_numbers():
 
 def test_sweeps_over_times_do_not_know_of_it(tmp_path):
     """Files of before keep their axes, columns and statuses."""
-    found = sweep(slider_crank(["effort"]), {"l": (0.2, 0.3, 3)}, keep="histories", out=tmp_path / "x.h5")
+    found = sweep(
+        slider_crank(["effort"]), {"l": (0.2, 0.3, 3)}, keep="histories", out=tmp_path / "x.h5"
+    )
     assert list(found.columns) == [
         "status",
         "peak:effort:O",
@@ -111,7 +142,10 @@ def test_a_sweep_goes_on_only_over_the_same_instants(tmp_path):
     scene, path = press(wanted=["effort"]), tmp_path / "x.h5"
     sweep(scene, GRID, over=("O", 0, TURN, 37), out=path)
     before = path.read_bytes()
-    assert sweep(scene, GRID, over=("O", 0, TURN, 37), out=path, resume=True).path.read_bytes() == before
+    assert (
+        sweep(scene, GRID, over=("O", 0, TURN, 37), out=path, resume=True).path.read_bytes()
+        == before
+    )
     with pytest.raises(StoreError, match=r"is of another sweep: t was \[0\.0, 6\.28"):
         sweep(scene, GRID, over=("O", 0, 2 * TURN, 37), out=path, resume=True)
     with pytest.raises(DeclarationError, match="t and over exclude each other"):
@@ -120,7 +154,9 @@ def test_a_sweep_goes_on_only_over_the_same_instants(tmp_path):
 
 @pytest.mark.parametrize("asked", ["t", "over"])
 def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
-    """What is asked for is sent without the expressions of this process, and comes to the same bytes."""
+    """What is asked for is sent without the expressions of this process, and comes to the same
+    bytes.
+    """
     scene = press(uneven, wanted=["effort"])
     rpm = scene.mechanism.parameters["rpm"].symbol
     words = {"t": {"t": (0, 60 / rpm, 31)}, "over": {"over": ("O", rpm / 6000, TURN, 31)}}[asked]
@@ -129,7 +165,9 @@ def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
     task = pickle.loads(pickle.dumps(plan.task))
     graph = derive(other)
     harvest = task.harvest(graph)
-    assert signature(graph, task, harvest.engine.provenance) == signature(plan.graph, plan.task, plan.harvest.engine.provenance)
+    assert signature(graph, task, harvest.engine.provenance) == signature(
+        plan.graph, plan.task, plan.harvest.engine.provenance
+    )
     for one, column in zip(harvest.evaluate(p), plan.harvest.evaluate(p), strict=True):
         assert one.tobytes() == column.tobytes()
 
@@ -141,6 +179,8 @@ def test_a_parameter_may_bear_the_name_of_an_axis_that_is_not_there(tmp_path):
     over = m.parameter("over", 1.0, "m")
     m.revolute("O", m.ground, m.link("a", length=over, mass=1.0))
     scene = Scene(m, {"O": motion.polynomial(0, 1.0)}, ["effort"])
-    assert Sweep.open(sweep(scene, {"over": [1.0, 2.0]}, out=tmp_path / "x.h5").path).dimensions == {"over": 2}
+    assert Sweep.open(
+        sweep(scene, {"over": [1.0, 2.0]}, out=tmp_path / "x.h5").path
+    ).dimensions == {"over": 2}
     with pytest.raises(DeclarationError, match="parameter 'over' cannot be an axis"):
         sweep(scene, {"over": [1.0, 2.0]}, over=("O", 0, 1, 5))

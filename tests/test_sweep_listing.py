@@ -32,16 +32,24 @@ def test_angles_may_have_a_unit(tmp_path):
     m.parameter("phi", 0.0, "rad", low=0.0, high=2.0)
     m.parameter("l", 0.2, "m")
     listed = read_designs(path)
-    np.testing.assert_array_equal(listed.rows, [[math.pi / 6, 0.2], [0.5, 0.3], [math.pi / 2, 0.4], [1.0, 0.1]])
+    np.testing.assert_array_equal(
+        listed.rows, [[math.pi / 6, 0.2], [0.5, 0.3], [math.pi / 2, 0.4], [1.0, 0.1]]
+    )
     check_designs(listed, m.parameters, {})
     path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n0.5,20 deg\n")
-    with pytest.raises(DeclarationError, match=r"d\.csv, column 'l': expected numbers \[m\], not angles"):
+    with pytest.raises(
+        DeclarationError, match=r"d\.csv, column 'l': expected numbers \[m\], not angles"
+    ):
         check_designs(read_designs(path), m.parameters, {})
     path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n")
-    with pytest.raises(ParameterError, match=r"phi = 3\.490658504 in line 3, out of its range \[0, 2\]"):
+    with pytest.raises(
+        ParameterError, match=r"phi = 3\.490658504 in line 3, out of its range \[0, 2\]"
+    ):
         check_designs(read_designs(path), m.parameters, {})
     path.write_text("phi,l\nmuch deg,0.2\n")
-    with pytest.raises(DeclarationError, match="line 2, column 'phi': expected a finite number, got 'much deg'"):
+    with pytest.raises(
+        DeclarationError, match="line 2, column 'phi': expected a finite number, got 'much deg'"
+    ):
         read_designs(path)
 
 
@@ -56,15 +64,30 @@ def test_angles_may_have_a_unit(tmp_path):
         ("l,r\n0.2,\n", "line 2, column 'r': expected a finite number, got ''"),
         ("l,r\nnan,0.1\n", "line 2, column 'l': expected a finite number, got 'nan'"),
         ("l,,r\n1,2,3\n", "line 1, column 2: expected a parameter's name, got an empty cell"),
-        ("0.2,0.1\n0.3,0.1\n", "line 1, column 1: expected a parameter's name, got '0.2': put a line of names above the numbers"),
-        ("l,r\n0,2,0,1\n", "line 2: 4 cells, expected 2: decimal commas? expected points, or ';' between cells"),
+        (
+            "0.2,0.1\n0.3,0.1\n",
+            (
+                "line 1, column 1: expected a parameter's name, got '0.2': put a line of names"
+                " above the numbers"
+            ),
+        ),
+        (
+            "l,r\n0,2,0,1\n",
+            "line 2: 4 cells, expected 2: decimal commas? expected points, or ';' between cells",
+        ),
         (
             "l,peak:effort:O\n0.2,nan\n",
-            "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: take the results out",
+            (
+                "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: take"
+                " the results out"
+            ),
         ),
         ("l,peak:effort:O\n0.2,nan\n", "`lagrange-casadi table` writes what it is told"),
         ("l,r\n1_0,0.1\n", "line 2, column 'l': expected a finite number, got '1_0'"),
-        ('l,r\n0.2,0.1\n0.2,"0.1\n0.3,0.1\n', "line 3: no cells with ',' between them: a quote is opened and never closed"),
+        (
+            'l,r\n0.2,0.1\n0.2,"0.1\n0.3,0.1\n',
+            "line 3: no cells with ',' between them: a quote is opened and never closed",
+        ),
         ('l,r\n0.2,"0.1"3\n', "line 2: no cells with ',' between them: ',' expected after"),
         ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
     ],
@@ -84,7 +107,9 @@ def test_the_head_is_checked_before_the_numbers(tmp_path):
         read_designs(path, ["l", "r"])
     assert str(caught.value) == f"{path}, line 1, column 2: unknown parameter 'note'; valid: l, r"
     path.write_text("design,l\n0,0.2\n")
-    with pytest.raises(DeclarationError, match="line 1, column 1: 'design' is a result of a sweep, not a parameter"):
+    with pytest.raises(
+        DeclarationError, match="line 1, column 1: 'design' is a result of a sweep, not a parameter"
+    ):
         read_designs(path, ["l", "r"])
     assert read_designs(path, ["l", "design"]).names == ("design", "l")
     assert read_designs(path, {"l": None, "design": None}).names == ("design", "l")

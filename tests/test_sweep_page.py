@@ -1,4 +1,6 @@
-"""The page of a sweep in a browser: its table is the file's, its front and conditions are those of the command line."""
+"""The page of a sweep in a browser: its table is the file's, its front and conditions are those of
+the command line.
+"""
 
 import csv
 import io
@@ -22,7 +24,10 @@ def file(tmp_path_factory):
     """Designs of the slider-crank, some of which cannot be assembled."""
     path = tmp_path_factory.mktemp("swept") / "swept.h5"
     grid = ["--grid", "l=0.06:0.4:9", "--grid", "r=0.05:0.1:4", "--grid", "m3=0.1,0.3"]
-    assert main(["sweep", str(CASES / "slider_crank"), *grid, "--t", "0:0.08:41", "--out", str(path)]) == 0
+    assert (
+        main(["sweep", str(CASES / "slider_crank"), *grid, "--t", "0:0.08:41", "--out", str(path)])
+        == 0
+    )
     return path
 
 
@@ -37,7 +42,10 @@ def page(file):
 
         def opened():
             one.open(path)
-            one.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+            one.run(
+                "navigator.clipboard.writeText = (text) => { window.copied = text; return"
+                " Promise.resolve(); }"
+            )
             return one
 
         yield opened
@@ -52,16 +60,24 @@ def rows(one):
 def only(one, conditions):
     """Type conditions; returns what is said of them."""
     one.run(
-        f"{{ const field = document.querySelector('.conditions input'); field.value = {conditions!r};"
-        " field.dispatchEvent(new Event('input')); }"
+        "{ const field = document.querySelector('.conditions input'); field.value ="
+        f" {conditions!r}; field.dispatchEvent(new Event('input')); }}"
     )
-    return one.run("[...document.querySelectorAll('.conditions output')].map((one) => one.textContent)")
+    return one.run(
+        "[...document.querySelectorAll('.conditions output')].map((one) => one.textContent)"
+    )
 
 
 def test_the_table_is_the_files_to_the_last_digit(page, file):
     one, sweep = page(), Sweep.open(file)
     found = rows(one)
-    names = [*sweep.parameters, "peak:effort:O", "peak:section:rod:bending", "mean:effort:O", "status"]
+    names = [
+        *sweep.parameters,
+        "peak:effort:O",
+        "peak:section:rod:bending",
+        "mean:effort:O",
+        "status",
+    ]
     for numbers, values in sweep.blocks(names):
         for k, number in enumerate(numbers):
             row = found[int(number)]
@@ -81,9 +97,16 @@ def test_on_paper_it_is_light_and_no_wider_than_the_sheet(page):
     dark = "getComputedStyle(document.documentElement).getPropertyValue('--sheet')"
     assert one.run(dark) != "#ffffff"
     one.size(688, 1000)
-    one.call("Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    one.call(
+        "Emulation.setEmulatedMedia",
+        media="print",
+        features=[{"name": "prefers-color-scheme", "value": "dark"}],
+    )
     assert one.run(dark) == "#ffffff"
-    wide = "[...document.querySelectorAll('table, .card, .looked-at')].map((one) => one.getBoundingClientRect().right)"
+    wide = (
+        "[...document.querySelectorAll('table, .card, .looked-at')].map((one) =>"
+        " one.getBoundingClientRect().right)"
+    )
     settled = "new Promise((done) => setTimeout(() => done(0), 100))"
     one.run(settled)
     assert max(one.run(wide)) <= 688.5
@@ -102,7 +125,9 @@ def test_conditions_are_those_of_the_command_line(page, file):
         assert wrong == ""
         assert count == f"{len(expected)} of 72 designs"
         assert [int(row["design"]) for row in rows(one)] == expected
-        front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"), where=where.split(", "))
+        front = best(
+            sweep, minimise=("peak:effort:O", "peak:section:rod:bending"), where=where.split(", ")
+        )
         assert one.run("document.querySelectorAll('.best').length") == len(front)
 
 
@@ -110,7 +135,9 @@ def test_conditions_are_those_of_the_command_line(page, file):
 def test_a_design_that_is_pressed_moves(page, file):
     one, sweep = page(), Sweep.open(file)
     front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"))
-    assert one.run("document.querySelector('h3').textContent").startswith(f"design {front[0].number}: ")
+    assert one.run("document.querySelector('h3').textContent").startswith(
+        f"design {front[0].number}: "
+    )
     only(one, "l>0.3")
     one.run("document.querySelectorAll('.table tbody tr')[5].click()")
     number = int(rows(one)[5]["design"])
@@ -119,9 +146,13 @@ def test_a_design_that_is_pressed_moves(page, file):
     one.run("document.querySelector('.looked-at .copy').click()")
     asked = sweep.design(number)
     assert one.run("window.copied").startswith("lagrange-casadi run slider_crank --set l=")
-    assert [float(word.partition("=")[2]) for word in one.run("window.copied").split(" --set ")[1:]] == list(asked.values())
+    assert [
+        float(word.partition("=")[2]) for word in one.run("window.copied").split(" --set ")[1:]
+    ] == list(asked.values())
     labels = "[...document.querySelectorAll('.sliders label')]"
-    fields = f"{labels}.map((one) => [one.querySelector('.name').textContent, one.children[2].value])"
+    fields = (
+        f"{labels}.map((one) => [one.querySelector('.name').textContent, one.children[2].value])"
+    )
     for _ in range(100):
         values = {name: float(value) for name, value in one.run_within(fields)}
         if values.get("l") == asked["l"]:

@@ -14,7 +14,11 @@ from lagrange_casadi.studies.sweep.parts import Folder
 
 pytestmark = pytest.mark.quick
 
-COLUMNS = (Column("status", "1", {}, dtype="|i1"), Column("peak:a", "N", {}), Column("history:b", "N", {}, ("t",), (3,)))
+COLUMNS = (
+    Column("status", "1", {}, dtype="|i1"),
+    Column("peak:a", "N", {}),
+    Column("history:b", "N", {}, ("t",), (3,)),
+)
 
 
 def contents(start, stop):
@@ -79,7 +83,10 @@ def test_drafts_and_overlaps_are_cleared(folder):
     commit(folder, (0, 4), (2, 6), (6, 8))
     (folder.path / "000000000008-000000000009.part.draft").write_bytes(b"half")
     assert [(part.start, part.stop) for part in folder.parts()] == [(0, 4), (6, 8)]
-    assert sorted(path.name for path in folder.path.iterdir() if path.suffix != ".part") == ["lock", "plan.json"]
+    assert sorted(path.name for path in folder.path.iterdir() if path.suffix != ".part") == [
+        "lock",
+        "plan.json",
+    ]
 
 
 def test_to_begin_anew_removes_what_is_there(folder):
@@ -102,7 +109,10 @@ def test_a_lock_that_led_to_nothing_leaves_nothing(tmp_path):
 
 
 def test_the_second_is_refused(folder):
-    with pytest.raises(BusyError, match=r"another sweep is writing .*x\.h5"), Folder(folder.target).locked():
+    with (
+        pytest.raises(BusyError, match=r"another sweep is writing .*x\.h5"),
+        Folder(folder.target).locked(),
+    ):
         pass
     assert folder.begun
 

@@ -18,7 +18,10 @@ def test_another_posture_is_told_with_what_else_a_scene_is(monkeypatch):
     before = Plan.of(scene, designs).identity
     now = Plan.of(replace(scene, posture={"rod": 0.5}), designs).identity
     assert difference(before, before) is None
-    assert difference(before, now) == "an expression, a law of motion or the posture of the scene has changed"
+    assert (
+        difference(before, now)
+        == "an expression, a law of motion or the posture of the scene has changed"
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,6 @@
-"""Figures of a sweep: each draws what it says, from the file's arrays, and says what it leaves out."""
+"""Figures of a sweep: each draws what it says, from the file's arrays, and
+says what it leaves out.
+"""
 
 import numpy as np
 import plotted
@@ -31,24 +33,35 @@ def test_curves_over_a_parameter(swept):
         k = np.nanargmin(values)
         assert (star.get_xdata()[0], star.get_ydata()[0]) == (swept["l"][k], values[k])
         np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
-        assert plain(axes.get_title(loc="left")) == f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
+        assert (
+            plain(axes.get_title(loc="left")) == f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
+        )
     assert figure.axes[1].get_xlabel() == "l [m]"
     assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
-    assert plain(figure.get_suptitle()) == "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    assert (
+        plain(figure.get_suptitle())
+        == "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    )
     assert legend(figure) == [REACH, "smallest of those drawn"]
 
 
 def test_a_family_of_curves_in_the_order_of_its_values(swept):
     figure = Peaks("x", (BENDING,), ("l",), "r").draw(swept)
-    assert [text for text in legend(figure) if "=" in text] == [f"r = {value} m" for value in (0.05, 0.07, 0.1)]
-    for line, crosses, k in zip(lines(figure.axes[0], "."), lines(figure.axes[0], "x"), (0, 2, 1), strict=True):
+    assert [text for text in legend(figure) if "=" in text] == [
+        f"r = {value} m" for value in (0.05, 0.07, 0.1)
+    ]
+    for line, crosses, k in zip(
+        lines(figure.axes[0], "."), lines(figure.axes[0], "x"), (0, 2, 1), strict=True
+    ):
         values = np.abs(swept[BENDING][:, k, 0])
         np.testing.assert_array_equal(line.get_ydata(), values)
         np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
 
 
 def test_maps_over_two_parameters_in_either_order(swept):
-    """Values that are not in order on the grid are in order on the map; what has no result is masked, and shaded instead."""
+    """Values that are not in order on the grid are in order on the map; what has no result is
+    masked, and shaded instead.
+    """
     sizes = np.abs(swept[BENDING][:, [0, 2, 1], 1])
     assert 0 < np.isnan(sizes).sum() < sizes.size
     l, r = np.unravel_index(np.nanargmin(sizes), sizes.shape)
@@ -66,10 +79,13 @@ def test_maps_over_two_parameters_in_either_order(swept):
 
 
 @pytest.mark.parametrize(
-    ("kinds", "last"), [([4, 1], CLOSED), ([4, 1, 2, 3], "converge slowly"), ([4, 1, 2, 3, 5], "other reasons")]
+    ("kinds", "last"),
+    [([4, 1], CLOSED), ([4, 1, 2, 3], "converge slowly"), ([4, 1, 2, 3, 5], "other reasons")],
 )
 def test_reasons_are_told_apart_as_far_as_they_are_few(swept, kinds, last):
-    """Each has a shade of its own, the most frequent one the first; cells in it are those of its status."""
+    """Each has a shade of its own, the most frequent one the first; cells in it are those of its
+    status.
+    """
 
     def several(values):
         values[:, :, 0] = np.resize([kinds[0], *kinds, 0, 0], 27).reshape(9, 3)
@@ -90,7 +106,9 @@ def test_reasons_are_told_apart_as_far_as_they_are_few(swept, kinds, last):
 
 
 def test_a_few_far_values_do_not_set_the_colours(swept):
-    """One near-singular design gets the arrow's colour, and the label says how far it goes; smaller ones keep theirs."""
+    """One near-singular design gets the arrow's colour, and the label says how far it goes; smaller
+    ones keep theirs.
+    """
     first = tuple(np.argwhere(np.isfinite(swept[BENDING][:, :, 0]))[0])
 
     def far(values):
@@ -102,7 +120,9 @@ def test_a_few_far_values_do_not_set_the_colours(swept):
     cells = figure.axes[0].collections[0]
     assert cells.norm.vmax < 1e4
     assert figure.axes[1].get_xlabel().endswith("\nbeyond: up to 10000")
-    assert cells.cmap(cells.norm(1e4)) != cells.cmap(1.0), "the arrow's colour is not that of the scale's end"
+    assert cells.cmap(cells.norm(1e4)) != cells.cmap(1.0), (
+        "the arrow's colour is not that of the scale's end"
+    )
     curve = Peaks("x", (BENDING,), ("l",), at={"r": found["r"][first[1]]}).draw(found).axes[0]
     assert curve.get_ylim()[1] < 1e4
     assert curve.get_ylabel().endswith("beyond: up to 10000")
@@ -122,21 +142,30 @@ def test_section_forces_along_the_link(swept, sized):
     values = found["peak_at:section:rod:bending"][:, 1, 1].T
     assert np.nanmin(values) < 0.0 < np.nanmax(values)
     cells, shade = figure.axes[2].collections
-    np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values)
+    np.testing.assert_array_equal(
+        np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values
+    )
     np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(values))
     assert cells.norm.vmin == (0.0 if sized else -cells.norm.vmax)
-    assert plain(cells.colorbar.ax.get_xlabel()) == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
+    assert (
+        plain(cells.colorbar.ax.get_xlabel())
+        == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
+    )
 
 
 def test_a_few_designs_are_curves_along_the_link(swept):
-    """A jump to the other sign is no line, but rounding is no jump; a design without a result is named with the reason."""
+    """A jump to the other sign is no line, but rounding is no jump; a design without a result is
+    named with the reason.
+    """
 
     def jumping(values):
         values[-1, 1, 0], values[-1, 2, 0] = np.nan, [-1e-20, 1.0, 2.0, -2.0, -1.0]
         return values
 
     found = rewritten(swept, "peak_at:section:rod:bending", jumping)
-    figure = Along("x", "rod", "r", {"l": 0.4}).draw(rewritten(found, "status", lambda values: np.where(values, 4, values)))
+    figure = Along("x", "rod", "r", {"l": 0.4}).draw(
+        rewritten(found, "status", lambda values: np.where(values, 4, values))
+    )
     solid = [line for line in lines(figure.axes[2], "None") if line.get_linestyle() == "-"]
     drawn = solid[:3]
     values = found["peak_at:section:rod:bending"][-1, [0, 2, 1], 0]
@@ -144,7 +173,11 @@ def test_a_few_designs_are_curves_along_the_link(swept):
         y = line.get_ydata()
         np.testing.assert_array_equal(y[~np.isnan(y)], row[~np.isnan(row)])
     np.testing.assert_array_equal(drawn[1].get_ydata(), [-1e-20, 1.0, 2.0, np.nan, -2.0, -1.0])
-    jumps = [line.get_ydata().tolist() for line in lines(figure.axes[2], "None") if line.get_linestyle() == ":"]
+    jumps = [
+        line.get_ydata().tolist()
+        for line in lines(figure.axes[2], "None")
+        if line.get_linestyle() == ":"
+    ]
     assert [2.0, -2.0] in jumps
     assert plain(figure.axes[2].get_ylabel()) == "rod bending, peak [N m]"
     status = found["status"][-1, [0, 2, 1], 0]
@@ -160,18 +193,27 @@ def test_a_few_designs_are_curves_along_the_link(swept):
 
 def test_the_front_and_all_designs(swept):
     figure = Front("x", EFFORT, BENDING).draw(swept)
-    dots, _, front = lines(figure.axes[0], "o")[0], *lines(figure.axes[0], "None"), lines(figure.axes[0], "o")[1]
+    dots, _, front = (
+        lines(figure.axes[0], "o")[0],
+        *lines(figure.axes[0], "None"),
+        lines(figure.axes[0], "o")[1],
+    )
     both = ~np.isnan(swept[EFFORT]).ravel()
     assert np.isfinite(dots.get_xdata()).sum() == both.sum()
     designs = best(swept, minimise=[EFFORT, BENDING])
-    np.testing.assert_array_equal(front.get_ydata(), [abs(design.values[BENDING]) for design in designs])
+    np.testing.assert_array_equal(
+        front.get_ydata(), [abs(design.values[BENDING]) for design in designs]
+    )
     (low, high), axes = figure.axes[0].get_xlim(), figure.axes[0]
     assert low < front.get_xdata().min()
     assert front.get_xdata().max() < high
     assert plain(figure.get_suptitle()) == "slider_crank: designs and their front"
     keys = list(legend(figure)[2:])
     named = [
-        ", ".join(f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()) for design in designs
+        ", ".join(
+            f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()
+        )
+        for design in designs
     ]
     assert keys
     assert keys[0] == named[0]
@@ -183,14 +225,19 @@ def test_the_front_and_all_designs(swept):
         assert (x, y) == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
         assert any((ring.get_xydata() == [x, y]).all() for ring in lines(axes, "o")[2:])
     some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
-    assert np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum() == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
+    assert (
+        np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum()
+        == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
+    )
     assert some.axes[0].get_ylabel() == "l [m]"
     assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
     assert all(words.startswith("l = ") and "m1" not in words for words in legend(some)[2:])
 
 
 def test_numbered_designs_of_a_front_lie_apart(swept):
-    """Of a front that is short beside the other designs, as many are numbered as there is room for, the ends first."""
+    """Of a front that is short beside the other designs, as many are numbered as there is room for,
+    the ends first.
+    """
     order = np.arange(54.0).reshape(9, 3, 2)
     effort = np.where(order < 6, 100.0 + order, 100.0 + 20 * order)
     bending = np.where(order < 6, 10.0 - 0.1 * order, 10.0 + order)
@@ -228,25 +275,41 @@ def test_grids_finer_than_the_picture_are_thinned(swept, monkeypatch):
     assert legend(figure)[0] == "designs with a result, 1 in 6 drawn"
     monkeypatch.setattr(plots, "DOTS", 20)
     some = Front("x", EFFORT, BENDING, {"m1": 0.2}).draw(swept)
-    assert lines(some.axes[0], "o")[0].get_xdata().size > 3, "of each second design, all that are odd are drawn or none"
+    assert lines(some.axes[0], "o")[0].get_xdata().size > 3, (
+        "of each second design, all that are odd are drawn or none"
+    )
 
 
 def test_a_few_values_are_ticks(swept, listed):
     axes = Peaks("x", (BENDING,), ("l", "r")).draw(swept).axes[0]
     np.testing.assert_array_equal(axes.get_yticks(), [0.05, 0.07, 0.1])
     assert len(axes.get_xticks()) != 9
-    np.testing.assert_array_equal(Peaks("x", (BENDING,), ("r",), "l").draw(swept).axes[0].get_xticks(), [0.05, 0.07, 0.1])
+    np.testing.assert_array_equal(
+        Peaks("x", (BENDING,), ("r",), "l").draw(swept).axes[0].get_xticks(), [0.05, 0.07, 0.1]
+    )
     for over in ("l", "r"):
         axes = Along("x", "rod", over).draw(swept).axes[0]
-        np.testing.assert_array_equal(axes.get_yticks() if over == "l" else axes.get_xticks(), [0.0, 0.25, 0.5, 0.75, 1.0])
-    np.testing.assert_array_equal(Scatter("x", (BENDING,), ("l", "m1")).draw(listed).axes[1].get_xticks(), [0.1, 0.2])
+        np.testing.assert_array_equal(
+            axes.get_yticks() if over == "l" else axes.get_xticks(), [0.0, 0.25, 0.5, 0.75, 1.0]
+        )
+    np.testing.assert_array_equal(
+        Scatter("x", (BENDING,), ("l", "m1")).draw(listed).axes[1].get_xticks(), [0.1, 0.2]
+    )
 
 
 def test_the_star_says_that_others_are_as_small(swept, listed):
     """What differs by rounding is as small."""
-    title = Scatter("x", (BENDING,), ("l",)).draw(rewritten(listed, BENDING, lambda v: np.resize([0.25, 0.5], 50))).axes[0]
+    title = (
+        Scatter("x", (BENDING,), ("l",))
+        .draw(rewritten(listed, BENDING, lambda v: np.resize([0.25, 0.5], 50)))
+        .axes[0]
+    )
     assert plain(title.get_title(loc="left")) == "★ 0.25, design 0 and 24 more"
     sizes = np.resize([0.5, 0.25, 0.25 * (1 - 1e-12)], 9)[:, None, None]
-    found = rewritten(rewritten(swept, "status", np.zeros_like), BENDING, lambda values: np.broadcast_to(sizes, values.shape))
+    found = rewritten(
+        rewritten(swept, "status", np.zeros_like),
+        BENDING,
+        lambda values: np.broadcast_to(sizes, values.shape),
+    )
     title = Peaks("x", (BENDING,), ("l",)).draw(found).axes[0].get_title(loc="left")
     assert plain(title) == "★ 0.25 at l = 0.2125 and 5 more"

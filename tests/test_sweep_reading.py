@@ -66,7 +66,9 @@ def test_selection_by_value(swept):
     whole = swept["peak:effort:O"]
     assert whole.shape == (6, 3, 2)
     np.testing.assert_array_equal(swept.select(l=0.25)["peak:effort:O"], whole[2:3])
-    np.testing.assert_array_equal(swept.select(l=0.1 + 0.15, r=0.07)["peak:effort:O"], whole[2:3, 2:3])
+    np.testing.assert_array_equal(
+        swept.select(l=0.1 + 0.15, r=0.07)["peak:effort:O"], whole[2:3, 2:3]
+    )
     np.testing.assert_array_equal(swept.select(l=(0.2, 0.3))["peak:effort:O"], whole[1:4])
     scattered = swept.select(r=(0.04, 0.07))
     np.testing.assert_array_equal(scattered["r"], [0.05, 0.07])
@@ -77,10 +79,14 @@ def test_selection_by_value(swept):
         np.testing.assert_array_equal(swept.select(r=listed)["r"], [0.05, 0.07])
     np.testing.assert_array_equal(swept.select(l=(0.3, np.inf))["l"], [0.3, 0.35, 0.4])
     np.testing.assert_array_equal(swept.select(l=(-np.inf, 0.2))["l"], [0.15, 0.2])
-    np.testing.assert_array_equal(swept.select(l=0.4)["peak_at:section:rod:axial"], swept["peak_at:section:rod:axial"][5:])
+    np.testing.assert_array_equal(
+        swept.select(l=0.4)["peak_at:section:rod:axial"], swept["peak_at:section:rod:axial"][5:]
+    )
 
 
-@pytest.mark.parametrize("numbers", [[0], [5], [1, 2], [0, 5], [0, 2, 4], [1, 3, 4], [0, 1, 2, 3, 4, 5]])
+@pytest.mark.parametrize(
+    "numbers", [[0], [5], [1, 2], [0, 5], [0, 2, 4], [1, 3, 4], [0, 1, 2, 3, 4, 5]]
+)
 def test_any_numbers_along_an_axis_are_read(swept, numbers):
     found = swept.select(l=[LENGTHS[k] for k in numbers])
     for name in ("peak:effort:O", "peak_at:section:rod:bending"):
@@ -96,7 +102,9 @@ def test_a_design_by_its_number(swept, listed):
     assert list(other.design(49).values()) == rows[49].tolist()
     for number in (-1, 36, 10**20):
         for read in (swept.design, lambda number: swept.values(number, "status")):
-            with pytest.raises(DeclarationError, match=rf"design {number}: expected a number from 0 to 35"):
+            with pytest.raises(
+                DeclarationError, match=rf"design {number}: expected a number from 0 to 35"
+            ):
                 read(number)
 
 
@@ -114,33 +122,67 @@ def test_what_cannot_be_selected_is_named(swept):
     with pytest.raises(UnknownNameError, match="unknown swept parameter 'm3'; valid: l, r, m1"):
         swept.select(m3=0.1)
     for none in (0.21, [0.3, 0.21]):
-        with pytest.raises(DeclarationError, match=r"no design has l = 0\.21; nearest: 0\.2, 0\.25"):
+        with pytest.raises(
+            DeclarationError, match=r"no design has l = 0\.21; nearest: 0\.2, 0\.25"
+        ):
             swept.select(l=none)
-    with pytest.raises(DeclarationError, match=r"no design has l up to 0\.24 and from 0\.21; nearest: 0\.2, 0\.25"):
+    with pytest.raises(
+        DeclarationError, match=r"no design has l up to 0\.24 and from 0\.21; nearest: 0\.2, 0\.25"
+    ):
         swept.select(l=(0.21, 0.24))
     with pytest.raises(DeclarationError, match="no design has l = inf"):
         swept.select(l=np.inf)
-    with pytest.raises(DeclarationError, match=r"select: l: expected \(low, high\), got \(0\.3, 0\.2\): the range is reversed"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"select: l: expected \(low, high\), got \(0\.3, 0\.2\): the range is reversed",
+    ):
         swept.select(l=(0.3, 0.2))
-    with pytest.raises(UnknownNameError, match=r"unknown column 'peak:effort:Q' \(did you mean 'peak:effort:O'\?\)"):
+    with pytest.raises(
+        UnknownNameError, match=r"unknown column 'peak:effort:Q' \(did you mean 'peak:effort:O'\?\)"
+    ):
         swept["peak:effort:Q"]
 
 
 @pytest.mark.parametrize(
-    "wrong", [slice(0.2, 0.3), "0.2", None, np.nan, (0.1, 0.2, 0.3), (0.2,), [], [0.2, np.nan], {"a": 1}, [[0.2]]]
+    "wrong",
+    [
+        slice(0.2, 0.3),
+        "0.2",
+        None,
+        np.nan,
+        (0.1, 0.2, 0.3),
+        (0.2,),
+        [],
+        [0.2, np.nan],
+        {"a": 1},
+        [[0.2]],
+    ],
 )
 def test_what_selects_nothing_is_named(swept, wrong):
-    with pytest.raises(DeclarationError, match=r"select: l: expected a number, a list of numbers, or a tuple \(low, high\), got "):
+    with pytest.raises(
+        DeclarationError,
+        match=r"select: l: expected a number, a list of numbers, or a tuple \(low, high\), got ",
+    ):
         swept.select(l=wrong)
 
 
 def test_an_unknown_one_of_many_columns_is_answered_by_the_nearest(swept):
-    many = replace(swept, columns={f"peak:effort:J{k}": swept.columns["peak:effort:O"] for k in range(30)} | swept.columns)
+    many = replace(
+        swept,
+        columns={f"peak:effort:J{k}": swept.columns["peak:effort:O"] for k in range(30)}
+        | swept.columns,
+    )
     with pytest.raises(UnknownNameError) as caught:
         many.column("peak:effort:P")
     hint = f"`lagrange-casadi info {swept.path}` lists the {len(many.columns) + 3} there are"
-    assert str(caught.value) == f"unknown column 'peak:effort:P' (did you mean 'peak:effort:O'?); {hint}"
-    with pytest.raises(UnknownNameError, match=r"unknown column 'bending' \(did you mean 'peak:section:rod:bending'\?\)"):
+    assert (
+        str(caught.value)
+        == f"unknown column 'peak:effort:P' (did you mean 'peak:effort:O'?); {hint}"
+    )
+    with pytest.raises(
+        UnknownNameError,
+        match=r"unknown column 'bending' \(did you mean 'peak:section:rod:bending'\?\)",
+    ):
         many.column("bending")
 
 
@@ -164,7 +206,10 @@ def test_blocks_of_what_is_selected(swept):
     numbers = np.concatenate([places for places, _ in cut.blocks(["l"])])
     np.testing.assert_array_equal(numbers, np.arange(36).reshape(6, 3, 2)[1:4, 2].ravel())
     assert [swept.design(int(n))["r"] for n in numbers] == [0.07] * 6
-    with pytest.raises(DeclarationError, match="column 'peak_at:section:rod:axial' has a value for every xi, not one a design"):
+    with pytest.raises(
+        DeclarationError,
+        match="column 'peak_at:section:rod:axial' has a value for every xi, not one a design",
+    ):
         list(swept.blocks(["peak_at:section:rod:axial"]))
 
 
@@ -172,9 +217,15 @@ def test_blocks_of_what_is_selected(swept):
 @pytest.mark.parametrize("size", [1, 9, 40, 1 << 15])
 @pytest.mark.parametrize("along", [("t",), ("xi",), ("t", "xi")])
 def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):
-    """Against arrays broadcast here; a selection of designs, and as many of them as there are ratios."""
+    """Against arrays broadcast here; a selection of designs, and as many of them as there are
+    ratios.
+    """
     monkeypatch.setattr(reading, "_BLOCK", size)
-    own = {"t": "history:effort:O", "xi": "peak_at:section:rod:axial", "t xi": "history:section:rod:shear"}[" ".join(along)]
+    own = {
+        "t": "history:effort:O",
+        "xi": "peak_at:section:rod:axial",
+        "t xi": "history:section:rod:shear",
+    }[" ".join(along)]
     for cut in (histories, histories.select(r=0.07, l=(0.2, 0.35))):
         blocks = list(cut.blocks(["r", "status", own, *along], along))
         numbers = np.concatenate([places for places, _ in blocks])
@@ -187,9 +238,13 @@ def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):
             "r": cut["r"].reshape(1, -1, *spare),
             "status": cut["status"].reshape(*cut.shape, *spare),
             own: cut[own],
-            **dict(zip(along, np.meshgrid(*(cut[axis] for axis in along), indexing="ij"), strict=True)),
+            **dict(
+                zip(along, np.meshgrid(*(cut[axis] for axis in along), indexing="ij"), strict=True)
+            ),
         }
-        np.testing.assert_array_equal(numbers, np.broadcast_to(everywhere.reshape(*cut.shape, *spare), shape).ravel())
+        np.testing.assert_array_equal(
+            numbers, np.broadcast_to(everywhere.reshape(*cut.shape, *spare), shape).ravel()
+        )
         for name, values in expected.items():
             found = np.concatenate([block[name] for _, block in blocks])
             np.testing.assert_array_equal(found, np.broadcast_to(values, shape).ravel())
@@ -197,7 +252,9 @@ def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):
 
 
 def test_an_axis_is_no_column(histories):
-    said = "'xi' is no column but an axis: it needs a column over xi, as peak_at:section:rod:axial is"
+    said = (
+        "'xi' is no column but an axis: it needs a column over xi, as peak_at:section:rod:axial is"
+    )
     for read in (
         lambda: histories.column("xi"),
         lambda: histories.blocks(["l", "q", "xi"]),
@@ -211,19 +268,30 @@ def test_an_axis_is_no_column(histories):
 
 
 def test_all_unknown_names_are_told(histories):
-    for read in (lambda: histories.axes_of(["l", "p", "q"]), lambda: histories.blocks(["p", "status", "q"])):
-        with pytest.raises(UnknownNameError, match=r"unknown columns 'p' .*, 'q'; `lagrange-casadi info "):
+    for read in (
+        lambda: histories.axes_of(["l", "p", "q"]),
+        lambda: histories.blocks(["p", "status", "q"]),
+    ):
+        with pytest.raises(
+            UnknownNameError, match=r"unknown columns 'p' .*, 'q'; `lagrange-casadi info "
+        ):
             read()
     with pytest.raises(UnknownNameError, match="unknown swept parameters 'm3', 'q'; valid: l, r"):
         histories.select(m3=0.1, l=0.2, q=1)
 
 
 def test_rows_along_axes_that_are_none_are_refused(histories, monkeypatch, tmp_path):
-    with pytest.raises(DeclarationError, match="column 'history:effort:O' has a value for every t, not one a design"):
+    with pytest.raises(
+        DeclarationError,
+        match="column 'history:effort:O' has a value for every t, not one a design",
+    ):
         histories.blocks(["history:effort:O"], ["xi"])
     with pytest.raises(UnknownNameError, match="unknown axis 'x'"):
         histories.blocks(["status"], ["x"])
-    with pytest.raises(DeclarationError, match="for every t, 'history:section:rod:axial' for every t and xi: each needs a table"):
+    with pytest.raises(
+        DeclarationError,
+        match="for every t, 'history:section:rod:axial' for every t and xi: each needs a table",
+    ):
         histories.axes_of(["l", "status", "history:effort:O", "history:section:rod:axial"])
     assert histories.axes_of(["l", "status", "history:section:rod:axial"]) == ("t", "xi")
     assert histories.axes_of("status") == ()
@@ -238,7 +306,9 @@ def test_xarray(swept, listed):
     assert found["peak_at:section:rod:axial"].dims == ("l", "r", "m1", "xi")
     assert found["peak:effort:O"].attrs["units"] == "N m"
     assert found["l"].attrs["units"] == "m"
-    assert float(found["peak:effort:O"].sel(l=0.25, r=0.07, m1=0.1)) == swept["peak:effort:O"][2, 2, 0]
+    assert (
+        float(found["peak:effort:O"].sel(l=0.25, r=0.07, m1=0.1)) == swept["peak:effort:O"][2, 2, 0]
+    )
     rows, other = listed
     np.testing.assert_array_equal(other.to_xarray()["l"], rows[:, 0])
     assert other.to_xarray()["peak:effort:O"].dims == ("design",)
@@ -262,9 +332,14 @@ def test_what_is_no_sweep_is_refused(swept, solution, tmp_path):
     assert is_sweep(swept.path)
     assert not is_sweep(tmp_path / "run.h5")
     assert not is_sweep(tmp_path / "nothing.h5")
-    with pytest.raises(StoreError, match=r"run\.h5: not the file of a sweep, but that of a run, which `load` reads"):
+    with pytest.raises(
+        StoreError, match=r"run\.h5: not the file of a sweep, but that of a run, which `load` reads"
+    ):
         Sweep.open(tmp_path / "run.h5")
-    with pytest.raises(StoreError, match=r"x\.h5: not the file of a run, but that of a sweep, which `Sweep\.open` reads"):
+    with pytest.raises(
+        StoreError,
+        match=r"x\.h5: not the file of a run, but that of a sweep, which `Sweep\.open` reads",
+    ):
         load(swept.path)
     with pytest.raises(StoreError):
         store.check(swept.path)
@@ -278,7 +353,10 @@ def test_what_is_no_sweep_is_refused(swept, solution, tmp_path):
     ("change", "says"),
     [
         (lambda h: h.attrs.__delitem__("complete"), "was not written to its end"),
-        (lambda h: h.attrs.__setitem__("schema_version", 99), "schema version 99 of sweeps, this program reads versions 2 to 5"),
+        (
+            lambda h: h.attrs.__setitem__("schema_version", 99),
+            "schema version 99 of sweeps, this program reads versions 2 to 5",
+        ),
         (lambda h: h.__delitem__("mean"), "damaged: it has"),
         (lambda h: h.attrs.__setitem__("mechanism", "{"), "damaged: "),
         (lambda h: h.__delitem__("status"), "damaged: "),
@@ -310,8 +388,14 @@ def _first(h, status):
             lambda h: h["peak/effort/O"].__setitem__(_first(h, 1), 3.0),
             "peak:effort:O: 1 of the designs that have no result have a number",
         ),
-        (lambda h: h["status"].__setitem__(_first(h, 1), 99), "status: 1 of the designs have a status that is none"),
-        (lambda h: h["peak/effort/O"].dims[1].detach_scale(h["r"]), "peak:effort:O: axis 1 has no scale r"),
+        (
+            lambda h: h["status"].__setitem__(_first(h, 1), 99),
+            "status: 1 of the designs have a status that is none",
+        ),
+        (
+            lambda h: h["peak/effort/O"].dims[1].detach_scale(h["r"]),
+            "peak:effort:O: axis 1 has no scale r",
+        ),
     ],
 )
 def test_check_names_what_is_wrong(swept, change, finding):
@@ -335,5 +419,7 @@ def test_a_flipped_byte_is_found(swept, name):
         lambda: swept.design(3),
     ]
     for read in reads:
-        with pytest.raises(StoreError, match=r"x\.h5: damaged: its bytes are not those that were written$"):
+        with pytest.raises(
+            StoreError, match=r"x\.h5: damaged: its bytes are not those that were written$"
+        ):
             read()

@@ -25,7 +25,10 @@ pytestmark = pytest.mark.quick
         (np.array([1.0, 2.0, 1e3]), (1.0, 1e3, True, False, False)),
         (np.array([np.nan, 3.0]), (2.85, 3.15, False, False, False)),
         (np.zeros(3), (-1.0, 1.0, False, False, False)),
-        (np.append(np.geomspace(10.0, 60.0, 94), np.geomspace(100.0, 900.0, 6)), (10.0, 900.0, True, False, False)),
+        (
+            np.append(np.geomspace(10.0, 60.0, 94), np.geomspace(100.0, 900.0, 6)),
+            (10.0, 900.0, True, False, False),
+        ),
         (np.linspace(0.01, 1.0, 50) ** 2, (1e-4, 1.0, False, False, False)),
         (np.append(np.ones(99), 7.0), (1.0, 7.0, False, False, False)),
     ],
@@ -35,7 +38,11 @@ def test_limits(values, expected):
     low, high, *rest = expected
     assert [scale.log, scale.below, scale.above] == rest
     assert scale.low == pytest.approx(low) if low is not None else scale.low > np.nanmin(values)
-    assert scale.high == pytest.approx(high) if high is not None else np.sort(values)[-2] <= scale.high < values.max()
+    assert (
+        scale.high == pytest.approx(high)
+        if high is not None
+        else np.sort(values)[-2] <= scale.high < values.max()
+    )
     assert isinstance(scale.norm(), colors.LogNorm) == scale.log
 
 
@@ -49,7 +56,9 @@ def test_an_axis_that_holds_what_is_not_positive_is_linear(held):
 
 def test_signed_limits_keep_zero_in_the_middle():
     for sizes in (np.linspace(1.0, 2.0, 50), np.geomspace(1.0, 1e4, 50)):
-        assert Scale.of(sizes, sides=1).norm()(np.array([0.0, sizes.max()])).tolist() == pytest.approx([0.0, 1.0])
+        assert Scale.of(sizes, sides=1).norm()(
+            np.array([0.0, sizes.max()])
+        ).tolist() == pytest.approx([0.0, 1.0])
         norm = Scale.of(sizes, sides=2).norm()
         assert norm(0.0) == pytest.approx(0.5)
         assert norm(sizes.max()) == pytest.approx(1.0)
@@ -59,7 +68,9 @@ def test_signed_limits_keep_zero_in_the_middle():
 
 @pytest.mark.parametrize("far", [25.0, 1e3, 1e5])
 def test_signed_values_are_seen_beside_a_few_far_ones(far):
-    """Whether these set the limits or lie beyond them, and though forces vanish at a link's ends."""
+    """Whether these set the limits or lie beyond them, and though forces
+    vanish at a link's ends.
+    """
     along = np.sin(np.pi * np.linspace(0.0, 1.0, 11)) * np.sign(np.linspace(-1.0, 1.0, 11))
     values = np.outer([1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 10.0, far], along)
     scale = Scale.of(values, sides=2)
@@ -70,7 +81,8 @@ def test_signed_values_are_seen_beside_a_few_far_ones(far):
 
 
 @pytest.mark.parametrize(
-    ("axis", "inches", "shown"), [("x", 6.0, "0.05 0.0625 0.1 0.5"), ("x", 1.5, "0.05 0.1 0.5"), ("y", 1.0, "0.05 0.1 0.5")]
+    ("axis", "inches", "shown"),
+    [("x", 6.0, "0.05 0.0625 0.1 0.5"), ("x", 1.5, "0.05 0.1 0.5"), ("y", 1.0, "0.05 0.1 0.5")],
 )
 def test_ticks_at_values(axis, inches, shown):
     """All are ticked, and numbered where there is room."""
@@ -90,7 +102,9 @@ def test_axes_even_in_ratios_are_logarithmic():
     assert not logarithmic(np.linspace(0.01, 1.0, 7))
     assert not logarithmic(np.array([0.1, 0.2, 0.4]))
     assert not logarithmic(np.array([-1.0, 0.0, 10.0]))
-    np.testing.assert_allclose(edges(np.array([1.0, 10.0, 100.0]), True), 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
+    np.testing.assert_allclose(
+        edges(np.array([1.0, 10.0, 100.0]), True), 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5])
+    )
     np.testing.assert_allclose(edges(np.array([0.1, 0.2, 0.5]), False), [0.05, 0.15, 0.35, 0.65])
 
 
@@ -102,4 +116,7 @@ def test_words():
     assert max(map(len, text.split("\n"))) <= 16
     assert "[N\N{NO-BREAK SPACE}m]" in text
     assert "\n\n" not in text
-    assert text.replace("\n", "").replace("\N{NO-BREAK SPACE}", "").replace(" ", "") == "effortof_a_bearing,|peak|[Nm]beyond:upto3"
+    assert (
+        text.replace("\n", "").replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
+        == "effortof_a_bearing,|peak|[Nm]beyond:upto3"
+    )

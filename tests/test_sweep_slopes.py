@@ -1,4 +1,6 @@
-"""Derivatives of peaks as columns of a sweep: those of a prepared scene, in conditions, in the file, on the axes of figures."""
+"""Derivatives of peaks as columns of a sweep: those of a prepared scene, in conditions, in the
+file, on the axes of figures.
+"""
 
 import h5py
 import numpy as np
@@ -19,7 +21,14 @@ SPAN = (0, 0.08, 65)
 
 @pytest.fixture(scope="module")
 def swept(slider_crank, tmp_path_factory):
-    return sweep(slider_crank, GRID, t=SPAN, wanted=WANTED, out=tmp_path_factory.mktemp("slopes") / "a.h5", workers=1)
+    return sweep(
+        slider_crank,
+        GRID,
+        t=SPAN,
+        wanted=WANTED,
+        out=tmp_path_factory.mktemp("slopes") / "a.h5",
+        workers=1,
+    )
 
 
 def test_they_are_those_of_a_prepared_scene(slider_crank, swept):
@@ -34,7 +43,9 @@ def test_they_are_those_of_a_prepared_scene(slider_crank, swept):
                 for by in ("l", "m3"):
                     assert swept[f"sensitivity:{by}:peak:{name}"][i, j] == gradient[name][by]
             for by in ("l", "m3"):
-                assert swept[f"sensitivity:{by}:mean:effort:O"][i, j] == gradient.mean["effort:O"][by]
+                assert (
+                    swept[f"sensitivity:{by}:mean:effort:O"][i, j] == gradient.mean["effort:O"][by]
+                )
                 assert swept[f"sensitivity:{by}:rms:effort:O"][i, j] == gradient.rms["effort:O"][by]
 
 
@@ -42,17 +53,25 @@ def test_they_are_columns_as_others(swept):
     assert check_sweep(swept.path) == []
     assert swept.unit("sensitivity:m3:peak:section:rod:axial") == "N/kg"
     assert "sensitivity:r:peak:effort:O" not in swept.columns
-    assert label(swept, "sensitivity:l:peak:section:rod:bending") == "rod bending, peak, derivative by l [N m/m]"
+    assert (
+        label(swept, "sensitivity:l:peak:section:rod:bending")
+        == "rod bending, peak, derivative by l [N m/m]"
+    )
     assert swept.unit("sensitivity:l:rms:effort:O") == "N m/m"
     assert label(swept, "sensitivity:l:rms:effort:O") == "effort O, rms, derivative by l [N m/m]"
     column = swept["sensitivity:l:peak:effort:O"]
     below = float(np.nanmedian(column))
-    (found,) = best(swept, minimise="peak:effort:O", where=[f"sensitivity:l:peak:effort:O<{below}", "r=0.1"])
+    (found,) = best(
+        swept, minimise="peak:effort:O", where=[f"sensitivity:l:peak:effort:O<{below}", "r=0.1"]
+    )
     assert found.values["l"] in GRID["l"]
     assert column[1, GRID["l"].index(found.values["l"])] < below
     with h5py.File(swept.path) as file:
         assert file.attrs["schema_version"] == 5
-        assert file["sensitivity/l/peak/effort/O"].attrs["long_name"] == "derivative by l of the peak: effort of the drive"
+        assert (
+            file["sensitivity/l/peak/effort/O"].attrs["long_name"]
+            == "derivative by l of the peak: effort of the drive"
+        )
 
 
 def test_a_sweep_without_them_is_another_one(slider_crank, swept, tmp_path):

@@ -20,34 +20,102 @@ pytestmark = pytest.mark.quick
 def file(here, capfd):
     """A small sweep's file."""
     assert (
-        main([*ASKED, "--grid", "l=0.06:0.36:4", "--grid", "r=0.05,0.1", "--set", "m3=0.2", "--xi", "0:1:3", "--out", "s.h5"]) == 0
+        main(
+            [
+                *ASKED,
+                "--grid",
+                "l=0.06:0.36:4",
+                "--grid",
+                "r=0.05,0.1",
+                "--set",
+                "m3=0.2",
+                "--xi",
+                "0:1:3",
+                "--out",
+                "s.h5",
+            ]
+        )
+        == 0
     )
     capfd.readouterr()
     return Path("s.h5")
 
 
 def test_best(file, capfd):
-    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>0.2", "--count", "2", "--column", "rms:effort:O"]) == 0
+    assert (
+        main(
+            [
+                "best",
+                "s.h5",
+                "--minimise",
+                BENDING,
+                "--where",
+                "l>0.2",
+                "--count",
+                "2",
+                "--column",
+                "rms:effort:O",
+            ]
+        )
+        == 0
+    )
     head, *rows = capfd.readouterr().out.splitlines()
-    assert head.split() == ["design", "l", "[m]", "r", "[m]", BENDING, "[N", "m]", "rms:effort:O", "[N", "m]"]
+    assert head.split() == [
+        "design",
+        "l",
+        "[m]",
+        "r",
+        "[m]",
+        BENDING,
+        "[N",
+        "m]",
+        "rms:effort:O",
+        "[N",
+        "m]",
+    ]
     found = Sweep.open("s.h5")
     sizes = np.abs(found[BENDING])[found["l"] > 0.2]
     shown = [float(row.split()[3]) for row in rows]
     np.testing.assert_allclose(np.abs(shown), np.sort(sizes.ravel())[:2], rtol=1e-5)
-    assert main(["best", "s.h5", "--minimise", BENDING, "--minimise", "peak:effort:O", "--csv", "front.csv"]) == 0
+    assert (
+        main(
+            [
+                "best",
+                "s.h5",
+                "--minimise",
+                BENDING,
+                "--minimise",
+                "peak:effort:O",
+                "--csv",
+                "front.csv",
+            ]
+        )
+        == 0
+    )
     assert capfd.readouterr().out.endswith("wrote front.csv: 4 designs\n")
     assert Path("front.csv").read_text().startswith(f"design,l,r,{BENDING},peak:effort:O\n")
     assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>1"]) == 1
-    said = "error: s.h5: no design has a result and meets the conditions: of 8 designs, {}, {} of these with a result\n"
+    said = (
+        "error: s.h5: no design has a result and meets the conditions: of 8 designs, {}, {} of"
+        " these with a result\n"
+    )
     assert capfd.readouterr().err == said.format("0 meet them", 0)
-    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l<0.1", "--where", "r>0.07"]) == 1
+    assert (
+        main(["best", "s.h5", "--minimise", BENDING, "--where", "l<0.1", "--where", "r>0.07"]) == 1
+    )
     assert capfd.readouterr().err == said.format("1 meet them", 0)
     assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l==0.1"]) == 1
-    assert capfd.readouterr().err == said.format("0 meet them", 0).rstrip() + "; no design has l = 0.1; nearest: 0.06, 0.16\n"
+    assert (
+        capfd.readouterr().err
+        == said.format("0 meet them", 0).rstrip() + "; no design has l = 0.1; nearest: 0.06, 0.16\n"
+    )
 
 
 def test_best_as_csv_names_the_design(file, capfd):
-    assert main(["best", "s.h5", "--minimise", BENDING, "--column", "status", "--csv", "best.csv"]) == 0
+    assert (
+        main(["best", "s.h5", "--minimise", BENDING, "--column", "status", "--csv", "best.csv"])
+        == 0
+    )
     out = capfd.readouterr().out.splitlines()
     assert out[1].split()[-1] == "ok"
     assert out[2] == "wrote best.csv: 1 design"
@@ -63,7 +131,10 @@ def test_best_as_csv_names_the_design(file, capfd):
 @pytest.mark.parametrize("command", [["best", "--minimise", BENDING], ["table"]])
 def test_an_impossible_csv_is_told_first(file, capfd, command):
     assert main([command[0], "s.h5", *command[1:], "--csv", "nowhere/x.csv"]) == 2
-    assert capfd.readouterr() == ("", "error: cannot write nowhere/x.csv: folder nowhere does not exist\n")
+    assert capfd.readouterr() == (
+        "",
+        "error: cannot write nowhere/x.csv: folder nowhere does not exist\n",
+    )
 
 
 def test_table(file, capfd):
@@ -72,15 +143,24 @@ def test_table(file, capfd):
     assert out[0].split()[:6] == ["design", "l", "[m]", "r", "[m]", "status"]
     assert out[1].split()[3] == "ok"
     assert out[2].split()[3] == "out_of_reach"
-    assert out[4] == "... of 8 designs, 7 with a result; --rows N shows more, --csv OUT.csv writes all"
+    assert (
+        out[4] == "... of 8 designs, 7 with a result; --rows N shows more, --csv OUT.csv writes all"
+    )
     assert main(["table", "s.h5", "--column", "rms:effort:O", "--where", "status!=0"]) == 0
     assert capfd.readouterr().out.splitlines()[1].split() == ["1", "0.06", "0.1", "nan"]
     assert main(["table", "s.h5", "--where", "l<0.2", "--rows", "1"]) == 0
-    assert capfd.readouterr().out.splitlines()[2].startswith("... of 4 designs that meet the conditions, 3 with a result; ")
+    assert (
+        capfd.readouterr()
+        .out.splitlines()[2]
+        .startswith("... of 4 designs that meet the conditions, 3 with a result; ")
+    )
     assert main(["table", "s.h5", "--rows", "8"]) == 0
     out, err = capfd.readouterr()
     assert len(out.splitlines()) == 9
-    assert "note: --column NAME shows other columns over xi, a row for every xi: peak_at:section:rod:axial, peak" in err
+    assert (
+        "note: --column NAME shows other columns over xi, a row for every xi:"
+        " peak_at:section:rod:axial, peak" in err
+    )
     assert main(["table", "s.h5", "--column", "q"]) == 2
     out, err = capfd.readouterr()
     assert out == ""
@@ -108,16 +188,27 @@ def test_columns_over_ratios_are_a_row_for_each(file, capfd):
     np.testing.assert_array_equal(values[0], np.broadcast_to(found["l"][:, None, None], (4, 2, 3)))
     np.testing.assert_array_equal(values[1], np.broadcast_to(found["r"][:, None], (4, 2, 3)))
     np.testing.assert_array_equal(values[2], np.broadcast_to([0.0, 0.5, 1.0], (4, 2, 3)))
-    np.testing.assert_array_equal(values[3], np.broadcast_to(found["peak:effort:O"][..., None], (4, 2, 3)))
+    np.testing.assert_array_equal(
+        values[3], np.broadcast_to(found["peak:effort:O"][..., None], (4, 2, 3))
+    )
 
 
 def test_columns_over_ratios_on_the_terminal(file, capfd):
-    assert main(["table", "s.h5", *columns("status", AT[2]), "--where", "xi==0.5", "--rows", "2"]) == 0
+    assert (
+        main(["table", "s.h5", *columns("status", AT[2]), "--where", "xi==0.5", "--rows", "2"]) == 0
+    )
     out, err = capfd.readouterr()
     head, *rows, more = out.splitlines()
     assert head.split() == ["design", "l", "[m]", "r", "[m]", "xi", "status", AT[2], "[N", "m]"]
-    assert [row.split()[:5] for row in rows] == [["0", "0.06", "0.05", "0.5", "ok"], ["1", "0.06", "0.1", "0.5", "out_of_reach"]]
-    assert more == "... of 8 rows that meet the conditions, 7 with a result; --rows N shows more, --csv OUT.csv writes all"
+    assert [row.split()[:5] for row in rows] == [
+        ["0", "0.06", "0.05", "0.5", "ok"],
+        ["1", "0.06", "0.1", "0.5", "out_of_reach"],
+    ]
+    assert (
+        more
+        == "... of 8 rows that meet the conditions, 7 with a result; --rows N shows more, --csv"
+        " OUT.csv writes all"
+    )
     assert err == ""
     limit = float(np.nanmax(np.abs(Sweep.open("s.h5")[AT[2]]))) * 0.999
     assert main(["table", "s.h5", "--where", f"{AT[2]}>{limit!r}"]) == 0
@@ -139,8 +230,14 @@ def test_unknown_columns_are_told_at_once(file, capfd):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ([*columns(AT[2]), "--where", "xi==0.505"], "no row meets the conditions; no design has xi = 0.505; nearest: 0.5, 1"),
-        (["--where", "l=0.3"], "no design meets the conditions; no design has l = 0.3; nearest: 0.26, 0.36"),
+        (
+            [*columns(AT[2]), "--where", "xi==0.505"],
+            "no row meets the conditions; no design has xi = 0.505; nearest: 0.5, 1",
+        ),
+        (
+            ["--where", "l=0.3"],
+            "no design meets the conditions; no design has l = 0.3; nearest: 0.26, 0.36",
+        ),
         (["--where", "l>1"], "no design meets the conditions"),
     ],
 )
@@ -155,10 +252,17 @@ def test_a_damaged_column_is_found(file, capfd):
     with h5py.File("s.h5") as h:
         place = h["peak/section/rod/bending"].id.get_chunk_info(0).byte_offset + 20
     flip(file, place)
-    commands = (["best", "--minimise", BENDING], ["table", "--csv", "x.csv"], ["plot", "--over", "l", "--out", "figures"])
+    commands = (
+        ["best", "--minimise", BENDING],
+        ["table", "--csv", "x.csv"],
+        ["plot", "--over", "l", "--out", "figures"],
+    )
     for command in (*commands, ["info"], ["check"]):
         assert main([command[0], "s.h5", *command[1:]]) == 1
-        assert capfd.readouterr() == ("", "error: s.h5: damaged: its bytes are not those that were written\n")
+        assert capfd.readouterr() == (
+            "",
+            "error: s.h5: damaged: its bytes are not those that were written\n",
+        )
     assert not Path("x.csv").exists()
     assert not Path("figures").exists()
 
@@ -166,21 +270,34 @@ def test_a_damaged_column_is_found(file, capfd):
 def test_where_a_figure_stays_is_a_number(file, capfd):
     for value in ("nan", "inf"):
         assert main(["plot", "s.h5", "--at", f"l={value}", "--out", "figures"]) == 2
-        assert capfd.readouterr() == ("", f"error: Invalid value for '--at': l: expected a finite number, got {value}\n")
+        assert capfd.readouterr() == (
+            "",
+            f"error: Invalid value for '--at': l: expected a finite number, got {value}\n",
+        )
 
 
 def test_columns_of_different_axes_need_a_table_each(here, capfd):
-    assert main([*ASKED, "--grid", "l=0.2,0.3", "--xi", "0:1:3", "--keep", "histories", "--out", "h.h5"]) == 0
+    assert (
+        main(
+            [*ASKED, "--grid", "l=0.2,0.3", "--xi", "0:1:3", "--keep", "histories", "--out", "h.h5"]
+        )
+        == 0
+    )
     capfd.readouterr()
     assert main(["table", "h.h5", *columns(AT[0], "history:effort:O"), "--csv", "x.csv"]) == 2
-    said = f"column '{AT[0]}' has a value for every xi, 'history:effort:O' for every t: each needs a table of its own"
+    said = (
+        f"column '{AT[0]}' has a value for every xi, 'history:effort:O' for every t: each needs a"
+        " table of its own"
+    )
     assert capfd.readouterr() == ("", f"error: {said}\n")
     assert main(["table", "h.h5", *columns("history:section:rod:bending"), "--csv", "x.csv"]) == 0
     assert capfd.readouterr().out == "wrote x.csv: 126 rows\n"
     with open("x.csv", newline="") as text:
         assert next(text) == "l,t,xi,history:section:rod:bending\n"
         values = np.loadtxt(text, delimiter=",")
-    np.testing.assert_array_equal(values[:, 3], Sweep.open("h.h5")["history:section:rod:bending"].ravel())
+    np.testing.assert_array_equal(
+        values[:, 3], Sweep.open("h.h5")["history:section:rod:bending"].ravel()
+    )
     assert main(["table", "h.h5", "--csv", "x.csv"]) == 0
     notes = capfd.readouterr().err.splitlines()
     assert [note.partition(":section")[0].partition(": history")[0] for note in notes] == [
@@ -197,11 +314,18 @@ def test_a_table_of_what_is_kept_of_the_motion(here, capfd):
     assert main(["table", "x.h5"]) == 0
     out, err = capfd.readouterr()
     assert out.splitlines()[0].split()[3:5] == ["status", "peak:motion:A_acceleration"]
-    assert re.match(r"note: --column NAME shows other columns: peak:motion:.* and 19 more \(`lagrange-casadi info x.h5` lists", err)
+    assert re.match(
+        r"note: --column NAME shows other columns: peak:motion:.* and 19 more \(`lagrange-casadi"
+        r" info x.h5` lists",
+        err,
+    )
     assert main([*asked, "--keep", "histories", "--out", "y.h5"]) == 0
     capfd.readouterr()
     assert main(["table", "y.h5"]) == 0
-    assert "note: --column NAME shows other columns over t, a row for every t: history:" in capfd.readouterr().err
+    assert (
+        "note: --column NAME shows other columns over t, a row for every t: history:"
+        in capfd.readouterr().err
+    )
 
 
 def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
@@ -212,7 +336,9 @@ def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
     found = Sweep.open("s.h5")
     for name in ("status", BENDING, "peak_xi:section:rod:shear", "mean:effort:O"):
         np.testing.assert_array_equal([float(row[name]) for row in rows], found[name].ravel())
-    assert main(["table", "s.h5", "--csv", "list.csv", "--column", "l", "--where", "status==0"]) == 0
+    assert (
+        main(["table", "s.h5", "--csv", "list.csv", "--column", "l", "--where", "status==0"]) == 0
+    )
     assert Path("list.csv").read_text().startswith("l,r\n0.06,0.05\n")
     assert main([*ASKED, "--designs", "list.csv", "--set", "m3=0.2", "--out", "again.h5"]) == 0
     there = found["status"] == 0
@@ -227,11 +353,17 @@ def test_info_check_and_plot_know_sweeps(file, capfd):
         "7 designs: there is a result",
         "1 design: a loop cannot be closed: its links do not reach",
     ]
-    assert re.search(r"peak:section:rod:bending +N m +largest in size over time: bending moment", out)
+    assert re.search(
+        r"peak:section:rod:bending +N m +largest in size over time: bending moment", out
+    )
     assert main(["check", "s.h5"]) == 0
     assert capfd.readouterr().out == "s.h5: whole and consistent\n"
     assert main(["plot", "s.h5", "--out", "figures", "--over", "l", "--at", "r=0.05"]) == 0
-    assert {path.stem for path in Path("figures").iterdir()} >= {"peak_effort", "peak_section_rod", "along_rod"}
+    assert {path.stem for path in Path("figures").iterdir()} >= {
+        "peak_effort",
+        "peak_section_rod",
+        "along_rod",
+    }
     assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures", "--out", "run.h5"]) == 0
     capfd.readouterr()
     assert main(["plot", "run.h5", "--out", "figures", "--over", "l"]) == 2

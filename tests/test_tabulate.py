@@ -26,10 +26,16 @@ def triad():
     crank, plate = m.link("crank", length=0.05, mass=0.2), m.link("plate", length=0.2, mass=0.8)
     m.revolute("O", m.ground.at(-0.35, 0.0), crank)
     posture = {"plate": 0.0}
-    for i, (foot, place) in enumerate((((-0.3, 0.0), (0.0, 0.0)), ((0.2, -0.4), (0.2, 0.0)), ((0.05, -0.4), (0.05, 0.1)))):
+    for i, (foot, place) in enumerate(
+        (((-0.3, 0.0), (0.0, 0.0)), ((0.2, -0.4), (0.2, 0.0)), ((0.05, -0.4), (0.05, 0.1)))
+    ):
         rod = m.link(f"rod{i}", length=math.dist(foot, place), mass=0.3)
         m.revolute(f"foot{i}", crank.tip if i == 0 else m.ground.at(*foot), rod)
-        m.revolute(f"corner{i}", rod.tip, plate.base if i == 0 else plate.tip if i == 1 else plate.at(*place))
+        m.revolute(
+            f"corner{i}",
+            rod.tip,
+            plate.base if i == 0 else plate.tip if i == 1 else plate.at(*place),
+        )
         posture[f"rod{i}"] = math.atan2(place[1] - foot[1], place[0] - foot[0])
     return Scene(m, {"O": motion.polynomial(0.0, 3.0)}, posture=posture, t=(0.0, 1.0, 21))
 
@@ -47,7 +53,10 @@ def arm(load=None, law=None, **keywords):
 def geared(ratio):
     m = Mechanism("geared")
     wheel, link = m.link("wheel", length=0.05, mass=0.2), m.link("link", length=0.1, mass=0.3)
-    first, second = m.revolute("first", m.ground.at(-0.2, 0), wheel), m.revolute("second", m.ground, link)
+    first, second = (
+        m.revolute("first", m.ground.at(-0.2, 0), wheel),
+        m.revolute("second", m.ground, link),
+    )
     m.gear("mesh", first, second, ratio=ratio)
     return Scene(m, {"first": motion.polynomial(0.2, 3.0)})
 
@@ -67,7 +76,9 @@ SMOOTH = {
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SMOOTH)
 def test_a_table_gives_what_the_graph_gives(name):
-    """At any angle, of some turns either way, and rates of either sign; for 1e-9, of each column's peak."""
+    """At any angle, of some turns either way, and rates of either sign; for 1e-9, of each column's
+    peak.
+    """
     build, most = SMOOTH[name]
     scene = build()
     table = made(scene)
@@ -79,11 +90,17 @@ def test_a_table_gives_what_the_graph_gives(name):
 
 
 def test_the_error_is_the_one_there_is():
-    """Of errors at thousands of places the largest is what the table says, which looks halfway between nodes."""
+    """Of errors at thousands of places the largest is what the table says, which looks halfway
+    between nodes.
+    """
     scene = case("slider_crank")
     table = made(scene, 64)
     angle = np.linspace(0.0, math.tau, 64 * 33)
-    gaps = [worst_gap(scene, table, angle, np.full_like(angle, r), np.full_like(angle, a)) for r in (60, -60) for a in (900, -900)]
+    gaps = [
+        worst_gap(scene, table, angle, np.full_like(angle, r), np.full_like(angle, a))
+        for r in (60, -60)
+        for a in (900, -900)
+    ]
     assert table.error == pytest.approx(max(gaps), rel=0.02)
 
 
@@ -94,30 +111,46 @@ def test_errors_fall_with_the_sixth_power_of_the_distance():
 
 
 def test_kinks_of_a_load_cost_the_order():
-    """The engine's gas follows a table, linear between its values: errors fall with the distance only."""
+    """The engine's gas follows a table, linear between its values: errors fall with the distance
+    only.
+    """
     scene = case("engine")
     with pytest.raises(
         DeclarationError,
-        match=r"table: an accuracy of 1e-09 is not reached; the best is \S+e-0[45], with 16384 nodes, and (the \w+ of )?'[^_]",
+        match=(
+            r"table: an accuracy of 1e-09 is not reached; the best is \S+e-0[45], with 16384 nodes,"
+            r" and (the \w+ of )?'[^_]"
+        ),
     ):
         made(scene, wanted=["effort"])
     coarse, fine = made(scene, 1024, ["effort"]), made(scene, 4096, ["effort"])
     assert 2.5 < coarse.error / fine.error < 6.0
     # Four strokes are two turns. Where the declared load ends, before the start, the table goes on.
     assert fine.turns == 2
-    assert worst_gap(scene, fine, math.pi / 2 + 4 + np.abs(some_motion())[0], *some_motion()[1:], ["effort"]) < 2 * fine.error
+    assert (
+        worst_gap(
+            scene, fine, math.pi / 2 + 4 + np.abs(some_motion())[0], *some_motion()[1:], ["effort"]
+        )
+        < 2 * fine.error
+    )
     everything = made(scene, 64)
-    gains = {name: gain for name, gain in zip(everything.columns, everything.drift, strict=True) if gain}
+    gains = {
+        name: gain for name, gain in zip(everything.columns, everything.drift, strict=True) if gain
+    }
     assert gains == {"motion:main": 1.0, "pose:crank:angle": 1.0, "motion:big_end": -1.0}
 
 
 def test_another_law_of_motion_is_served():
     """A table of a scene that turns steadily gives a scene that swings."""
     swinging = motion.harmonic(0.4, 2.0, 3.0, 0.3)
-    other = Scene(case("four_bar").mechanism, {"O": swinging}, posture={"rocker": 1.5}, t=(0.0, 0.7, 301))
+    other = Scene(
+        case("four_bar").mechanism, {"O": swinging}, posture={"rocker": 1.5}, t=(0.0, 0.7, 301)
+    )
     table = made(case("four_bar"))
     t = np.linspace(*other.t)
-    angle, rate, acceleration = (row.full().ravel() for row in derive(other).motion(t[None], values(other)))
+    angle, rate, acceleration = (
+        row.full().ravel() for row in derive(other).motion(t[None], values(other))
+    )
     assert rate.min() < 0.0 < rate.max()
     assert worst_gap(other, table, angle, rate, acceleration) < 1.1e-9
 
@@ -142,7 +175,14 @@ def test_terms_are_those_that_there_are():
 
 def test_damping_goes_with_the_rate():
     def damper(m, parts):
-        m.spring("damper", m.ground.at(0.2, 0.5), parts["b"].at(0.1), stiffness=300.0, length=0.3, damping=40.0)
+        m.spring(
+            "damper",
+            m.ground.at(0.2, 0.5),
+            parts["b"].at(0.1),
+            stiffness=300.0,
+            length=0.3,
+            damping=40.0,
+        )
 
     scene = crank_and_rod({"mass": 0.4}, loads=damper)
     table = made(scene)
@@ -192,7 +232,9 @@ def test_what_rounding_alone_makes_is_no_term():
 
 
 def unreachable():
-    return Scene(four_bar().mechanism, {"C": motion.polynomial(1.5, 1.0)}, posture={"a": 1.0}, t=(0, 0.1, 3))
+    return Scene(
+        four_bar().mechanism, {"C": motion.polynomial(1.5, 1.0)}, posture={"a": 1.0}, t=(0, 0.1, 3)
+    )
 
 
 def flat_parallelogram():
@@ -220,7 +262,9 @@ def two_drives():
 
 def rubbing():
     m = Mechanism("rubbing")
-    m.friction("rub", m.revolute("pin", m.ground, m.link("bar", length=0.3, mass=1.0)), mu=0.1, radius=0.02)
+    m.friction(
+        "rub", m.revolute("pin", m.ground, m.link("bar", length=0.3, mass=1.0)), mu=0.1, radius=0.02
+    )
     return Scene(m, {"pin": motion.polynomial(0, 1)})
 
 
@@ -230,7 +274,10 @@ REFUSED = {
     "slides": (driven_slide, r"the driven joint 'guide' slides; expected one that turns"),
     "time": (
         lambda: arm(lambda q, w, t: ca.sin(t)),
-        r"that the angle of joint 'pin' decides, but time itself enters 'load:load:mz', 'effort:pin'$",
+        (
+            r"that the angle of joint 'pin' decides, but time itself enters 'load:load:mz',"
+            r" 'effort:pin'$"
+        ),
     ),
     "sign": (
         lambda: arm(lambda q, w, t: -3 * ca.sign(w)),
@@ -240,25 +287,49 @@ REFUSED = {
         lambda: arm(lambda q, w, t: -1e-3 * w * ca.fabs(w)),
         r"quadratic in the rate of joint 'pin', but a load that depends on a rate's sign",
     ),
-    "cube": (lambda: arm(lambda q, w, t: 1e-6 * w**3), r"sign, size or another power enters 'load:load:mz', 'effort:pin'$"),
-    "at rest": (lambda: arm(lambda q, w, t: w**2 / ca.fabs(w)), r"'load:load:mz' is not finite at rest, where pin = 0\.\d+ rad"),
-    "friction": (rubbing, r"quadratic in the rate of joint 'pin', but its sign decides friction 'rub'$"),
-    "quick_return": (lambda: case("quick_return"), r"quadratic in the rate of joint 'O', .* enters 'load:cut:fx', .* and 16 more"),
+    "cube": (
+        lambda: arm(lambda q, w, t: 1e-6 * w**3),
+        r"sign, size or another power enters 'load:load:mz', 'effort:pin'$",
+    ),
+    "at rest": (
+        lambda: arm(lambda q, w, t: w**2 / ca.fabs(w)),
+        r"'load:load:mz' is not finite at rest, where pin = 0\.\d+ rad",
+    ),
+    "friction": (
+        rubbing,
+        r"quadratic in the rate of joint 'pin', but its sign decides friction 'rub'$",
+    ),
+    "quick_return": (
+        lambda: case("quick_return"),
+        r"quadratic in the rate of joint 'O', .* enters 'load:cut:fx', .* and 16 more",
+    ),
     "rocker": (
         unreachable,
-        r"the loop closed by joint 'B' cannot be closed, where C = 2\.\d+ rad \(1\d\d\.\d+ deg\); expected a drive that can turn",
+        (
+            r"the loop closed by joint 'B' cannot be closed, where C = 2\.\d+ rad \(1\d\d\.\d+"
+            r" deg\); expected a drive that can turn"
+        ),
     ),
     "iterated": (
         truss_platform,
-        r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can turn all the way round",
+        (
+            r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can turn"
+            r" all the way round"
+        ),
     ),
     "bricard": (
         lambda: case("bricard"),
-        r"the loops closed by joint 'J3' did not converge, where J0 = 2\.1\d+ rad .*; expected a drive that can turn all the way",
+        (
+            r"the loops closed by joint 'J3' did not converge, where J0 = 2\.1\d+ rad .*; expected"
+            r" a drive that can turn all the way"
+        ),
     ),
     "dead centre": (
         flat_parallelogram,
-        r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O = 3\.\d+ rad",
+        (
+            r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O"
+            r" = 3\.\d+ rad"
+        ),
     ),
     "gear": (
         lambda: geared(0.7),
@@ -280,16 +351,25 @@ def test_what_has_no_table_is_refused_with_the_reason(name):
 
 
 def test_an_accuracy_beyond_rounding_is_refused_with_the_best():
-    best = r"\S+e-1[56], with (512|1024|2048) nodes, and (the \w+ of )?'[^_]\S*' is the worst there$"
-    with pytest.raises(DeclarationError, match=f"^table: an accuracy of 1e-17 is not reached; the best is {best}"):
+    best = (
+        r"\S+e-1[56], with (512|1024|2048) nodes, and (the \w+ of )?'[^_]\S*' is the worst there$"
+    )
+    with pytest.raises(
+        DeclarationError, match=f"^table: an accuracy of 1e-17 is not reached; the best is {best}"
+    ):
         made(case("slider_crank"), 1e-17)
 
 
 def test_tables_are_bounded_in_memory(monkeypatch):
     monkeypatch.setattr(tabulate, "LARGEST", 8 * 4 * (128 + 5))
-    with pytest.raises(DeclarationError, match=r"an accuracy of 1e-09 is not reached; the best is \S+e-09, with 128 nodes"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"an accuracy of 1e-09 is not reached; the best is \S+e-09, with 128 nodes",
+    ):
         made(case("slider_crank"), wanted=["effort"])
-    with pytest.raises(DeclarationError, match=r"table: 129 nodes take more than 0 MB; expected fewer"):
+    with pytest.raises(
+        DeclarationError, match=r"table: 129 nodes take more than 0 MB; expected fewer"
+    ):
         made(case("slider_crank"), 129, ["effort"])
     assert made(case("slider_crank"), 128, ["effort"]).nodes == 128
 
@@ -297,14 +377,21 @@ def test_tables_are_bounded_in_memory(monkeypatch):
 @pytest.mark.parametrize("table", [7, 16385, -3, True, 1.0, 0.0, 16.0, math.nan, "16", None])
 def test_what_is_neither_nodes_nor_an_accuracy_is_refused(table):
     with pytest.raises(
-        DeclarationError, match=r"table: expected a whole number of nodes from 8 to 16384, or an accuracy between 0 and 1"
+        DeclarationError,
+        match=(
+            r"table: expected a whole number of nodes from 8 to 16384, or an accuracy between 0"
+            r" and 1"
+        ),
     ):
         made(case("slider_crank"), table)
 
 
 @pytest.mark.parametrize("rates", [(1.0,), (-1.0, 2.0), (math.inf, 0.0), ("a", 1.0), 3.0])
 def test_rates_are_two_numbers(rates):
-    with pytest.raises(DeclarationError, match=r"table: expected the largest rate and acceleration, two numbers of at least 0"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"table: expected the largest rate and acceleration, two numbers of at least 0",
+    ):
         made(case("slider_crank"), 64, rates=rates)
 
 
@@ -312,12 +399,21 @@ def test_each_place_is_evaluated_once(monkeypatch):
     """The nodes of twice as many are the former ones and the places halfway."""
     asked = []
     values_at = Cycle.values
-    monkeypatch.setattr(Cycle, "values", lambda self, nodes, **k: asked.append((nodes, *k)) or values_at(self, nodes, **k))
+    monkeypatch.setattr(
+        Cycle,
+        "values",
+        lambda self, nodes, **k: asked.append((nodes, *k)) or values_at(self, nodes, **k),
+    )
     table = made(case("slider_crank"), 1e-6)
     assert asked == [(16,), (16, "halfway"), (32, "halfway"), (64, "halfway")]
     monkeypatch.undo()
     again = made(case("slider_crank"), 64)
-    np.testing.assert_allclose(table.coefficients, again.coefficients, rtol=0, atol=1e-13 * np.abs(again.coefficients).max())
+    np.testing.assert_allclose(
+        table.coefficients,
+        again.coefficients,
+        rtol=0,
+        atol=1e-13 * np.abs(again.coefficients).max(),
+    )
 
 
 def with_a_load(place):
@@ -328,14 +424,24 @@ def with_a_load(place):
     m.revolute("A", crank.tip, rod)
     m.slot("guide", m.ground, rod.tip)
     m.force("load", rod.at(m.parameter("place", place)), y=-20.0)
-    return Scene(m, {"O": motion.polynomial(0.0, 10.0)}, t=(0.0, 0.6, 31), posture={"rod": 0.0}, xi=(0.0, 1.0, 41))
+    return Scene(
+        m,
+        {"O": motion.polynomial(0.0, 10.0)},
+        t=(0.0, 0.6, 31),
+        posture={"rod": 0.0},
+        xi=(0.0, 1.0, 41),
+    )
 
 
 @pytest.mark.parametrize("place", [0.2, 0.13, 0.3])
 def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place):
-    """A spline through one number rounds it: at a ratio of the grid that is the load's own, 20 N would be on the other side."""
+    """A spline through one number rounds it: at a ratio of the grid that is the load's own, 20 N
+    would be on the other side.
+    """
     scene = with_a_load(place)
-    read, true = (evaluate(scene, backend="vm", **rung).section("rod") for rung in ({"table": 256}, {}))
+    read, true = (
+        evaluate(scene, backend="vm", **rung).section("rod") for rung in ({"table": 256}, {})
+    )
     np.testing.assert_array_equal(read.law.loads[0].station, true.law.loads[0].station)
     np.testing.assert_allclose(read.shear, true.shear, rtol=0, atol=1e-9)
 
@@ -344,4 +450,10 @@ def test_an_exported_table_knows_it_too(tmp_path):
     scene = with_a_load(0.2)
     made, told = exported(scene, tmp_path, table=256)
     solution = solve(scene, "double", table=256)
-    compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, "double")),
+        expected(scene, told, solution),
+        told,
+        made,
+        solution,
+    )

@@ -1,4 +1,6 @@
-"""What files hold never reaches a terminal as anything but text: no cursor moves, no colour, no line that nobody wrote."""
+"""What files hold never reaches a terminal as anything but text: no cursor moves, no colour, no
+line that nobody wrote.
+"""
 
 import ast
 import json
@@ -18,7 +20,14 @@ from lagrange_casadi.errors import LagrangeCasadiError, escaped, one_line
 from lagrange_casadi.studies.sweep import sweep
 
 CLI = Path(lagrange_casadi.cli.__file__).parent
-WRITERS = {"click.echo", "click.secho", "click.echo_via_pager", "print", "sys.stdout.write", "sys.stderr.write"}
+WRITERS = {
+    "click.echo",
+    "click.secho",
+    "click.echo_via_pager",
+    "print",
+    "sys.stdout.write",
+    "sys.stderr.write",
+}
 CONTROLS = "\x1b[2J\x9b31m\r\n\x07\x00\u202e\u2028\ud800"
 OBEYED = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e\u2028\ud800]")
 SOME, MANY = 6, 400
@@ -28,7 +37,9 @@ def test_only_one_place_prints():
     """Whatever prints a line goes by the one function that escapes."""
     for path in CLI.glob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text()))
-        called = {ast.unparse(node) for node in nodes if isinstance(node, (ast.Attribute, ast.Name))}
+        called = {
+            ast.unparse(node) for node in nodes if isinstance(node, (ast.Attribute, ast.Name))
+        }
         assert called & WRITERS == ({"click.echo"} if path.name == "echo.py" else set()), path.name
 
 
@@ -39,7 +50,9 @@ def test_control_characters_are_escaped_and_letters_are_not():
     for say in (str, one_line):
         for error in (ValueError, LagrangeCasadiError):
             if say is one_line or error is LagrangeCasadiError:
-                assert say(error(f"a{CONTROLS}b\n c")) == r"a\x1b[2J\x9b31m \x07\x00\u202e \ud800b c"
+                assert (
+                    say(error(f"a{CONTROLS}b\n c")) == r"a\x1b[2J\x9b31m \x07\x00\u202e \ud800b c"
+                )
 
 
 def words(tree):
@@ -70,7 +83,14 @@ def texts(path):
     """Every word that stands in a file's attributes."""
     with h5py.File(path) as h:
         found = [value for _, _, value in attributes(h)]
-    return sorted({word for value in found for word in (words(json.loads(value)) if is_tree(value) else [value])} - {""})
+    return sorted(
+        {
+            word
+            for value in found
+            for word in (words(json.loads(value)) if is_tree(value) else [value])
+        }
+        - {""}
+    )
 
 
 def respell(path, word, other):
@@ -87,17 +107,27 @@ def respell(path, word, other):
 def file(request, slider_crank, monkeypatch, here):
     if request.param == "run":
         save(
-            evaluate(slider_crank.scene, t=(0, 0.08, 5), xi=(0, 1, 3), wanted=("effort", "section:rod"), backend="vm"),
+            evaluate(
+                slider_crank.scene,
+                t=(0, 0.08, 5),
+                xi=(0, 1, 3),
+                wanted=("effort", "section:rod"),
+                backend="vm",
+            ),
             here / "x.h5",
         )
         return here / "x.h5"
     sweeps.use(monkeypatch)
-    return sweep(sweeps.scene(), {"l": [0.2, 0.3], "r": [0.05, 0.1]}, out=here / "x.h5", xi=(0, 1, 3)).path
+    return sweep(
+        sweeps.scene(), {"l": [0.2, 0.3], "r": [0.05, 0.1]}, out=here / "x.h5", xi=(0, 1, 3)
+    ).path
 
 
 @pytest.mark.parametrize("many", [SOME, pytest.param(MANY, marks=pytest.mark.long)])
 def test_no_text_of_a_file_reaches_the_terminal_as_it_is(file, capsys, many):
-    """Each word of a file in turn with control characters behind it: what is believed and what is refused are told as text."""
+    """Each word of a file in turn with control characters behind it: what is believed and what is
+    refused are told as text.
+    """
     original, every, shown = file.read_bytes(), texts(file), 0
     for word in random.Random(2).sample(every, min(many, len(every))):
         for end in (CONTROLS[:-1].replace("\x00", "").replace("\n", "\nFAKE"), CONTROLS):

@@ -1,4 +1,5 @@
-"""Links in space whose slices have rotary inertia: every way of evaluating, sweeps, exported C and files.
+"""Links in space whose slices have rotary inertia: every way of evaluating, sweeps, exported C and
+files.
 
 Random ones are held against Newton and Euler on slices in the tests of mechanisms in space.
 """
@@ -8,7 +9,18 @@ import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, curve, density, evaluate, load, motion, refine, save
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    curve,
+    density,
+    evaluate,
+    load,
+    motion,
+    refine,
+    save,
+)
 from lagrange_casadi.base.status import Status
 from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.cli import main
@@ -19,7 +31,9 @@ from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
 def scene(**keywords):
-    """A shaft whose slices change along it, with what acts at a station and along it, and a round bar that swings on it."""
+    """A shaft whose slices change along it, with what acts at a station and along it, and a round
+    bar that swings on it.
+    """
     m = SpatialMechanism("thick")
     width, push = m.parameter("width", 0.1, "m", low=0.0), m.parameter("push", 5.0, "N")
     flat = density.thick(
@@ -29,7 +43,13 @@ def scene(**keywords):
         yz=2e-3,
     )
     shaft = m.link("shaft", length=0.7, density=flat)
-    bar = m.link("bar", length=0.4, density=density.thick(density.polynomial(3.0), yy=3.0 * width**2 / 16, zz=3.0 * width**2 / 16))
+    bar = m.link(
+        "bar",
+        length=0.4,
+        density=density.thick(
+            density.polynomial(3.0), yy=3.0 * width**2 / 16, zz=3.0 * width**2 / 16
+        ),
+    )
     m.revolute("O", m.ground, shaft, axis=(0.9, 0.3, 0.2))
     m.universal("K", shaft.tip, bar, axis=(0.0, 0.3, 1.0), second=(0.1, 1.0, -0.3))
     m.force("pull", shaft.at(0.35, 0.03, -0.02), x=2.0, y=push, z=-3.0)
@@ -51,12 +71,20 @@ def slices_beyond(yy, zz, yz, rate, angular):
 
 
 def test_a_shaft_that_is_wound_up_and_one_that_tumbles():
-    """Of a uniform bar about its axis torsion falls evenly to the tip, and its effort is J times its acceleration."""
+    """Of a uniform bar about its axis torsion falls evenly to the tip, and its effort is J times
+    its acceleration.
+    """
     m, l, yy, zz, yz = SpatialMechanism("shaft"), 0.5, 0.03, 0.01, 0.004
     m.set_gravity(0.0, 0.0, 0.0)
-    shaft = m.link("shaft", length=l, density=density.thick(density.polynomial(2.0), yy=yy, zz=zz, yz=yz))
+    shaft = m.link(
+        "shaft", length=l, density=density.thick(density.polynomial(2.0), yy=yy, zz=zz, yz=yz)
+    )
     m.spherical("S", m.ground, shaft)
-    laws = [motion.polynomial(0.0, 2.0, 1.5), motion.polynomial(0.0, -3.0), motion.polynomial(0.0, 1.0, -2.0)]
+    laws = [
+        motion.polynomial(0.0, 2.0, 1.5),
+        motion.polynomial(0.0, -3.0),
+        motion.polynomial(0.0, 1.0, -2.0),
+    ]
     solution = evaluate(Scene(m, {"S": laws}, t=(0, 0.1, 2), xi=(0, 1, 9)), backend="vm")
     assert solution.certified
     # At zero the axes of the turns are the link's: w = (2, -3, 1); the later turns carry theirs on.
@@ -65,7 +93,13 @@ def test_a_shaft_that_is_wound_up_and_one_that_tumbles():
     angular = angular + np.array([-3.0 * 1.0, -2.0 * 1.0, 2.0 * -3.0]) * np.array([1, 1, 1])
     couple = slices_beyond(yy, zz, yz, rate, angular)
     u, x = solution.xi, solution.xi * l
-    gamma = np.array([-(rate[1] ** 2 + rate[2] ** 2), angular[2] + rate[0] * rate[1], rate[0] * rate[2] - angular[1]])
+    gamma = np.array(
+        [
+            -(rate[1] ** 2 + rate[2] ** 2),
+            angular[2] + rate[0] * rate[1],
+            rate[0] * rate[2] - angular[1],
+        ]
+    )
     first, second = 2.0 * (l**2 - x**2) / 2, 2.0 * ((l**3 - x**3) / 3 - x * (l**2 - x**2) / 2)
     told = {
         "axial": -gamma[0] * first,
@@ -76,7 +110,9 @@ def test_a_shaft_that_is_wound_up_and_one_that_tumbles():
         "bending_z": -gamma[1] * second - couple[2] * (l - x),
     }
     for force, values in told.items():
-        np.testing.assert_allclose(section.array(force)[0], values, rtol=0, atol=1e-13, err_msg=force)
+        np.testing.assert_allclose(
+            section.array(force)[0], values, rtol=0, atol=1e-13, err_msg=force
+        )
     assert u.size == 9
 
 
@@ -94,11 +130,18 @@ def plain():
     ],
 )
 def test_every_way_of_evaluating_agrees(plain, way):
-    largest = max(np.abs(plain.array(name)).max() for name in plain.names() if plain.unit(name) in ("N", "N m"))
+    largest = max(
+        np.abs(plain.array(name)).max()
+        for name in plain.names()
+        if plain.unit(name) in ("N", "N m")
+    )
     found = evaluate(scene(), **way)
     assert found.certified
     for name in plain.names():
-        gap, size = np.abs(found.array(name) - plain.array(name)).max(), np.abs(plain.array(name)).max()
+        gap, size = (
+            np.abs(found.array(name) - plain.array(name)).max(),
+            np.abs(plain.array(name)).max(),
+        )
         assert gap <= (1e-12 if "backend" in way else 2e-6) * max(size, largest), name
 
 
@@ -113,7 +156,10 @@ def test_sections_are_told_in_outputs_and_files(plain, tmp_path):
     again = load(tmp_path / "thick.h5")
     assert again.certified
     for force in SPACE.forces:
-        assert again.section("shaft").array(force).tolist() == plain.section("shaft").array(force).tolist()
+        assert (
+            again.section("shaft").array(force).tolist()
+            == plain.section("shaft").array(force).tolist()
+        )
 
 
 def test_forces_along_the_link_change_as_they_say_and_peak_where_they_do(plain):
@@ -122,7 +168,9 @@ def test_forces_along_the_link_change_as_they_say_and_peak_where_they_do(plain):
         low, here, high = (np.full((5, 1), u + k * step) for k in (-1, 0, 1))
         for force in SPACE.forces:
             slope = (law.at(force, high) - law.at(force, low)) / (2 * step)
-            np.testing.assert_allclose(law.along(force, here), slope, rtol=1e-5, atol=1e-5, err_msg=f"{force} at {u}")
+            np.testing.assert_allclose(
+                law.along(force, here), slope, rtol=1e-5, atol=1e-5, err_msg=f"{force} at {u}"
+            )
     fine = np.linspace(0, 1, 20001)
     for force in SPACE.forces:
         largest, steepest = (
@@ -139,7 +187,13 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     one = scene(t=(0.0, 1.0, 41))
     made, told = exported(one, tmp_path, precision=precision)
     solution = solve(one, precision)
-    compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(one, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, precision)),
+        expected(one, told, solution),
+        told,
+        made,
+        solution,
+    )
 
 
 @pytest.mark.long
@@ -147,13 +201,24 @@ def test_peaks_between_instants_and_of_sweeps():
     m = SpatialMechanism("swept")
     push, width = m.parameter("push", 5.0, "N"), m.parameter("width", 0.02, "kg m", low=0.0)
     shaft = m.link(
-        "shaft", length=0.6, density=density.thick(density.polynomial(2.0), yy=density.polynomial(0.02, -0.01), zz=width)
+        "shaft",
+        length=0.6,
+        density=density.thick(
+            density.polynomial(2.0), yy=density.polynomial(0.02, -0.01), zz=width
+        ),
     )
     m.spherical("O", m.ground, shaft)
     m.force("pull", shaft.at(0.35, 0.03, -0.02), x=2.0, y=push, z=-3.0)
-    laws = [motion.harmonic(0.2, 1.4, 3.0), motion.harmonic(0.1, 0.8, 5.0), motion.harmonic(0.3, 0.4, 4.0)]
+    laws = [
+        motion.harmonic(0.2, 1.4, 3.0),
+        motion.harmonic(0.1, 0.8, 5.0),
+        motion.harmonic(0.3, 0.4, 4.0),
+    ]
     one = Scene(m, {"O": laws}, t=(0.0, 1.0, 41), wanted=["section"])
-    designs, forces = np.array([[5.0, 0.02], [-20.0, 0.1]]), [f"section:shaft:{force}" for force in SPACE.forces]
+    designs, forces = (
+        np.array([[5.0, 0.02], [-20.0, 0.1]]),
+        [f"section:shaft:{force}" for force in SPACE.forces],
+    )
     engine = DesignEngine.of(one, rung=Rung("lanes"))
     swept = engine.evaluate(designs)
     assert swept.status.tolist() == [Status.OK] * 2
@@ -161,7 +226,9 @@ def test_peaks_between_instants_and_of_sweeps():
     for k, (push_, width_) in enumerate(designs.tolist()):
         parameters = {"push": push_, "width": width_}
         for peak in refine(one, evaluate(one, parameters=parameters, backend="vm"), forces):
-            assert abs(swept.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * max(abs(peak.value), 1e-9), peak.name
+            assert abs(swept.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * max(
+                abs(peak.value), 1e-9
+            ), peak.name
 
 
 def test_second_moments_are_told_in_any_way_of_densities():
@@ -176,37 +243,64 @@ def test_second_moments_are_told_in_any_way_of_densities():
 @pytest.mark.parametrize(
     ("moments", "says"),
     [
-        ({"yy": -1e-3, "zz": 1e-3}, "link 'a': no slice has these second moments: yy, zz and yy zz - yz yz must not be negative"),
+        (
+            {"yy": -1e-3, "zz": 1e-3},
+            (
+                "link 'a': no slice has these second moments: yy, zz and yy zz - yz yz must not be"
+                " negative"
+            ),
+        ),
         ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': no slice has these second moments"),
-        ({"yy": 1e-3, "zz": density.polynomial(1e-3, -3e-3)}, "link 'a': no slice has these second moments"),
+        (
+            {"yy": 1e-3, "zz": density.polynomial(1e-3, -3e-3)},
+            "link 'a': no slice has these second moments",
+        ),
     ],
 )
 def test_slices_that_cannot_be_are_refused(moments, says):
     m = SpatialMechanism("m")
-    m.revolute("O", m.ground, m.link("a", length=0.5, density=density.thick(density.polynomial(1.0), **moments)))
+    m.revolute(
+        "O",
+        m.ground,
+        m.link("a", length=0.5, density=density.thick(density.polynomial(1.0), **moments)),
+    )
     with pytest.raises(ParameterError, match=says):
         evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}, t=(0, 1, 3)))
 
 
 def test_what_has_no_slices_is_named():
-    with pytest.raises(DeclarationError, match="link 'a': second moments of slices are for links in space"):
-        Mechanism("m").link("a", length=0.5, density=density.thick(density.polynomial(1.0), yy=1e-3, zz=1e-3))
-    with pytest.raises(DeclarationError, match=r"density thick: expected a density of lagrange_casadi\.density, got 3\.0"):
+    with pytest.raises(
+        DeclarationError, match="link 'a': second moments of slices are for links in space"
+    ):
+        Mechanism("m").link(
+            "a", length=0.5, density=density.thick(density.polynomial(1.0), yy=1e-3, zz=1e-3)
+        )
+    with pytest.raises(
+        DeclarationError,
+        match=r"density thick: expected a density of lagrange_casadi\.density, got 3\.0",
+    ):
         density.thick(3.0, yy=1e-3, zz=1e-3)
-    with pytest.raises(DeclarationError, match="density thick: second moments are numbers, or along the link by polynomial"):
+    with pytest.raises(
+        DeclarationError,
+        match="density thick: second moments are numbers, or along the link by polynomial",
+    ):
         density.thick(density.polynomial(1.0), yy=density.uniform(1e-3), zz=1e-3)
 
 
 def test_a_thick_rod_between_two_spherical_joints_is_no_bar():
     m = SpatialMechanism("m")
     crank, slider = m.link("crank", length=0.1, mass=1.0), m.link("slider", length=0.1, mass=1.0)
-    rod = m.link("rod", length=0.3, density=density.thick(density.polynomial(1.0), yy=1e-4, zz=1e-4))
+    rod = m.link(
+        "rod", length=0.3, density=density.thick(density.polynomial(1.0), yy=1e-4, zz=1e-4)
+    )
     m.revolute("O", m.ground, crank, axis=(0, 1, 0))
     m.spherical("A", crank.tip, rod)
     m.spherical("B", rod.tip, slider)
     m.prismatic("G", m.ground.at(0, 0.05, 0), slider, axis=(1, 0, 0))
     posture = {"G": 0.35, "A:turn_1": 0.0, "A:turn_2": 0.0, "A:turn_3": 0.1}
-    with pytest.raises(MobilityError, match="the spin of link 'rod' about the line from 'A' to 'B' is idle"):
+    with pytest.raises(
+        MobilityError, match="the spin of link 'rod' about the line from 'A' to 'B' is idle"
+    ):
         evaluate(Scene(m, {"O": motion.polynomial(0.0, 6.0)}, posture=posture))
 
 
@@ -215,7 +309,10 @@ def test_parameters_set_second_moments():
     j = m.parameter("j", 1e-3, "kg m", low=0.0)
     m.set_gravity(0, 0, 0)
     m.revolute(
-        "O", m.ground, m.link("a", length=0.5, density=density.thick(density.polynomial(1.0), yy=j, zz=2 * j)), axis=(1, 0, 0)
+        "O",
+        m.ground,
+        m.link("a", length=0.5, density=density.thick(density.polynomial(1.0), yy=j, zz=2 * j)),
+        axis=(1, 0, 0),
     )
     one = Scene(m, {"O": motion.polynomial(0.0, 0.0, ca.DM(2.0))}, t=(0, 1, 3), wanted=["effort"])
     for value in (1e-3, 0.5):
@@ -225,10 +322,11 @@ def test_parameters_set_second_moments():
 
 def test_info_names_thick_links(tmp_path, capsys):
     (tmp_path / "case.py").write_text(
-        "from lagrange_casadi import Scene, SpatialMechanism, density\nfrom lagrange_casadi.motion import polynomial\n\n\n"
-        "def scene():\n    m = SpatialMechanism('m')\n"
-        "    bar = m.link('bar', length=0.5, density=density.thick(density.polynomial(2.0), yy=1e-3, zz=1e-3))\n"
-        "    m.revolute('O', m.ground, bar)\n    return Scene(m, {'O': polynomial(0.0, 1.0)}, t=(0, 1, 3))\n"
+        "from lagrange_casadi import Scene, SpatialMechanism, density\nfrom lagrange_casadi.motion"
+        " import polynomial\n\n\ndef scene():\n    m = SpatialMechanism('m')\n    bar ="
+        " m.link('bar', length=0.5, density=density.thick(density.polynomial(2.0), yy=1e-3,"
+        " zz=1e-3))\n    m.revolute('O', m.ground, bar)\n    return Scene(m, {'O': polynomial(0.0,"
+        " 1.0)}, t=(0, 1, 3))\n"
     )
     assert main(["info", str(tmp_path)]) == 0
     assert "  link of 0.5 m, bar: 1 kg, slices with rotary inertia\n" in capsys.readouterr().out

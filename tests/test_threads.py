@@ -45,13 +45,21 @@ from lagrange_casadi.studies.sweep.plots import Peaks, draw_sweep
 def jobs(threads, folder, cache):
     folder.mkdir()
     command = [sys.executable, "-W", "error", threaded.__file__, str(threads), str(folder)]
-    done = subprocess.run(command, env={**os.environ, "XDG_CACHE_HOME": str(cache)}, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command,
+        env={**os.environ, "XDG_CACHE_HOME": str(cache)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 def test_many_threads_give_the_bytes_of_one(tmp_path):
-    """Scenes that they share and their own; single precision, Newton steps, sweeps, exports, files; a cold cache and a warm one."""
+    """Scenes that they share and their own; single precision, Newton steps, sweeps, exports, files;
+    a cold cache and a warm one.
+    """
     alone = jobs(1, tmp_path / "alone", tmp_path / "cache")
     assert len(set(alone)) > threaded.JOBS / 2
     assert jobs(threaded.JOBS, tmp_path / "cold", tmp_path / "another") == alone
@@ -64,7 +72,11 @@ def test_no_switch_of_casadis_is_turned(fresh_cache):
 
     def build():
         while not over.is_set():
-            if not ca.GlobalOptions.getSimplificationOnTheFly() or not ca.is_equal((x + 1) - 1, x) or not (0 * x).is_zero():
+            if (
+                not ca.GlobalOptions.getSimplificationOnTheFly()
+                or not ca.is_equal((x + 1) - 1, x)
+                or not (0 * x).is_zero()
+            ):
                 lost.append(1)
 
     building = threading.Thread(target=build)
@@ -87,9 +99,16 @@ def test_no_constant_is_dropped_while_another_thread_asks_for_it(times):
 
 
 def test_properties_of_expressions_wait_for_one_lock():
-    """A thread that makes expressions reads a property of one scene, while another waits within that property of another one."""
+    """A thread that makes expressions reads a property of one scene, while another waits within
+    that property of another one.
+    """
     done = subprocess.run(
-        [sys.executable, "-c", IN_TURN], cwd=Path(__file__).parent, capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", IN_TURN],
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
 
@@ -114,7 +133,7 @@ for name, (first, second) in pairs.items():
         other.join(0.2)
         getattr(second, name)
     other.join()
-"""
+"""  # noqa: E501
 
 
 WAYS = {
@@ -128,9 +147,15 @@ WAYS = {
     "slopes": lambda scene, folder: prepare(scene, wanted=["effort"]).gradient().mean,
     "curvature": lambda scene, folder: prepare(scene, wanted=["effort"]).curvature(),
     "tolerances": lambda scene, folder: tolerances(scene, {"l": 0.001}, wanted=["effort"]),
-    "sweep": lambda scene, folder: sweep(scene, {"l": (0.5, 0.6, 3)}, wanted=["effort", "sensitivity"], out=folder / "x.h5"),
-    "export": lambda scene, folder: export(scene, folder / "c", precision="single", wanted=["effort"]),
-    "optimise": lambda scene, folder: optimise(scene, minimise="peak:effort:O", over={"r": (0.08, 0.1)}, screen=4, starts=1),
+    "sweep": lambda scene, folder: sweep(
+        scene, {"l": (0.5, 0.6, 3)}, wanted=["effort", "sensitivity"], out=folder / "x.h5"
+    ),
+    "export": lambda scene, folder: export(
+        scene, folder / "c", precision="single", wanted=["effort"]
+    ),
+    "optimise": lambda scene, folder: optimise(
+        scene, minimise="peak:effort:O", over={"r": (0.08, 0.1)}, screen=4, starts=1
+    ),
 }
 
 
@@ -141,7 +166,10 @@ def test_expressions_are_made_by_one_thread_at_a_time(way, fresh_cache, monkeypa
         pin = pinned if way == "newton" else Mechanism.revolute
         scene = threaded.press(1 + len(way) / 32, pin)  # as no other test has it
     assert not unlocked
-    WAYS[way](Scene(scene.mechanism, {"O": scene.laws["O"]}, t=(0.0, 1.0, 9), posture=scene.posture), tmp_path)
+    WAYS[way](
+        Scene(scene.mechanism, {"O": scene.laws["O"]}, t=(0.0, 1.0, 9), posture=scene.posture),
+        tmp_path,
+    )
     assert not unlocked
 
 
@@ -162,7 +190,9 @@ TIMES = np.linspace(0.0, 1.0, 9)
 ASKED = {
     "series": lambda f, l: dict(f(l=l)),
     "peaks": lambda f, l: vars(f.peaks(l=l)),
-    "designs": lambda f, l: vars(f.designs([[{"l": l, "r": 0.1}[name] for name in f.parameters]], histories=True)),
+    "designs": lambda f, l: vars(
+        f.designs([[{"l": l, "r": 0.1}[name] for name in f.parameters]], histories=True)
+    ),
     "gradient": lambda f, l: {"slopes": (found := f.gradient(l=l)).slopes, "mean": found.mean},
     "curvature": lambda f, l: {"bends": f.curvature(l=l).bends},
     "instants": lambda f, l: {"effort": f(l=l)["effort:O"], "t": f.t},
@@ -171,11 +201,16 @@ ASKED = {
 
 def told(found):
     """Every number of what was found, whatever becomes of its arrays."""
-    return {name: np.array(rows).tobytes() if isinstance(rows, np.ndarray) else repr(rows) for name, rows in found.items()}
+    return {
+        name: np.array(rows).tobytes() if isinstance(rows, np.ndarray) else repr(rows)
+        for name, rows in found.items()
+    }
 
 
 def hammered(asked, values, times=4):
-    """What each of many threads that ask for all values at once, in orders of their own, got otherwise than one thread alone."""
+    """What each of many threads that ask for all values at once, in orders of their own, got
+    otherwise than one thread alone.
+    """
     alone = [asked(value) for value in values]
     before = sys.getswitchinterval()
     sys.setswitchinterval(1e-6)
@@ -192,20 +227,42 @@ def hammered(asked, values, times=4):
 
 
 ITERATED, INTERPRETED, WAVED = {"newton": 3}, {"backend": "vm"}, {"waved": True}
-QUICK = [*(({}, way) for way in ASKED), (ITERATED, "series"), (ITERATED, "gradient"), (INTERPRETED, "peaks"), (WAVED, "designs")]
-REST = [(asked, way) for asked in (ITERATED, INTERPRETED, WAVED) for way in ASKED if (asked, way) not in QUICK]
+QUICK = [
+    *(({}, way) for way in ASKED),
+    (ITERATED, "series"),
+    (ITERATED, "gradient"),
+    (INTERPRETED, "peaks"),
+    (WAVED, "designs"),
+]
+REST = [
+    (asked, way)
+    for asked in (ITERATED, INTERPRETED, WAVED)
+    for way in ASKED
+    if (asked, way) not in QUICK
+]
 
 
-@pytest.mark.parametrize(("asked", "way"), [*QUICK, *(pytest.param(*pair, marks=pytest.mark.long) for pair in REST)], ids=str)
+@pytest.mark.parametrize(
+    ("asked", "way"),
+    [*QUICK, *(pytest.param(*pair, marks=pytest.mark.long) for pair in REST)],
+    ids=str,
+)
 def test_a_prepared_scene_answers_each_thread(asked, way):
-    """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants of each design's own."""
-    scene, slow = threaded.press(0, pinned if "newton" in asked else Mechanism.revolute), "backend" in asked
+    """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants
+    of each design's own.
+    """
+    scene, slow = (
+        threaded.press(0, pinned if "newton" in asked else Mechanism.revolute),
+        "backend" in asked,
+    )
     if "waved" in asked:
         law = samples(TIMES, 0.3 + np.sin(2.0 * TIMES))
         scene = Scene(scene.mechanism, {"O": law}, t=(0.0, 1.0, 9), posture={"rod": 1.5})
         asked = {"t": (0.0, scene.mechanism.parameters["l"].symbol, 9)}
     f = prepare(scene, **{"t": (0.0, 1.0, 9), "wanted": ["effort", "section:rod"], **asked})
-    assert not hammered(lambda l: told(ASKED[way](f, l)), RODS[:2] if slow else RODS, 1 if slow else 4)
+    assert not hammered(
+        lambda l: told(ASKED[way](f, l)), RODS[:2] if slow else RODS, 1 if slow else 4
+    )
 
 
 def test_a_thread_finds_its_own_answer_again():
@@ -218,13 +275,19 @@ def test_a_thread_finds_its_own_answer_again():
     np.testing.assert_array_equal(own, kept)
 
 
-@pytest.mark.parametrize("rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str)
+@pytest.mark.parametrize(
+    "rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str
+)
 def test_one_scene_is_evaluated_by_many_threads(rung):
     def asked(l):
         scene = threaded.ITERATED if "newton" in rung else threaded.SHARED
         found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
-        laws = {f"bending:{name}": found.section(name).bending for name in found.links_with_sections}
-        return told({**found.series, **laws, "errors": found.errors, "certificate": found.certificate})
+        laws = {
+            f"bending:{name}": found.section(name).bending for name in found.links_with_sections
+        }
+        return told(
+            {**found.series, **laws, "errors": found.errors, "certificate": found.certificate}
+        )
 
     assert not hammered(asked, RODS[:3], 1)
 
@@ -232,7 +295,14 @@ def test_one_scene_is_evaluated_by_many_threads(rung):
 def test_many_threads_draw_the_pictures_of_one(tmp_path):
     """And leave matplotlib, and what is warned of, as they were."""
     plain = evaluate(threaded.SHARED, t=(0.0, 1.0, 9), wanted=["effort", "motion"])
-    swept = sweep(threaded.SHARED, {"l": (0.5, 0.6, 3)}, t=(0.0, 1.0, 9), wanted=["effort"], flags="-O0", out=tmp_path / "x.h5")
+    swept = sweep(
+        threaded.SHARED,
+        {"l": (0.5, 0.6, 3)},
+        t=(0.0, 1.0, 9),
+        wanted=["effort"],
+        flags="-O0",
+        out=tmp_path / "x.h5",
+    )
     spec, line = TimePlot("effort", ("effort:O",)), Peaks("line", ("peak:effort:O",), ("l",))
     settings, filters = dict(rcParams), list(warnings.filters)
 
@@ -244,7 +314,11 @@ def test_many_threads_draw_the_pictures_of_one(tmp_path):
             with tempfile.TemporaryDirectory(dir=tmp_path) as folder:
                 return [path.read_bytes() for path, _ in draw_sweep(swept, [line], Path(folder))]
         else:
-            write_animation(plain, path := tmp_path / f"{threading.get_ident()}.gif", Film(width=80, rate=1.0, seconds=1.0))
+            write_animation(
+                plain,
+                path := tmp_path / f"{threading.get_ident()}.gif",
+                Film(width=80, rate=1.0, seconds=1.0),
+            )
             return path.read_bytes()
         return file.getvalue()
 

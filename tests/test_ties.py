@@ -17,10 +17,17 @@ pytestmark = pytest.mark.quick
 
 
 def pendulum():
-    """It swings as far to either side. With a bias the effort on one side grows as that on the other shrinks; with the rest not."""
+    """It swings as far to either side.
+
+    With a bias the effort on one side grows as that on the other shrinks; with the rest not.
+    """
     m = Mechanism("pendulum")
     m.set_gravity(0, 0)
-    l, swing, bias = m.parameter("l", 0.8, "m"), m.parameter("swing", 0.6, "rad"), m.parameter("bias", 0.0, "N m")
+    l, swing, bias = (
+        m.parameter("l", 0.8, "m"),
+        m.parameter("swing", 0.6, "rad"),
+        m.parameter("bias", 0.0, "N m"),
+    )
     arm = m.link("arm", length=l, mass=2.0)
     m.revolute("O", m.ground, arm)
     m.torque("twist", arm, bias)
@@ -28,7 +35,9 @@ def pendulum():
 
 
 def bar():
-    """A force at the tip, and one of twice its size against it in the middle: the shear is as large on both sides."""
+    """A force at the tip, and one of twice its size against it in the middle: the shear is as large
+    on both sides.
+    """
     m = Mechanism("bar")
     m.set_gravity(0, 0)
     tip, middle = m.parameter("tip", 10.0, "N"), m.parameter("middle", 20.0, "N")
@@ -61,7 +70,10 @@ def test_what_changes_alike_is_no_tie():
     m.set_gravity(0, 0)
     arm = m.link("arm", length=m.parameter("l", 0.8, "m"), mass=2.0)
     m.revolute("O", m.ground, arm)
-    f = prepare(Scene(m, {"O": harmonic(0.0, 0.6, 1.0)}, t=(0.0, 2.0, 57)), wanted=["effort", "section", "reaction"])
+    f = prepare(
+        Scene(m, {"O": harmonic(0.0, 0.6, 1.0)}, t=(0.0, 2.0, 57)),
+        wanted=["effort", "section", "reaction"],
+    )
     gradient = f.gradient()
     assert not gradient.tied.any()
     step = 1e-6
@@ -106,7 +118,9 @@ def test_solutions_say_it_too():
     solution = evaluate(scene, wanted=["effort", "sensitivity:bias"], certificate=False)
     change = sensitivities(scene, solution).peak("effort:O")
     assert change.tied
-    (line,) = [line for line in slope_lines(solution, scene, "auto") if line.startswith("  effort:O")]
+    (line,) = [
+        line for line in slope_lines(solution, scene, "auto") if line.startswith("  effort:O")
+    ]
     assert line.endswith("as large elsewhere, where it changes otherwise")
     other = evaluate(scene, parameters={"bias": 0.1}, wanted=["effort"], certificate=False)
     assert not sensitivities(scene, other).peak("effort:O").tied

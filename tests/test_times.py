@@ -37,8 +37,13 @@ def test_bounds_of_time_are_expressions_of_parameters():
 def test_other_bounds_than_the_scenes_are_expressions_too():
     scene = press()
     rpm = scene.mechanism.parameters["rpm"].symbol
-    assert evaluate(scene, t=(0.0, 120 / rpm, 5), parameters={"rpm": 40.0}, wanted=["effort"]).t[-1] == 3.0
-    found = evaluate(scene, over=("O", rpm / 600, rpm / 100, 5), wanted=["motion"], parameters={"rpm": 300.0})
+    assert (
+        evaluate(scene, t=(0.0, 120 / rpm, 5), parameters={"rpm": 40.0}, wanted=["effort"]).t[-1]
+        == 3.0
+    )
+    found = evaluate(
+        scene, over=("O", rpm / 600, rpm / 100, 5), wanted=["motion"], parameters={"rpm": 300.0}
+    )
     np.testing.assert_allclose(found.motion("O").value, np.linspace(0.5, 3.0, 5), rtol=1e-15)
 
 
@@ -46,7 +51,9 @@ def test_other_bounds_than_the_scenes_are_expressions_too():
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("rpm", [600.0, 77.0])
 def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):
-    """What is found at them is what is found at the same times, and the mechanism is at the same angles at any speed."""
+    """What is found at them is what is found at the same times, and the mechanism is at the same
+    angles at any speed.
+    """
     scene = press(law, over=("O", 0.5, 0.5 + 2 * TURN, 145))
     found = evaluate(scene, parameters={"rpm": rpm})
     np.testing.assert_allclose(found.over.values, 0.5 + 2 * TURN * np.arange(145) / 144, rtol=1e-15)
@@ -60,7 +67,9 @@ def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):
 
 @pytest.mark.parametrize("rpm", [30.0, 900.0])
 def test_efforts_over_a_drive_are_those_of_a_textbook(rpm):
-    """A rod of 0.5 kg and 0.4 m about its end: I a + m g l/2 cos(angle), at the angles and times that were asked for."""
+    """A rod of 0.5 kg and 0.4 m about its end: I a + m g l/2 cos(angle), at the angles and times
+    that were asked for.
+    """
     m = Mechanism("fan")
     speed = m.parameter("rpm", 600.0, "1/min")
     m.revolute("O", m.ground, m.link("blade", length=0.4, mass=0.5))
@@ -69,8 +78,12 @@ def test_efforts_over_a_drive_are_those_of_a_textbook(rpm):
     angle = np.radians(np.linspace(-90, 630, 145))
     inertia, weight = 0.5 * 0.4**2 / 3, 0.5 * 9.81 * 0.2
     expected = -0.2 * w**2 * np.sin(w * found.t) * inertia + weight * np.cos(angle)
-    np.testing.assert_allclose(found.effort("O"), expected, rtol=0, atol=1e-12 * np.abs(expected).max())
-    np.testing.assert_allclose(w * found.t + 0.2 * np.sin(w * found.t), angle, rtol=0, atol=1e-14 * 11)
+    np.testing.assert_allclose(
+        found.effort("O"), expected, rtol=0, atol=1e-12 * np.abs(expected).max()
+    )
+    np.testing.assert_allclose(
+        w * found.t + 0.2 * np.sin(w * found.t), angle, rtol=0, atol=1e-14 * 11
+    )
 
 
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
@@ -83,7 +96,9 @@ def test_refined_peaks_do_not_depend_on_how_instants_were_asked_for(law):
         assert one.value == pytest.approx(other.value, rel=1e-13)
         assert one.t == pytest.approx(other.t, abs=1e-9)
         w = 20 * math.pi
-        assert one.over == pytest.approx(w * one.t + (0.2 * math.sin(w * one.t) if law is uneven else 0.0), abs=1e-13)
+        assert one.over == pytest.approx(
+            w * one.t + (0.2 * math.sin(w * one.t) if law is uneven else 0.0), abs=1e-13
+        )
         assert other.over is None
 
 
@@ -109,7 +124,10 @@ def test_a_slide_is_a_drive_too():
     first, last = (float(law.graph(ca.DM(t))) for t in (scene.t[0], scene.t[0] + 0.02))
     found = evaluate(scene, over=(joint, first, last, 9))
     assert (found.over.unit, found.over.label) == ("m", f"{joint} [m]")
-    with pytest.raises(DeclarationError, match=r"STOP: expected a number \[m\], or a text such as '100 mm', got '3 deg'"):
+    with pytest.raises(
+        DeclarationError,
+        match=r"STOP: expected a number \[m\], or a text such as '100 mm', got '3 deg'",
+    ):
         evaluate(scene, over=(joint, 0.0, "3 deg", 9))
 
 
@@ -144,12 +162,21 @@ def test_what_is_asked_for_can_be_sent_and_compared():
         (("O", 0, 1, 0), "over: COUNT must be a whole number from 1 to 2^63 - 1, got 0"),
         (("O", 1, 1, 5), "over: STOP must be after START, got 1 and 1"),
         (("O", 0, math.inf, 5), "over: START and STOP must be finite"),
-        (("O", "-1e308 rad", "1e308 rad", 5), "over: START and STOP are too far apart, got -1e+308 and 1e+308"),
+        (
+            ("O", "-1e308 rad", "1e308 rad", 5),
+            "over: START and STOP are too far apart, got -1e+308 and 1e+308",
+        ),
         (
             ("O", 0, "1 lap", 5),
             "over: STOP: expected a number [rad], or a text such as '350 deg'",
         ),
-        (("O", 1, 0, 5), "over: the motion of joint 'O' goes the other way than from 1 rad (57.2958 deg) to 0 rad (0 deg)"),
+        (
+            ("O", 1, 0, 5),
+            (
+                "over: the motion of joint 'O' goes the other way than from 1 rad (57.2958 deg) to"
+                " 0 rad (0 deg)"
+            ),
+        ),
         (("O", 0, ca.SX.sym("q"), 5), "over: STOP depends on 'q', not a parameter"),
     ],
 )
@@ -169,12 +196,21 @@ def test_a_joint_that_is_not_driven_is_refused_by_name():
 @pytest.mark.parametrize(
     ("law", "says"),
     [
-        (motion.polynomial(0.3), "stands still, and does not go from 0 rad (0 deg) to 6.28319 rad (360 deg)"),
+        (
+            motion.polynomial(0.3),
+            "stands still, and does not go from 0 rad (0 deg) to 6.28319 rad (360 deg)",
+        ),
         (
             motion.harmonic(0, 1, 1),
-            "does not go from 0 rad (0 deg) to 6.28319 rad (360 deg) all the way: it turns back at t = 0.25 s",
+            (
+                "does not go from 0 rad (0 deg) to 6.28319 rad (360 deg) all the way: it turns back"
+                " at t = 0.25 s"
+            ),
         ),
-        (motion.samples([0, 1, 2, 3], [0, 1, 2, 3]), "its samples end at t = 3 s, at 3 rad (171.887 deg)"),
+        (
+            motion.samples([0, 1, 2, 3], [0, 1, 2, 3]),
+            "its samples end at t = 3 s, at 3 rad (171.887 deg)",
+        ),
     ],
 )
 def test_a_motion_that_does_not_get_there_is_refused_by_what_it_does(law, says):
@@ -197,11 +233,20 @@ def test_t_and_over_exclude_each_other():
 
 def test_bounds_that_parameters_make_impossible_are_told_with_them():
     scene = press(t=lambda rpm: (0, 60 / rpm, 9))
-    with pytest.raises(DeclarationError, match=r"t: STOP must be after START, got 0 and -1; with the parameters rpm = -60, l = "):
+    with pytest.raises(
+        DeclarationError,
+        match=r"t: STOP must be after START, got 0 and -1; with the parameters rpm = -60, l = ",
+    ):
         evaluate(scene, parameters={"rpm": -60.0})
-    with pytest.raises(DeclarationError, match="t: START and STOP must be finite, got 0 and inf; with the parameters rpm = 0"):
+    with pytest.raises(
+        DeclarationError,
+        match="t: START and STOP must be finite, got 0 and inf; with the parameters rpm = 0",
+    ):
         evaluate(scene, parameters={"rpm": 0.0})
-    with pytest.raises(DeclarationError, match=r"the motion of joint 'O' stands still.*; with the parameters rpm = 0, l = "):
+    with pytest.raises(
+        DeclarationError,
+        match=r"the motion of joint 'O' stands still.*; with the parameters rpm = 0, l = ",
+    ):
         evaluate(scene, over=("O", 0, 1, 5), parameters={"rpm": 0.0})
 
 
@@ -209,12 +254,18 @@ def test_a_scene_is_assembled_where_its_drive_starts():
     """The posture is that of the first instant, which the drive's coordinate decides."""
     late = press(over=("O", math.pi, 3 * math.pi, 9))
     assert late.span == pytest.approx((0.05, 0.15))
-    np.testing.assert_allclose(evaluate(late).pose("ram").y, evaluate(press(), t=(0.05, 0.15, 9)).pose("ram").y, rtol=1e-14)
+    np.testing.assert_allclose(
+        evaluate(late).pose("ram").y, evaluate(press(), t=(0.05, 0.15, 9)).pose("ram").y, rtol=1e-14
+    )
 
 
 def test_how_far_peaks_fall_short_is_told_over_a_drive():
-    rows = shortfall(press(wanted=["effort"]), [25, 50], over=("O", 0, TURN, 25), parameters={"rpm": 100.0})
-    expected = shortfall(press(wanted=["effort"]), [25, 50], t=(0, 0.6, 25), parameters={"rpm": 100.0})
+    rows = shortfall(
+        press(wanted=["effort"]), [25, 50], over=("O", 0, TURN, 25), parameters={"rpm": 100.0}
+    )
+    expected = shortfall(
+        press(wanted=["effort"]), [25, 50], t=(0, 0.6, 25), parameters={"rpm": 100.0}
+    )
     assert rows == expected
 
 
@@ -251,8 +302,14 @@ def test_xarray_has_the_drives_coordinate_beside_time(kept):
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
-        (lambda file: file["over"].write_direct(np.asarray(file["over"]) ** 2), "over: is not in equal steps"),
-        (lambda file: file["over"].write_direct(np.asarray(file["over"]) + 1e-9), "over: is not the coordinate of joint 'O'"),
+        (
+            lambda file: file["over"].write_direct(np.asarray(file["over"]) ** 2),
+            "over: is not in equal steps",
+        ),
+        (
+            lambda file: file["over"].write_direct(np.asarray(file["over"]) + 1e-9),
+            "over: is not the coordinate of joint 'O'",
+        ),
     ],
 )
 def test_check_holds_the_drives_coordinate_to_the_motion(kept, spoil, says):
@@ -262,7 +319,9 @@ def test_check_holds_the_drives_coordinate_to_the_motion(kept, spoil, says):
 
 
 def test_check_allows_for_the_digits_of_times_far_from_zero(tmp_path):
-    """After a million seconds a double of time is 1e-10 s, in which this crank turns by 6e-9 rad."""
+    """After a million seconds a double of time is 1e-10 s, in which this
+    crank turns by 6e-9 rad.
+    """
     scene = press(lambda _, w: motion.expression(lambda t: w * (t - 1e6)), over=("O", 0, TURN, 9))
     save(evaluate(scene), tmp_path / "x.h5")
     assert check(tmp_path / "x.h5") == []
@@ -276,8 +335,16 @@ def test_figures_are_over_the_drives_angle_in_degrees(kept):
     maps = SectionMaps("maps", "rod").draw(solution)
     assert "at O = " in maps.axes[0].get_title()
     peak = solution.peak("section:rod:axial")
-    np.testing.assert_array_equal(maps.axes[0].get_lines()[0].get_xdata(), [math.degrees(peak.over)])
-    assert SpanPlot("span", "section:rod:axial", peak.t).draw(solution).axes[0].get_title().endswith(" deg")
+    np.testing.assert_array_equal(
+        maps.axes[0].get_lines()[0].get_xdata(), [math.degrees(peak.over)]
+    )
+    assert (
+        SpanPlot("span", "section:rod:axial", peak.t)
+        .draw(solution)
+        .axes[0]
+        .get_title()
+        .endswith(" deg")
+    )
     drawing = MechanismDrawing(count=2).draw(solution)
     assert drawing.axes[1].get_title().endswith("\nO = 180 deg")
 

@@ -1,4 +1,6 @@
-"""What each feature does is tested beside it; here all meet in one machine, in the plane and in space, and go all ways."""
+"""What each feature does is tested beside it; here all meet in one machine, in the plane and in
+space, and go all ways.
+"""
 
 import numpy as np
 import pytest
@@ -28,12 +30,20 @@ PARAMETERS = {"l": 0.4, "mu": 0.1, "d": 0.02}
 
 
 def plane():
-    """A slider-crank of a tapered rod: friction in all joints, wind along the rod, an output inside it, its shaking force."""
+    """A slider-crank of a tapered rod: friction in all joints, wind along the rod, an output inside
+    it, its shaking force.
+    """
     m = Mechanism("together")
-    l, mu, d = m.parameter("l", 0.4, "m", low=0.2), m.parameter("mu", 0.1, low=0.0), m.parameter("d", 0.02, "m", low=0.005)
+    l, mu, d = (
+        m.parameter("l", 0.4, "m", low=0.2),
+        m.parameter("mu", 0.1, low=0.0),
+        m.parameter("d", 0.02, "m", low=0.005),
+    )
     shape = beams.tapered(beams.rectangle(d, 0.012), beams.rectangle(0.6 * d, 0.012))
     crank = m.link("crank", length=0.1, mass=1.0)
-    rod = m.link("rod", length=l, beam=beams.Beam(shape, STEEL, notches=[beams.Notch(0.5, bending=1.5)]))
+    rod = m.link(
+        "rod", length=l, beam=beams.Beam(shape, STEEL, notches=[beams.Notch(0.5, bending=1.5)])
+    )
     piston = m.link("piston", length=0.06, mass=0.5, centre=(0.0, 0.0), inertia=4e-4)
     m.friction("main", m.revolute("O", m.ground, crank), mu=0.05, radius=0.02)
     m.friction("big_end", m.revolute("A", crank.tip, rod), mu=mu, radius=0.018, viscous=1e-3)
@@ -44,17 +54,27 @@ def plane():
     m.force("gas", piston, x=-200.0)
     m.output("inside", m.results.section(rod, 0.4).bending, unit="N m")
     shaking(m)
-    return Scene(m, {"O": polynomial(0.1, 60.0)}, t=(0, 0.1, 31), posture={"rod": 0.0}, xi=(0, 1, 8))
+    return Scene(
+        m, {"O": polynomial(0.1, 60.0)}, t=(0, 0.1, 31), posture={"rod": 0.0}, xi=(0, 1, 8)
+    )
 
 
 def space():
-    """One in space that rubs, of a thick crank and a tube, with a spring, wind, outputs inside and its shaking force."""
+    """One in space that rubs, of a thick crank and a tube, with a spring, wind, outputs inside and
+    its shaking force.
+    """
     m = SpatialMechanism("together_in_space")
-    l, mu, d = m.parameter("l", 0.4, "m", low=0.2), m.parameter("mu", 0.1, low=0.0), m.parameter("d", 0.02, "m", low=0.005)
+    l, mu, d = (
+        m.parameter("l", 0.4, "m", low=0.2),
+        m.parameter("mu", 0.1, low=0.0),
+        m.parameter("d", 0.02, "m", low=0.005),
+    )
     thick = density.thick(density.polynomial(8.0, 2.0), yy=1e-3, zz=density.polynomial(1e-3, 1e-4))
     crank = m.link("crank", length=0.1, density=thick)
     rod = m.link("rod", length=l, beam=beams.Beam(beams.tube(d, 0.003), STEEL))
-    slider = m.link("slider", length=0.06, mass=0.5, centre=(0.0, 0.0, 0.01), inertia=(1e-4, 2e-4, 2e-4))
+    slider = m.link(
+        "slider", length=0.06, mass=0.5, centre=(0.0, 0.0, 0.01), inertia=(1e-4, 2e-4, 2e-4)
+    )
     O = m.revolute("O", m.ground.at(0.0, 0.02, 0.03), crank, axis=(0.1, 0.3, 1))
     m.spherical("A", crank.tip, rod)
     m.universal("B", slider, rod.tip, axis=(0, 0, 1), second=(0, 1, 0))
@@ -63,7 +83,11 @@ def space():
     m.line_load("wind", rod, y=(30.0, 60.0), z=5.0, between=(0.1, 0.25))
     m.spring("coil", m.ground.at(0.5, 0, 0.1), slider, stiffness=200.0, length=0.1)
     m.force("gas", slider, x=-200.0)
-    m.output("inside", m.results.section(rod, 0.4).bending_y + m.results.section(crank, 0.3).torsion, unit="N m")
+    m.output(
+        "inside",
+        m.results.section(rod, 0.4).bending_y + m.results.section(crank, 0.3).torsion,
+        unit="N m",
+    )
     shaking(m)
     rough = {"G": 0.4, "B:turn_1": 0.1, "B:turn_2": 0.1}
     return Scene(m, {"O": harmonic(0.1, 2.0, 5.0)}, t=(0, 0.2, 31), posture=rough, xi=(0, 1, 8))
@@ -83,7 +107,9 @@ def sizes(solution):
     """The largest of each unit."""
     found = {}
     for name in solution.names():
-        found[solution.unit(name)] = max(found.get(solution.unit(name), 0.0), np.nanmax(np.abs(solution.array(name))))
+        found[solution.unit(name)] = max(
+            found.get(solution.unit(name), 0.0), np.nanmax(np.abs(solution.array(name)))
+        )
     return found
 
 
@@ -129,7 +155,10 @@ def test_series_and_sections_change_as_they_say(both):
     for parameter, value in PARAMETERS.items():
         step = 1e-4 * value
         moved = {
-            k: evaluate(scene, parameters={parameter: value + k * step}, backend="vm", certificate=False) for k in (-2, -1, 1, 2)
+            k: evaluate(
+                scene, parameters={parameter: value + k * step}, backend="vm", certificate=False
+            )
+            for k in (-2, -1, 1, 2)
         }
         for name in solution.names():
             if ":law:" in name or name.startswith("certificate"):
@@ -137,7 +166,10 @@ def test_series_and_sections_change_as_they_say(both):
             four = {k: one.array(name) for k, one in moved.items()}
             exact = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
             size = np.abs(exact).max() + largest[solution.unit(name)] / value
-            assert np.abs(changes.array(name, parameter) - exact).max() <= 1e-8 * size, (name, parameter)
+            assert np.abs(changes.array(name, parameter) - exact).max() <= 1e-8 * size, (
+                name,
+                parameter,
+            )
 
 
 @pytest.mark.long
@@ -145,7 +177,11 @@ def test_sweeps_and_prepared_scenes_have_the_peaks_of_solutions(both, tmp_path):
     scene, _ = both
     lengths = np.array([0.36, 0.4, 0.44])
     swept = sweep(scene, {"l": lengths.tolist()}, wanted=WANTED, out=tmp_path / "sweep.h5")
-    names = "effort:O", "output:inside", "section:rod:torsion" if scene.mechanism.space else "section:rod:bending"
+    names = (
+        "effort:O",
+        "output:inside",
+        "section:rod:torsion" if scene.mechanism.space else "section:rod:bending",
+    )
     f = prepare(scene, wanted=WANTED)
     for k, l in enumerate(lengths):
         solution = evaluate(scene, parameters={"l": l}, wanted=WANTED, certificate=False)
@@ -161,4 +197,10 @@ def test_exported_c_has_the_numbers_of_the_api(both, tmp_path):
     scene, _ = both
     made, told = exported(scene, tmp_path)
     solution = solve(scene, "double")
-    compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)
+    compare(
+        by_c99(tmp_path, told, instants(solution.t, "double")),
+        expected(scene, told, solution),
+        told,
+        made,
+        solution,
+    )

@@ -43,7 +43,11 @@ def stepped():
 
 def test_only_what_is_wanted_is_in_the_graph():
     graph = derive(stepped(), ["reaction:A"])
-    assert {str(output) for output in graph.outputs} == {"reaction:A:fx", "reaction:A:fy", "reaction:A:mz"}
+    assert {str(output) for output in graph.outputs} == {
+        "reaction:A:fx",
+        "reaction:A:fy",
+        "reaction:A:mz",
+    }
 
 
 STRENGTH = {"stress:bar": "stress:bar:von_mises", "deflection:bar": "deflection:bar:across"}
@@ -56,25 +60,47 @@ def test_derivatives_of_what_is_told_by_parameters(strength):
     wanted = ["reaction:A", "section:bar", *strength]
     solution = evaluate(scene, wanted=[*wanted, "sensitivity:h"], backend="vm")
     assert solution.certified
-    ends = [evaluate(scene, wanted=wanted, parameters={"h": 0.05 + way * step}, backend="vm") for way in (1, -1)]
-    series = ["reaction:A:fx", "reaction:A:fy", "reaction:A:mz", *(STRENGTH[name] for name in strength)]
+    ends = [
+        evaluate(scene, wanted=wanted, parameters={"h": 0.05 + way * step}, backend="vm")
+        for way in (1, -1)
+    ]
+    series = [
+        "reaction:A:fx",
+        "reaction:A:fy",
+        "reaction:A:mz",
+        *(STRENGTH[name] for name in strength),
+    ]
     quantities = set(map(str, solution.sensitivities.quantities))
-    assert quantities == {*series, *(f"section:bar:{force}" for force in ("axial", "shear", "bending"))}
+    assert quantities == {
+        *series,
+        *(f"section:bar:{force}" for force in ("axial", "shear", "bending")),
+    }
     for name in series:
         difference = (ends[0].array(name) - ends[1].array(name)) / (2 * step)
         assert solution.sensitivities.array(name, "h") == pytest.approx(difference, rel=1e-6)
     if strength:
         found = [np.abs(solution.array(name)) for name in STRENGTH.values()]
-        exact = [np.abs(x) for x in (solution.stress("bar").largest("von_mises").value, solution.deflection("bar").largest()[0])]
+        exact = [
+            np.abs(x)
+            for x in (
+                solution.stress("bar").largest("von_mises").value,
+                solution.deflection("bar").largest()[0],
+            )
+        ]
         np.testing.assert_allclose(found, exact, rtol=1e-9)
 
 
 def shared():
-    """A welded beam with a pin at a place that may be moved along it, and beside it a beam of which the stiffness is not known."""
+    """A welded beam with a pin at a place that may be moved along it, and beside it a beam of which
+    the stiffness is not known.
+    """
     m = Mechanism("shared")
     m.set_gravity(0.0, 0.0)
     d = m.parameter("d", 1.5, "m", low=0.0)
-    for name, made_of in (("known", {"beam": made(beams.rectangle(0.05, 0.02))}), ("bare", {"mass": 3.0})):
+    for name, made_of in (
+        ("known", {"beam": made(beams.rectangle(0.05, 0.02))}),
+        ("bare", {"mass": 3.0}),
+    ):
         bar = m.link(name, length=2.0, **made_of)
         m.weld(f"A_{name}", m.ground, bar)
         m.revolute(f"B_{name}", m.ground.at(d, 0.0), bar.at(d))
@@ -83,13 +109,19 @@ def shared():
 
 
 def test_it_is_told_in_part():
-    """What one beam shares is told, and where its pin is at its weld it bends nothing and is open; in sweeps too."""
+    """What one beam shares is told, and where its pin is at its weld it bends nothing and is open;
+    in sweeps too.
+    """
     scene = shared()
     apart, together = (evaluate(scene, parameters={"d": d}, backend="vm") for d in (1.5, 0.0))
-    for solution, open_ in ((apart, {"A_bare", "B_bare", "bare"}), (together, {"A_bare", "B_bare", "A_known", "B_known"})):
+    for solution, open_ in (
+        (apart, {"A_bare", "B_bare", "bare"}),
+        (together, {"A_bare", "B_bare", "A_known", "B_known"}),
+    ):
         assert {name.split(":")[1] for name in solution.undetermined} == open_
         assert solution.certified
-    # A propped cantilever whose load is beyond the prop: P (1 + 3c/2a), with the shear of Timoshenko's beam.
+    # A propped cantilever whose load is beyond the prop: P (1 + 3c/2a), with the shear of
+    # Timoshenko's beam.
     p, a, c = beams.rectangle(0.05, 0.02).properties(), 1.5, 0.5
     ei, ga = STEEL.elasticity * p.iz, STEEL.shear_modulus * p.shear_y
     prop = 1000.0 * (a**3 / (3 * ei) + c * a**2 / (2 * ei) + a / ga) / (a**3 / (3 * ei) + a / ga)
@@ -97,7 +129,9 @@ def test_it_is_told_in_part():
     assert apart.elasticity.reasons == ("they go through 'bare', which has no beam",)
     assert together.elasticity.reasons == ("some bend no link",)
     found = sweep(scene, {"d": [1.5, 0.0]}, wanted=["reaction", "section:known"], backend="vm")
-    assert found["peak:reaction:A_known:fy"] == pytest.approx([1000.0 - prop, np.nan], rel=1e-9, nan_ok=True)
+    assert found["peak:reaction:A_known:fy"] == pytest.approx(
+        [1000.0 - prop, np.nan], rel=1e-9, nan_ok=True
+    )
     assert found["peak:section:known:bending"] == pytest.approx([-500.0, -2000.0], rel=1e-9)
 
 
@@ -108,7 +142,10 @@ def test_the_energy_is_the_least_of_all_equilibria(elastic):
     chosen = scene.mechanism.links if elastic is True else elastic
     solution = evaluate(dataclasses.replace(scene, elastic=elastic), backend="vm")
     assert solution.certificate["elasticity"].max() < 1e-12
-    others = [evaluate(dataclasses.replace(scene, elastic=[link]), backend="vm") for link in ("a", "b", "c", "bar")]
+    others = [
+        evaluate(dataclasses.replace(scene, elastic=[link]), backend="vm")
+        for link in ("a", "b", "c", "bar")
+    ]
     others = [other for other in others if not other.undetermined]
     assert others
     energy, _ = work(solution, solution, chosen)
@@ -133,7 +170,9 @@ def test_friction_that_follows_what_is_open_is_refused():
     joint = m.prismatic("G1", m.ground, bar, axis=(1, 0))
     m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
     m.friction("rub", joint, mu=0.1, length=0.1)
-    with pytest.raises(DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"):
+    with pytest.raises(
+        DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"
+    ):
         derive(Scene(m, {"G1": polynomial(0.0, 1.0, 0.5)}, t=(0, 1, 3), elastic=True))
 
 
@@ -144,10 +183,23 @@ def test_sweeps_tell_it():
     found = sweep(scene, {"d": [0.006, 0.01]}, wanted=["reaction", "stress:c1", "deflection:bar"])
     assert found["status"].tolist() == [0, 0]
     for i, d in enumerate((0.006, 0.01)):
-        fine = evaluate(scene, parameters={"d": d}, t=(0, 1, 513), wanted=["all"], backend="vm", certificate=False)
-        assert abs(found["peak:reaction:B1:fy"][i]) == pytest.approx(np.abs(fine.reaction("B1").fy).max(), rel=1e-5)
-        assert found["peak:stress:c1:von_mises"][i] == pytest.approx(fine.stress("c1").peak("von_mises").value, rel=1e-5)
-        assert found["peak:deflection:bar:across"][i] == pytest.approx(abs(fine.deflection("bar").peak().value), rel=1e-5)
+        fine = evaluate(
+            scene,
+            parameters={"d": d},
+            t=(0, 1, 513),
+            wanted=["all"],
+            backend="vm",
+            certificate=False,
+        )
+        assert abs(found["peak:reaction:B1:fy"][i]) == pytest.approx(
+            np.abs(fine.reaction("B1").fy).max(), rel=1e-5
+        )
+        assert found["peak:stress:c1:von_mises"][i] == pytest.approx(
+            fine.stress("c1").peak("von_mises").value, rel=1e-5
+        )
+        assert found["peak:deflection:bar:across"][i] == pytest.approx(
+            abs(fine.deflection("bar").peak().value), rel=1e-5
+        )
 
 
 @pytest.mark.long
@@ -156,9 +208,16 @@ def test_gradients_of_peaks_and_exported_c(tmp_path):
     f = prepare(scene, wanted=["reaction:B1"])
     k = f.quantities.index("reaction:B1:fy")
     ends = [f.peaks({"d": 0.01 + way * 1e-6}).value[k].copy() for way in (1, -1)]
-    assert f.gradient({"d": 0.01})["reaction:B1:fy"]["d"] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-5)
+    assert f.gradient({"d": 0.01})["reaction:B1:fy"]["d"] == pytest.approx(
+        (ends[0] - ends[1]) / 2e-6, rel=1e-5
+    )
     for precision in ("double", "single"):
-        export(scene, tmp_path / precision, wanted=["reaction:B1", "section:bar", "deflection:bar"], precision=precision)
+        export(
+            scene,
+            tmp_path / precision,
+            wanted=["reaction:B1", "section:bar", "deflection:bar"],
+            precision=precision,
+        )
         build = tmp_path / precision / "build"
         for command in (
             ["cmake", "-S", tmp_path / precision, "-B", build],

@@ -1,4 +1,6 @@
-"""Tolerances: the spread of peaks beside closed forms, to first order and drawn; what the command says, and its mistakes."""
+"""Tolerances: the spread of peaks beside closed forms, to first order and drawn; what the command
+says, and its mistakes.
+"""
 
 import csv
 import math
@@ -18,18 +20,26 @@ def rotor():
     """The axial force at the base of a link that turns steadily is m w^2 l/2."""
     m = Mechanism("rotor")
     m.set_gravity(0, 0)
-    l, mass, speed = m.parameter("l", 0.4, "m", low=0.0), m.parameter("mass", 2.0, "kg"), m.parameter("speed", 30.0, "rad/s")
+    l, mass, speed = (
+        m.parameter("l", 0.4, "m", low=0.0),
+        m.parameter("mass", 2.0, "kg"),
+        m.parameter("speed", 30.0, "rad/s"),
+    )
     tilt = m.parameter("tilt", 0.2, "rad")
     m.revolute("O", m.ground, m.link("arm", length=l, mass=mass))
     return Scene(m, {"O": polynomial(tilt, speed)}, t=(0, 0.2, 11), wanted=["section"])
 
 
 def test_spreads_are_those_of_the_closed_form():
-    found = tolerances(rotor(), {"l": "2mm", "mass": "1%", "speed": 0.15, "tilt": "1deg"}, samples=20_000)
+    found = tolerances(
+        rotor(), {"l": "2mm", "mass": "1%", "speed": 0.15, "tilt": "1deg"}, samples=20_000
+    )
     spread = found.peaks["section:arm:axial"]
     force = 2.0 * 30.0**2 * 0.4 / 2
     relative = {"l": 0.005, "mass": 0.01, "speed": 2 * 0.005, "tilt": 0.0}
-    assert found.tolerances == pytest.approx({"l": 0.002, "mass": 0.02, "speed": 0.15, "tilt": math.radians(1.0)})
+    assert found.tolerances == pytest.approx(
+        {"l": 0.002, "mass": 0.02, "speed": 0.15, "tilt": math.radians(1.0)}
+    )
     assert spread.nominal == pytest.approx(force, rel=1e-12)
     assert spread.worst == pytest.approx(force * sum(relative.values()), rel=1e-12)
     sigma = force * math.sqrt(sum(x**2 for x in relative.values()) / 3)
@@ -45,14 +55,20 @@ def test_spreads_are_those_of_the_closed_form():
 
 @pytest.mark.long
 def test_what_is_drawn_is_what_sweeps_have():
-    """The largest that was drawn lies between the nominal peak and that of the worst corner; the same in every run."""
+    """The largest that was drawn lies between the nominal peak and that of the worst corner; the
+    same in every run.
+    """
     scene = load_case(CASES / "slider_crank").scene
     within = {"l": 1e-3, "m3": 5e-3}
     first, second = (tolerances(scene, within, wanted=["effort"], samples=300) for _ in range(2))
     spread = first.peaks["effort:O"]
     f = prepare(scene, wanted=["effort"])
     values = scene.mechanism.values()
-    corner = max(abs(f.peaks(l=values["l"] + i * 1e-3, m3=values["m3"] + j * 5e-3).value[0]) for i in (-1, 1) for j in (-1, 1))
+    corner = max(
+        abs(f.peaks(l=values["l"] + i * 1e-3, m3=values["m3"] + j * 5e-3).value[0])
+        for i in (-1, 1)
+        for j in (-1, 1)
+    )
     assert abs(spread.nominal) < spread.high <= corner
     assert spread.high == second.peaks["effort:O"].high
 
@@ -80,12 +96,20 @@ def test_designs_without_a_result_are_counted():
 )
 def test_tolerances_are_read_with_their_units(name, value, found):
     mechanism = rotor().mechanism
-    assert read_tolerance(mechanism.parameters, name, value, mechanism.values()[name]) == pytest.approx(found, rel=1e-14)
+    assert read_tolerance(
+        mechanism.parameters, name, value, mechanism.values()[name]
+    ) == pytest.approx(found, rel=1e-14)
 
 
-@pytest.mark.parametrize("value", ["0.1deg", "x", "", "-1mm", 0.0, math.nan, math.inf, True, None, "1 furlong", "mm", "%"])
+@pytest.mark.parametrize(
+    "value",
+    ["0.1deg", "x", "", "-1mm", 0.0, math.nan, math.inf, True, None, "1 furlong", "mm", "%"],
+)
 def test_what_is_no_tolerance_of_a_length(value):
-    with pytest.raises(DeclarationError, match="tolerance of 'l': expected a number above 0 in m, or a text such as"):
+    with pytest.raises(
+        DeclarationError,
+        match="tolerance of 'l': expected a number above 0 in m, or a text such as",
+    ):
         tolerances(rotor(), {"l": value})
 
 
@@ -104,7 +128,14 @@ def test_mistakes():
 
 def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    asked = ["tolerances", str(CASES / "slider_crank"), "--want", "effort,section:rod", "--samples", "100"]
+    asked = [
+        "tolerances",
+        str(CASES / "slider_crank"),
+        "--want",
+        "effort,section:rod",
+        "--samples",
+        "100",
+    ]
     assert main([*asked, "--tolerance", "l=0.1mm", "--tolerance", "m3=1%", "--csv", "x.csv"]) == 0
     out, err = capfd.readouterr()
     assert err == ""
@@ -112,9 +143,18 @@ def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
     assert "  effort:O " in out
     assert "m3 100%" in out
     rows = list(csv.DictReader((tmp_path / "x.csv").read_text().splitlines()))
-    assert [row["quantity"] for row in rows if row["unit"] == "N m"] == ["effort:O", "section:rod:bending"]
-    assert all(float(row["share of l"]) + float(row["share of m3"]) == pytest.approx(1.0) for row in rows)
-    mistakes = {"expected NAME=VALUE": ["l"], "tolerance of 'l'": ["l=1deg"], "one twice": ["l=1mm", "l=1mm"]}
+    assert [row["quantity"] for row in rows if row["unit"] == "N m"] == [
+        "effort:O",
+        "section:rod:bending",
+    ]
+    assert all(
+        float(row["share of l"]) + float(row["share of m3"]) == pytest.approx(1.0) for row in rows
+    )
+    mistakes = {
+        "expected NAME=VALUE": ["l"],
+        "tolerance of 'l'": ["l=1deg"],
+        "one twice": ["l=1mm", "l=1mm"],
+    }
     for said, given in mistakes.items():
         assert main([*asked, *(word for each in given for word in ("--tolerance", each))]) == 2
         assert said in capfd.readouterr().err

@@ -1,4 +1,6 @@
-"""The trade: every rung measured, errors that are true, a front that nothing beats, and recommendations that hold."""
+"""The trade: every rung measured, errors that are true, a front that nothing beats, and
+recommendations that hold.
+"""
 
 import errno
 import importlib
@@ -17,7 +19,14 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.studies.trade import COMPARED, RUNGS, Measurement, Trade, trade
 
 CASES = Path(__file__).parent.parent / "cases"
-SOME = (Rung("c"), Rung("vm"), Rung("c", "single"), Rung("lanes", newton=1), Rung("lanes", newton=2), Rung("c", table=1e-6))
+SOME = (
+    Rung("c"),
+    Rung("vm"),
+    Rung("c", "single"),
+    Rung("lanes", newton=1),
+    Rung("lanes", newton=2),
+    Rung("c", table=1e-6),
+)
 """All that a mechanism may have whose loop is iterated, and whose one drive turns."""
 
 WANTED = ("effort", "motion", "section")
@@ -33,7 +42,10 @@ def measured():
 def test_every_rung_is_measured(measured):
     assert {one.rung for one in measured.measurements} == set(SOME)
     assert not measured.refused
-    assert all(0.0 < one.median <= one.largest < 1e-2 and 1e-10 < one.seconds < 1e-1 for one in measured.measurements)
+    assert all(
+        0.0 < one.median <= one.largest < 1e-2 and 1e-10 < one.seconds < 1e-1
+        for one in measured.measurements
+    )
     assert list(measured.measurements) == sorted(measured.measurements, key=lambda one: one.seconds)
 
 
@@ -51,7 +63,9 @@ def test_an_error_is_the_difference_that_there_is(measured):
     exact, rough = evaluate(scene, backend="vm"), evaluate(scene, backend="lanes", newton=1)
     found = next(one for one in measured.measurements if one.rung == Rung("lanes", newton=1))
     kept = np.unique(np.linspace(0, exact.t.size - 1, COMPARED).astype(int))
-    gap = np.max(np.abs(exact.series[found.worst] - rough.series[found.worst])[kept]) / np.max(np.abs(exact.series[found.worst]))
+    gap = np.max(np.abs(exact.series[found.worst] - rough.series[found.worst])[kept]) / np.max(
+        np.abs(exact.series[found.worst])
+    )
     assert found.largest == pytest.approx(gap, rel=1e-6)
 
 
@@ -60,13 +74,22 @@ def entry(seconds, largest, backend="c"):
 
 
 def test_the_front_and_the_fastest():
-    found = Trade("x", 1, 1, (entry(1, 1e-3), entry(2, 1e-2), entry(3, 1e-6), entry(4, 1e-6), entry(5, 1e-15)), {})
+    found = Trade(
+        "x",
+        1,
+        1,
+        (entry(1, 1e-3), entry(2, 1e-2), entry(3, 1e-6), entry(4, 1e-6), entry(5, 1e-15)),
+        {},
+    )
     assert [one.seconds for one in found.front] == [1, 3, 5]
     assert found.fastest(1e-3).seconds == 1
     assert found.fastest(9e-4).seconds == 3
     with pytest.raises(
         AccuracyError,
-        match=r"no method of evaluating 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps 1e-15 \(",
+        match=(
+            r"no method of evaluating 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps"
+            r" 1e-15 \("
+        ),
     ):
         found.fastest(1e-16)
     for wrong in (0.0, -1.0, float("nan")):
@@ -76,7 +99,10 @@ def test_the_front_and_the_fastest():
 
 def test_what_a_scene_has_not_is_refused_with_the_reason():
     found = trade(
-        load_case(CASES / "arm").scene, t=(0, 2, 11), wanted=["effort"], rungs=(Rung("c"), Rung("c", table=64), Rung("c", newton=1))
+        load_case(CASES / "arm").scene,
+        t=(0, 2, 11),
+        wanted=["effort"],
+        rungs=(Rung("c"), Rung("c", table=64), Rung("c", newton=1)),
     )
     assert [one.rung for one in found.measurements] == [Rung("c")]
     assert list(found.refused) == ["--backend c --table 64"]
@@ -87,7 +113,10 @@ def test_what_a_scene_has_not_is_refused_with_the_reason():
 def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
     """A cardan shaft in phase: its tube turns about one axis, so that all of some unit is zero."""
     found = trade(
-        load_case("cardan_shaft").scene, wanted=["section:tube"], t=(0.0, 0.1, 9), rungs=(Rung("c"), Rung("c", table=1e-6))
+        load_case("cardan_shaft").scene,
+        wanted=["section:tube"],
+        t=(0.0, 0.1, 9),
+        rungs=(Rung("c"), Rung("c", table=1e-6)),
     )
     exact, table = sorted(found.measurements, key=lambda one: one.largest)
     assert exact.largest < 1e-12
@@ -95,10 +124,17 @@ def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
 
 
 def test_what_exported_c_can_be_is_recommended_apart():
-    rungs = (Rung("lanes", "single"), Rung("c", flags="-O1"), Rung("c", "single"), Rung("c", newton=2), Rung("vm"))
+    rungs = (
+        Rung("lanes", "single"),
+        Rung("c", flags="-O1"),
+        Rung("c", "single"),
+        Rung("c", newton=2),
+        Rung("vm"),
+    )
     errors = (1e-7, 1e-15, 1e-7, 1e-12, 1e-15)
     measured = tuple(
-        Measurement(rung, k, error, error, "effort:O") for k, (rung, error) in enumerate(zip(rungs, errors, strict=True))
+        Measurement(rung, k, error, error, "effort:O")
+        for k, (rung, error) in enumerate(zip(rungs, errors, strict=True))
     )
     found = Trade("x", 1, 1, measured, {})
     assert found.fastest(1e-6).rung == Rung("lanes", "single")
@@ -128,13 +164,17 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     assert "x lanes" in out
     assert "error" not in err
     stored = json.loads((tmp_path / "slider_crank_trade.json").read_text())
-    assert {one["options"] for one in stored["rungs"]} == {rung.options for rung in RUNGS if rung.newton is None}
+    assert {one["options"] for one in stored["rungs"]} == {
+        rung.options for rung in RUNGS if rung.newton is None
+    }
     assert any(one["front"] for one in stored["rungs"])
     assert len(stored["peaks"]) > 3
     assert (tmp_path / "slider_crank_trade.png").stat().st_size > 10_000
     assert main([*arguments, "--accuracy", "1e-30"]) == 1
     out, err = capfd.readouterr()
-    assert err.startswith("error: no method of evaluating 'slider_crank' keeps 1e-30 of the peak; the best, ")
+    assert err.startswith(
+        "error: no method of evaluating 'slider_crank' keeps 1e-30 of the peak; the best, "
+    )
     assert err.count("\n") == 1
 
 
@@ -143,7 +183,9 @@ def test_both_files_or_none(tmp_path, monkeypatch, capfd, failing):
     """Neither a drawing that fails nor a disk that is full at the second file leaves the first."""
     monkeypatch.chdir(tmp_path)
     command = importlib.import_module("lagrange_casadi.cli.trade")
-    monkeypatch.setattr(command, "measure", lambda *_, **__: Trade("x", 1, 1, (entry(1, 1e-3),), {}))
+    monkeypatch.setattr(
+        command, "measure", lambda *_, **__: Trade("x", 1, 1, (entry(1, 1e-3),), {})
+    )
     (tmp_path / "x.json").write_text("of before")
 
     def fail(_trade, file, _ending):
@@ -154,13 +196,18 @@ def test_both_files_or_none(tmp_path, monkeypatch, capfd, failing):
 
     monkeypatch.setattr(command, "draw_trade", fail)
     assert main(["trade", str(CASES / "slider_crank"), "--out", "x.json", "--figure", "x.png"]) == 1
-    told = {"draw": "cannot be drawn", "disk": "cannot write x.json and x.png: No space left on device"}
+    told = {
+        "draw": "cannot be drawn",
+        "disk": "cannot write x.json and x.png: No space left on device",
+    }
     assert capfd.readouterr() == ("", f"error: {told[failing]}\n")
     assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
     assert (tmp_path / "x.json").read_text() == "of before"
 
 
-@pytest.mark.parametrize("words", [["--figure", "x.txt"], ["--out", "x.png"], ["--out", "nowhere/x.json"]])
+@pytest.mark.parametrize(
+    "words", [["--figure", "x.txt"], ["--out", "x.png"], ["--out", "nowhere/x.json"]]
+)
 def test_a_wrong_name_is_said_before_anything_is_measured(words, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     assert main(["trade", str(CASES / "slider_crank"), *words]) == 2
@@ -172,7 +219,9 @@ def test_a_wrong_name_is_said_before_anything_is_measured(words, tmp_path, monke
 
 
 @pytest.mark.parametrize("accuracy", ["0", "-1", "nan"])
-def test_a_wrong_accuracy_is_said_before_anything_is_measured(accuracy, tmp_path, monkeypatch, capfd):
+def test_a_wrong_accuracy_is_said_before_anything_is_measured(
+    accuracy, tmp_path, monkeypatch, capfd
+):
     monkeypatch.chdir(tmp_path)
     assert main(["trade", str(CASES / "slider_crank"), "--accuracy", accuracy]) == 2
     assert capfd.readouterr().err.startswith("error: accuracy: expected a finite number above 0")

@@ -36,7 +36,11 @@ def test_a_driven_joint_is_always_a_branch():
 def test_branches_run_against_joints_where_they_must():
     scene = four_bar(turned=(True, True))
     tree = span(scene.mechanism, scene.motion)
-    assert {branch.joint.name: branch.sign for branch in tree.branches} == {"O": 1, "C": -1, "A": -1}
+    assert {branch.joint.name: branch.sign for branch in tree.branches} == {
+        "O": 1,
+        "C": -1,
+        "A": -1,
+    }
 
 
 def test_redundant_drives_are_refused():
@@ -60,9 +64,15 @@ def test_a_link_that_only_slides_on_a_point_is_refused():
 
 
 def test_a_driven_slide_carries_its_mass_whatever_else_is_pinned_to_it():
-    """A point can be hung on its line, and no line on a point: a pin that is nearer the ground must wait."""
+    """A point can be hung on its line, and no line on a point: a pin that is nearer the ground must
+    wait.
+    """
     m = Mechanism("driven_slot")
-    a, b, c = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.6, mass=1.0)
+    a, b, c = (
+        m.link("a", length=0.3, mass=1.0),
+        m.link("b", length=0.5, mass=1.0),
+        m.link("c", length=0.6, mass=1.0),
+    )
     pin = m.point_mass("pin", 0.1)
     m.revolute("O", m.ground, a)
     m.revolute("P", a.tip, pin)

@@ -1,4 +1,6 @@
-"""A line says where a drive that turns makes no whole turn, or not the same in every design; a drive that swings is left alone."""
+"""A line says where a drive that turns makes no whole turn, or not the same in every design; a
+drive that swings is left alone.
+"""
 
 import math
 
@@ -17,10 +19,23 @@ pytestmark = pytest.mark.quick
 
 
 def said(scene, rows=((600.0, 0.5),), **asked):
-    return note(scene.prescribed, kinds_of_described(template(scene).content), scene.timing(**asked), np.array(rows))
+    return note(
+        scene.prescribed,
+        kinds_of_described(template(scene).content),
+        scene.timing(**asked),
+        np.array(rows),
+    )
 
 
-@pytest.mark.parametrize("law", [motion.polynomial, uneven, lambda _, w: motion.polynomial(0, 0, 100.0), lambda _, w: sampled()])
+@pytest.mark.parametrize(
+    "law",
+    [
+        motion.polynomial,
+        uneven,
+        lambda _, w: motion.polynomial(0, 0, 100.0),
+        lambda _, w: sampled(),
+    ],
+)
 def test_less_than_a_turn_is_said_with_what_makes_it_whole(law):
     found = said(press(law), t=(0, 0.05, 31))
     assert found.startswith("drive 'O' makes 0.")
@@ -33,11 +48,19 @@ def sampled():
 
 def test_the_line_begins_where_the_motion_does_and_goes_its_way():
     back = press(lambda _, w: motion.polynomial(1.0, -w))
-    assert said(back, t=(0, 0.01, 9)) == "drive 'O' makes 0.1 of a turn; instants over O=57.2958deg:-302.704deg:9 make it whole"
+    assert (
+        said(back, t=(0, 0.01, 9))
+        == "drive 'O' makes 0.1 of a turn; instants over O=57.2958deg:-302.704deg:9 make it whole"
+    )
 
 
-@pytest.mark.parametrize("asked", [{"t": (0, 0.1, 31)}, {"t": (0, 0.35, 31)}, {"over": ("O", 0, 1, 5)}, {"t": (0.02, 0.02, 1)}])
-def test_nothing_is_said_of_whole_turns_of_one_instant_and_of_what_was_asked_for_by_the_drive(asked):
+@pytest.mark.parametrize(
+    "asked",
+    [{"t": (0, 0.1, 31)}, {"t": (0, 0.35, 31)}, {"over": ("O", 0, 1, 5)}, {"t": (0.02, 0.02, 1)}],
+)
+def test_nothing_is_said_of_whole_turns_of_one_instant_and_of_what_was_asked_for_by_the_drive(
+    asked,
+):
     assert said(press(), **asked) == ""
 
 
@@ -73,8 +96,10 @@ def test_a_slide_and_several_drives_have_no_turns():
 def test_a_sweep_says_where_designs_make_different_turns():
     scene = press(t=(0, 0.1, 31))
     rows = [[600.0, 0.5], [6000.0, 0.5], [0.0, 0.5]]
-    assert said(scene, rows[:2]) == (
-        "drive 'O' makes 1 to 10 turns, not the same in every design; instants over O=0deg:3600deg:31 make it whole"
+    assert (
+        said(scene, rows[:2])
+        == "drive 'O' makes 1 to 10 turns, not the same in every design; instants over"
+        " O=0deg:3600deg:31 make it whole"
     )
     found = turning_note(scene, scene.timing(), {"rpm": (300.0, 1200.0, 4)}, {"l": 0.4})
     assert found.startswith("drive 'O' makes 0.5 to 2 turns, not the same in every design")

@@ -1,4 +1,6 @@
-"""A flat bar between two spherical joints: all that follows from its section forces is about the axes that beside tells."""
+"""A flat bar between two spherical joints: all that follows from its section forces is about the
+axes that beside tells.
+"""
 
 import dataclasses
 
@@ -38,7 +40,17 @@ BENT = {EDGE: 1.9252125e6, FLAT: 5.7756375e6}
 """w l^2/8 c/I of a bar of steel, 1 m long, 30 x 10 mm, by what stands upright of it."""
 
 
-def bar(beside=UP, height=EDGE, width=FLAT, *, swing=0.0, shape=beams.rectangle, hard=True, push=0.0, wanted=("all",)):
+def bar(
+    beside=UP,
+    height=EDGE,
+    width=FLAT,
+    *,
+    swing=0.0,
+    shape=beams.rectangle,
+    hard=True,
+    push=0.0,
+    wanted=("all",),
+):
     """A bar that lies level between a crank and a rocker, which swing."""
     m = SpatialMechanism("bar")
     h, w = m.parameter("h", height, "m", low=0.001), m.parameter("w", width, "m", low=0.001)
@@ -60,7 +72,10 @@ def bar(beside=UP, height=EDGE, width=FLAT, *, swing=0.0, shape=beams.rectangle,
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("hard", [True, False])
-@pytest.mark.parametrize(("beside", "upright"), [(UP, "h"), (ACROSS, "w"), ((0.7, 0.0, 0.2), "h"), ((0.3, -2.0, 0.0), "w")])
+@pytest.mark.parametrize(
+    ("beside", "upright"),
+    [(UP, "h"), (ACROSS, "w"), ((0.7, 0.0, 0.2), "h"), ((0.3, -2.0, 0.0), "w")],
+)
 @pytest.mark.parametrize("height", [EDGE, FLAT])
 def test_a_bar_under_its_own_weight(beside, upright, height, hard):
     width = FLAT if height == EDGE else EDGE
@@ -80,12 +95,23 @@ def refined(scene):
 
 def safe(scene):
     solution = evaluate(scene, wanted=["safety:rod"])
-    return [verdict.factor for verdict in (*solution.safety("rod").verdicts, *refine_safety(scene, solution, "rod").verdicts)]
+    return [
+        verdict.factor
+        for verdict in (
+            *solution.safety("rod").verdicts,
+            *refine_safety(scene, solution, "rod").verdicts,
+        )
+    ]
 
 
 def wanted(scene):
     solution = evaluate(scene, wanted=["stress:rod", "safety:rod", "deflection:rod"])
-    names = ("stress:rod:von_mises", "utilisation:rod:yield", "utilisation:rod:buckling", "deflection:rod:across")
+    names = (
+        "stress:rod:von_mises",
+        "utilisation:rod:yield",
+        "utilisation:rod:buckling",
+        "deflection:rod:across",
+    )
     return np.concatenate([solution.array(name) for name in names])
 
 
@@ -99,8 +125,13 @@ def bent(scene):
 
 
 def swept(scene):
-    found = sweep(scene, {"h": [scene.mechanism.parameters["h"].default]}, wanted=["safety", "life"])
-    return [float(np.squeeze(found[name])) for name in ("least:yield:rod", "least:buckling:rod", "least:fatigue:rod", "life:rod")]
+    found = sweep(
+        scene, {"h": [scene.mechanism.parameters["h"].default]}, wanted=["safety", "life"]
+    )
+    return [
+        float(np.squeeze(found[name]))
+        for name in ("least:yield:rod", "least:buckling:rod", "least:fatigue:rod", "life:rod")
+    ]
 
 
 def prepared(scene):
@@ -110,7 +141,12 @@ def prepared(scene):
 def chosen(scene):
     upright = "h" if scene.mechanism.links["rod"].beside == UP else "w"
     found = optimise(
-        scene, minimise="mass:rod", over={upright: (0.005, 0.05)}, subject_to=["least:yield:rod >= 150"], starts=1, screen=4
+        scene,
+        minimise="mass:rod",
+        over={upright: (0.005, 0.05)},
+        subject_to=["least:yield:rod >= 150"],
+        starts=1,
+        screen=4,
     )
     return found.values[upright]
 
@@ -118,7 +154,10 @@ def chosen(scene):
 def sized(scene):
     tall = scene.mechanism.parameters["h"].default == EDGE
     shapes = [(x / 1e3, 0.01) if tall else (0.01, x / 1e3) for x in (20, 30, 40)]
-    profiles = [Profile(f"{height} x {width}", {"height": height, "width": width}) for height, width in shapes]
+    profiles = [
+        Profile(f"{height} x {width}", {"height": height, "width": width})
+        for height, width in shapes
+    ]
     return [v.factor for v in size(scene, profiles, safety=0.01).links[0].safety.verdicts]
 
 
@@ -147,7 +186,9 @@ IN_MEMORY = (stressed, refined, safe, wanted, lasting, bent, swept, prepared, ch
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("asked", [*IN_MEMORY, kept, shown, exported_c], ids=lambda asked: asked.__name__)
+@pytest.mark.parametrize(
+    "asked", [*IN_MEMORY, kept, shown, exported_c], ids=lambda asked: asked.__name__
+)
 def test_all_that_follows_is_about_the_same_axes(asked, tmp_path):
     """The bar on edge told in two ways, and the bar that lies flat."""
 
@@ -156,7 +197,11 @@ def test_all_that_follows_is_about_the_same_axes(asked, tmp_path):
         folder = () if asked in IN_MEMORY else (tmp_path / name,)
         return np.ravel(asked(bar(*told, swing=0.3, push=-200.0), *folder))
 
-    edge, same, flat = of("edge", UP, EDGE, FLAT), of("same", ACROSS, FLAT, EDGE), of("flat", ACROSS, EDGE, FLAT)
+    edge, same, flat = (
+        of("edge", UP, EDGE, FLAT),
+        of("same", ACROSS, FLAT, EDGE),
+        of("flat", ACROSS, EDGE, FLAT),
+    )
     np.testing.assert_allclose(edge, same, rtol=1e-6)
     told = np.isfinite(edge) & np.isfinite(flat)
     assert told.any()
@@ -165,18 +210,32 @@ def test_all_that_follows_is_about_the_same_axes(asked, tmp_path):
 
 def test_its_strength_is_drawn(tmp_path):
     solution = evaluate(bar(swing=0.3, push=-200.0))
-    specs = [spec for spec in default_figures(solution) if spec.name.startswith(("strength", "deflection", "utilisation"))]
+    specs = [
+        spec
+        for spec in default_figures(solution)
+        if spec.name.startswith(("strength", "deflection", "utilisation"))
+    ]
     names = {spec.name for spec, path in draw(solution, specs, tmp_path) if path is not None}
     assert {"strength_rod", "deflection_rod", "utilisation"} <= names
 
 
 def test_what_is_told_of_a_bar_without_a_direction():
-    """Its section forces, as before; its strength if it is round; and how far it lets another point move."""
+    """Its section forces, as before; its strength if it is round; and how far it lets another point
+    move.
+    """
     scene = bar(None)
     solution = evaluate(scene)
     assert solution.section("rod").bending.max() == pytest.approx(7850 * 9.81 * 3e-4 / 8, rel=1e-9)
-    for ask in (solution.stress, solution.safety, solution.life, solution.deflection, lambda link: vibration(solution, link)):
-        with pytest.raises(DeclarationError, match=r"link 'rod' is a bar that spins freely .* beside="):
+    for ask in (
+        solution.stress,
+        solution.safety,
+        solution.life,
+        solution.deflection,
+        lambda link: vibration(solution, link),
+    ):
+        with pytest.raises(
+            DeclarationError, match=r"link 'rod' is a bar that spins freely .* beside="
+        ):
             ask("rod")
     for kind in ("stress", "safety", "life", "deflection"):
         for name in (f"{kind}:rod", kind):
@@ -184,8 +243,16 @@ def test_what_is_told_of_a_bar_without_a_direction():
                 evaluate(scene, wanted=[name])
     with pytest.raises(DeclarationError, match="link 'rod' is a bar that spins freely"):
         sweep(scene, {"h": [0.02]}, wanted=["life"])
-    assert not {"strength_rod", "deflection_rod", "utilisation"} & {spec.name for spec in default_figures(solution)}
-    assert evaluate(bar(None, shape=lambda d, _: beams.round_bar(d))).stress("rod").peak("normal").value > 1e6
+    assert not {"strength_rod", "deflection_rod", "utilisation"} & {
+        spec.name for spec in default_figures(solution)
+    }
+    assert (
+        evaluate(bar(None, shape=lambda d, _: beams.round_bar(d)))
+        .stress("rod")
+        .peak("normal")
+        .value
+        > 1e6
+    )
     rocker = scene.mechanism.links["rocker"]
     assert tool_deflection(scene, rocker.tip).by_link["rod"].shape == (9, 3)
     with pytest.raises(DeclarationError, match="link 'rod' is a bar that spins freely"):
@@ -203,7 +270,11 @@ def test_a_certificate_knows_how_a_bar_is_turned():
             y, z = (Output("pose", "rod", axis + component) for axis in "yz")
             turned[y] = a * solution.outputs[y] + b * solution.outputs[z]
             turned[z] = a * solution.outputs[z] - b * solution.outputs[y]
-        assert clean.max() < beyond < certify(dataclasses.replace(solution, outputs=turned))["closure"].max()
+        assert (
+            clean.max()
+            < beyond
+            < certify(dataclasses.replace(solution, outputs=turned))["closure"].max()
+        )
 
 
 def drag_link(beside):
@@ -214,7 +285,9 @@ def drag_link(beside):
     tip = (0.1 + along, float(np.sqrt(follower**2 - along**2)), 0.0)
     crank = m.link("crank", between=((0, 0, 0), (0.4, 0, 0)), mass=0.5)
     rod = m.link("rod", between=((0.4, 0, 0), tip), mass=0.5)
-    goes = m.link("bar", between=(at, tip), beside=beside, beam=beams.Beam(beams.rectangle(EDGE, FLAT), STEEL))
+    goes = m.link(
+        "bar", between=(at, tip), beside=beside, beam=beams.Beam(beams.rectangle(EDGE, FLAT), STEEL)
+    )
     m.revolute("O", m.ground, crank, at=(0, 0, 0), axis=(0, 0, 1))
     m.revolute("A", crank, rod, at=(0.4, 0, 0), axis=(0, 0, 1))
     m.spherical("B", rod, goes, at=tip)
@@ -225,29 +298,48 @@ def drag_link(beside):
 def test_a_bar_must_not_lie_along_its_direction():
     assert evaluate(drag_link(UP)).certified
     with pytest.raises(
-        AssemblyError, match=r"bar .bar. comes to lie along its beside after t = .* a direction that stays across it"
+        AssemblyError,
+        match=(
+            r"bar .bar. comes to lie along its beside after t = .* a direction that stays across it"
+        ),
     ):
         evaluate(drag_link(ACROSS))
     assert evaluate(drag_link(ACROSS), wanted=["effort"]).certified
 
 
 def test_a_direction_that_no_joint_takes_is_refused():
-    """A joint of points whose other body has no place cannot tell how the link lies; without turned it lay along the parent's x."""
-    for told, says in (({"beside": UP}, "beside tells its y axis"), ({}, "between tells how it lies")):
+    """A joint of points whose other body has no place cannot tell how the link lies; without turned
+    it lay along the parent's x.
+    """
+    for told, says in (
+        ({"beside": UP}, "beside tells its y axis"),
+        ({}, "between tells how it lies"),
+    ):
         m = SpatialMechanism("arm")
-        base, arm = m.link("base", length=1.0, mass=1.0), m.link("arm", between=((0, 0, 0), (0, 1, 0)), mass=1.0, **told)
+        base, arm = (
+            m.link("base", length=1.0, mass=1.0),
+            m.link("arm", between=((0, 0, 0), (0, 1, 0)), mass=1.0, **told),
+        )
         m.revolute("O", m.ground, base)
         m.revolute("A", base.tip, arm, axis=(1, 0, 0))
-        with pytest.raises(DeclarationError, match=f"link 'arm': {says} in the reference posture, and none of its joints"):
+        with pytest.raises(
+            DeclarationError,
+            match=f"link 'arm': {says} in the reference posture, and none of its joints",
+        ):
             evaluate(Scene(m, {"O": harmonic(0.0, 0.1, 1.0), "A": harmonic(0.0, 0.1, 1.0)}))
 
 
 @pytest.mark.parametrize("by_points", [True, False])
-@pytest.mark.parametrize(("told", "up"), [({}, None), ({"beside": (0.3, -1.0, 2.0)}, (0.3, -1.0, 2.0))])
+@pytest.mark.parametrize(
+    ("told", "up"), [({}, None), ({"beside": (0.3, -1.0, 2.0)}, (0.3, -1.0, 2.0))]
+)
 @pytest.mark.parametrize("tip", [(0.0, 1.0, 0.0), (0.2, -0.4, 0.9), (1.0, 0.0, 0.0)])
 def test_a_link_lies_between_its_places_however_its_joints_are_told(by_points, told, up, tip):
     m, end = SpatialMechanism("arm"), (0.7, -0.1, 0.4)
-    arm, fore = m.link("arm", between=((0, 0, 0), tip), mass=1.0, **told), m.link("fore", between=(tip, end), mass=0.5, **told)
+    arm, fore = (
+        m.link("arm", between=((0, 0, 0), tip), mass=1.0, **told),
+        m.link("fore", between=(tip, end), mass=0.5, **told),
+    )
     if by_points:
         m.universal("O", m.ground, arm, axis=(1, 0, 0), second=(0, 1, 0))
         m.weld("A", arm.tip, fore)
@@ -255,23 +347,32 @@ def test_a_link_lies_between_its_places_however_its_joints_are_told(by_points, t
         m.universal("O", m.ground, arm, axis=(1, 0, 0), second=(0, 1, 0), at=(0, 0, 0))
         m.weld("A", arm, fore, at=tip)
     m.path("end", fore.tip)
-    solution = evaluate(Scene(m, {"O": (harmonic(0.0, 0.1, 1.0), harmonic(0.0, 0.2, 1.0))}, t=(0, 0.25, 3)))
+    solution = evaluate(
+        Scene(m, {"O": (harmonic(0.0, 0.1, 1.0), harmonic(0.0, 0.2, 1.0))}, t=(0, 0.25, 3))
+    )
     assert solution.certified
     found = [solution.array(f"output:end_{axis}")[0] for axis in "xyz"]
     assert found == pytest.approx(end, abs=1e-12)
 
 
 def test_figures_leave_out_what_has_no_stress():
-    solution = evaluate(robot(beams.polygon([(0.02, -0.01), (0.02, 0.01), (-0.02, 0.01), (-0.02, -0.01)])))
+    solution = evaluate(
+        robot(beams.polygon([(0.02, -0.01), (0.02, 0.01), (-0.02, 0.01), (-0.02, -0.01)]))
+    )
     names = {spec.name for spec in default_figures(solution)}
     assert "section_upper" in names
     assert "strength_upper" not in names
 
 
 def test_a_bar_without_a_direction_is_left_out_of_sizing_by_name():
-    """The driven crank is sized; the bar that it leads is left as it is, and alone it is refused."""
+    """The driven crank is sized; the bar that it leads is left as it is,
+    and alone it is refused.
+    """
     m = SpatialMechanism("crank")
-    h, w, d, e = (m.parameter(name, value, "m", low=0.001) for name, value in (("h", EDGE), ("w", FLAT), ("d", 0.03), ("e", 0.03)))
+    h, w, d, e = (
+        m.parameter(name, value, "m", low=0.001)
+        for name, value in (("h", EDGE), ("w", FLAT), ("d", 0.03), ("e", 0.03))
+    )
     crank = m.link("crank", length=0.2, beam=beams.Beam(beams.rectangle(d, e), STEEL))
     rod = m.link("rod", length=0.6, beam=beams.Beam(beams.rectangle(h, w), STEEL))
     slider = m.point_mass("slider", 1.0)
@@ -280,7 +381,10 @@ def test_a_bar_without_a_direction_is_left_out_of_sizing_by_name():
     m.spherical("B", rod.tip, slider)
     m.slot("G", m.ground, slider, axis=(1, 0, 0))
     scene = Scene(m, {"O": harmonic(0.5, 0.3, 2.0)}, posture={"G:slide": 0.7}, t=(0, 0.5, 9))
-    bars = [Profile("thin", {"height": 0.02, "width": 0.01}), Profile("thick", {"height": 0.05, "width": 0.02})]
+    bars = [
+        Profile("thin", {"height": 0.02, "width": 0.01}),
+        Profile("thick", {"height": 0.05, "width": 0.02}),
+    ]
     found = size(scene, bars, safety=0.1)
     assert [one.link for one in found.links] == ["crank"]
     assert list(found.left) == ["rod"]

@@ -1,6 +1,8 @@
-"""Angles that loads see with their turns, against vector Newton-Euler that is followed from the start in small steps.
+"""Angles that loads see with their turns, against vector Newton-Euler that is followed from the
+start in small steps.
 
-The oracle carries directions as numbers that go on continuously: it counts turns by having been there.
+The oracle carries directions as numbers that go on continuously: it counts turns by having been
+there.
 """
 
 import math
@@ -12,7 +14,16 @@ from balance import columns_at, oracle_of, postures
 from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import DAMPING, DRAG_LINK, FREE, STIFFNESS, coil, slider_crank, sprung, truss_platform
+from mechanisms import (
+    DAMPING,
+    DRAG_LINK,
+    FREE,
+    STIFFNESS,
+    coil,
+    slider_crank,
+    sprung,
+    truss_platform,
+)
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
@@ -33,7 +44,9 @@ class Coil:
     """The same spring for the oracle; its angle starts in (-pi, pi]."""
 
     def __init__(self, joint):
-        self.child, self.parent = ((p.body.name, float(p.x), float(p.y)) for p in (joint.child, joint.parent))
+        self.child, self.parent = (
+            (p.body.name, float(p.x), float(p.y)) for p in (joint.child, joint.parent)
+        )
         self.turns = None
 
     def __call__(self, place):
@@ -46,7 +59,9 @@ class Coil:
 
 
 def assert_followed(scene, joints, count=5, **keywords):
-    """Efforts, reactions, section forces and springs at some instants, with the oracle followed to them."""
+    """Efforts, reactions, section forces and springs at some instants, with the oracle followed to
+    them.
+    """
     m, (start, stop, _) = scene.mechanism, scene.t
     values = m.values(keywords.get("parameters"))
     solution = evaluate(scene, t=(start, stop, count), **keywords)
@@ -60,9 +75,16 @@ def assert_followed(scene, joints, count=5, **keywords):
             # The oracle wants the drive's turns between its two bodies.
             turns = round((parent[2] + drive - child[2]) / math.tau)
             guess[m.joints[joint].child.body.name] = (*child[:2], child[2] + math.tau * turns)
-    size = max(np.abs(solution.reaction(name).fx).max() + np.abs(solution.reaction(name).fy).max() for name in m.joints)
+    size = max(
+        np.abs(solution.reaction(name).fx).max() + np.abs(solution.reaction(name).fy).max()
+        for name in m.joints
+    )
     for i, t in enumerate(solution.t):
-        fast = max(abs(rate) for moment in (before, t) for rate in graph.motion(moment, list(values.values()))[1].full().ravel())
+        fast = max(
+            abs(rate)
+            for moment in (before, t)
+            for rate in graph.motion(moment, list(values.values()))[1].full().ravel()
+        )
         for step in np.linspace(before, t, 2 + int(fast * (t - before) / SMALL))[1:] if i else [t]:
             d = [x.full().ravel() for x in graph.motion(step, list(values.values()))]
             drives = {joint: tuple(row[k] for row in d) for k, joint in enumerate(graph.driven)}
@@ -77,7 +99,9 @@ def assert_followed(scene, joints, count=5, **keywords):
             law = solution.section(link).law
             for u in (0.0, 0.37, 0.81):
                 forces = zip(("axial", "shear", "bending"), solved.sections[link](u), strict=True)
-                gaps += [law.at(force, np.full((count, 1), u))[i, 0] - true for force, true in forces]
+                gaps += [
+                    law.at(force, np.full((count, 1), u))[i, 0] - true for force, true in forces
+                ]
         worst = max(worst, *map(abs, gaps))
     assert worst < 1e-10 * size
     return solution
@@ -87,30 +111,48 @@ def assert_followed(scene, joints, count=5, **keywords):
 @pytest.mark.parametrize("joint", ["A", "B", "C"])
 @pytest.mark.parametrize("kind", [{}, DRAG_LINK], ids=["crank_rocker", "drag_link"])
 def test_a_torsion_spring_goes_on_past_half_a_turn(kind, joint):
-    """Two turns: of a crank-rocker the crank's joint goes round, of a drag link both joints at the ground do."""
+    """Two turns: of a crank-rocker the crank's joint goes round, of a drag link both joints at the
+    ground do.
+    """
     scene = sprung(joint, **kind)
     solution = assert_followed(scene, joint)
     angle = solution.motion(joint)
     fine = evaluate(scene)
     torque, angle = fine.series[f"load:coil_{joint}:mz"], fine.motion(joint)
-    np.testing.assert_allclose(torque, -STIFFNESS * (angle.value - FREE) - DAMPING * angle.rate, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        torque, -STIFFNESS * (angle.value - FREE) - DAMPING * angle.rate, rtol=0, atol=1e-12
+    )
     rounds = (angle.value[-1] - angle.value[0]) / math.tau
-    assert rounds == pytest.approx({("A", False): -2.0, ("C", True): 2.0}.get((joint, kind == DRAG_LINK), 0.0), abs=1e-12)
+    assert rounds == pytest.approx(
+        {("A", False): -2.0, ("C", True): 2.0}.get((joint, kind == DRAG_LINK), 0.0), abs=1e-12
+    )
 
 
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_random_four_bars(seed):
-    """Whatever goes round, from whatever posture, in either branch, backwards too: right, or the loop does not close."""
+    """Whatever goes round, from whatever posture, in either branch, backwards too: right, or the
+    loop does not close.
+    """
     generator = np.random.default_rng(seed)
     lengths, frame = generator.uniform(0.1, 0.5, 3), generator.uniform(-0.4, 0.4, 2)
     rate, start = generator.uniform(-9.0, 9.0), generator.uniform(-20.0, 20.0)
     joints = generator.choice(["A", "B", "C"], generator.integers(1, 4), replace=False).tolist()
-    scene = sprung(joints, tuple(lengths), tuple(frame), generator.uniform(-3.0, 3.0), polynomial(start, rate), count=201)
+    scene = sprung(
+        joints,
+        tuple(lengths),
+        tuple(frame),
+        generator.uniform(-3.0, 3.0),
+        polynomial(start, rate),
+        count=201,
+    )
     try:
         evaluate(scene, backend="vm")
     except (AssemblyError, DeclarationError) as error:
-        if not any(words in str(error) for words in ("cannot be closed", "dead centre", "assembled in two ways")):
+        if not any(
+            words in str(error)
+            for words in ("cannot be closed", "dead centre", "assembled in two ways")
+        ):
             raise
         return
     assert_followed(scene, joints, count=3)
@@ -118,7 +160,9 @@ def test_random_four_bars(seed):
 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize(
-    "law", [polynomial(5.0, -3.0), harmonic(0.4, 9.0, 0.5), harmonic(100.0, 0.3, 2.0)], ids=["back", "both", "swing"]
+    "law",
+    [polynomial(5.0, -3.0), harmonic(0.4, 9.0, 0.5), harmonic(100.0, 0.3, 2.0)],
+    ids=["back", "both", "swing"],
 )
 def test_the_drive_may_go_back_and_forth(law):
     assert_followed(sprung("AC", law=law), "AC")
@@ -126,7 +170,9 @@ def test_the_drive_may_go_back_and_forth(law):
 
 
 def test_it_does_not_matter_which_instants_are_asked_for():
-    """The second turn alone, one instant alone, and few instants far apart: what was there is there."""
+    """The second turn alone, one instant alone, and few instants far apart: what was there is
+    there.
+    """
     scene = sprung("AC", **DRAG_LINK)
     whole = evaluate(scene, t=(0.0, 2.0, 201))
     for grid, rows in (
@@ -136,34 +182,57 @@ def test_it_does_not_matter_which_instants_are_asked_for():
     ):
         part = evaluate(scene, t=grid)
         for name in ("load:coil_A:mz", "load:coil_C:mz", "effort:O", "reaction:B:fx"):
-            np.testing.assert_allclose(part.series[name], whole.series[name][rows], rtol=1e-12, atol=1e-12)
+            np.testing.assert_allclose(
+                part.series[name], whole.series[name][rows], rtol=1e-12, atol=1e-12
+            )
 
 
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     "options",
-    [{"precision": "single"}, {"backend": "vm"}, {"backend": "c"}, {"newton": 3}, {"newton": 4, "precision": "single"}],
+    [
+        {"precision": "single"},
+        {"backend": "vm"},
+        {"backend": "c"},
+        {"newton": 3},
+        {"newton": 4, "precision": "single"},
+    ],
     ids=str,
 )
 @pytest.mark.parametrize("kind", [{}, DRAG_LINK], ids=["crank_rocker", "drag_link"])
 def test_every_rung_counts_the_same(kind, options):
-    scene = sprung("AC", pin=pinned, **kind, count=401) if "newton" in options else sprung("ABC", **kind, count=401)
+    scene = (
+        sprung("AC", pin=pinned, **kind, count=401)
+        if "newton" in options
+        else sprung("ABC", **kind, count=401)
+    )
     exact, other = evaluate(scene), evaluate(scene, **options)
     for name in exact.names():
         if not name.startswith("section:"):
             size = max(
-                np.abs(exact.series[other]).max() for other in exact.series if other.partition(":")[0] == name.partition(":")[0]
+                np.abs(exact.series[other]).max()
+                for other in exact.series
+                if other.partition(":")[0] == name.partition(":")[0]
             )
             close = 2e-5 if "precision" in options else 1e-9
-            np.testing.assert_allclose(other.series[name], exact.series[name], rtol=0, atol=close * size, err_msg=name)
+            np.testing.assert_allclose(
+                other.series[name], exact.series[name], rtol=0, atol=close * size, err_msg=name
+            )
 
 
 def test_a_table_serves_what_comes_round_and_says_what_does_not():
-    """Where both ends of a spring go round together, the spring only swings; where one does, it winds up and repeats never."""
+    """Where both ends of a spring go round together, the spring only swings; where one does, it
+    winds up and repeats never.
+    """
     together = sprung("AB", **DRAG_LINK)
     exact, read = evaluate(together), evaluate(together, table=1e-9)
-    np.testing.assert_allclose(read.effort("O"), exact.effort("O"), rtol=0, atol=1e-8 * np.abs(exact.effort("O")).max())
-    with pytest.raises(DeclarationError, match=r"effort:O.* do not repeat.*a load that sees an angle with its turns may wind up"):
+    np.testing.assert_allclose(
+        read.effort("O"), exact.effort("O"), rtol=0, atol=1e-8 * np.abs(exact.effort("O")).max()
+    )
+    with pytest.raises(
+        DeclarationError,
+        match=r"effort:O.* do not repeat.*a load that sees an angle with its turns may wind up",
+    ):
         evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
 
 
@@ -175,14 +244,33 @@ def test_sweeps_count_the_same_and_refuse_by_name(backend):
     wanted = ["effort", "load:coil_C"]
     engine = DesignEngine.of(scene, wanted, None, Rung(backend))
     # The first crank-rocker comes near a dead centre, and the last one does not.
-    designs = np.array([[0.3, 0.35, 0.32], [0.32, 0.36, 0.3], [0.05, 0.35, 0.32], [1.0, 0.1, 0.1], [0.02, 0.1, 0.1]])
+    designs = np.array(
+        [
+            [0.3, 0.35, 0.32],
+            [0.32, 0.36, 0.3],
+            [0.05, 0.35, 0.32],
+            [1.0, 0.1, 0.1],
+            [0.02, 0.1, 0.1],
+        ]
+    )
     outcome = engine.evaluate(designs, histories=True)
-    assert outcome.status.tolist() == [Status.OK, Status.OK, Status.TURNED, Status.OUT_OF_REACH, Status.TURNED]
+    assert outcome.status.tolist() == [
+        Status.OK,
+        Status.OK,
+        Status.TURNED,
+        Status.OUT_OF_REACH,
+        Status.TURNED,
+    ]
     for design, series in zip(designs[:2], outcome.series[:2], strict=True):
-        solution = evaluate(scene, parameters=dict(zip("pqr", design, strict=True)), wanted=wanted, backend="vm")
+        solution = evaluate(
+            scene, parameters=dict(zip("pqr", design, strict=True)), wanted=wanted, backend="vm"
+        )
         for name, values in zip(engine.columns, series, strict=True):
             np.testing.assert_allclose(values, solution.series[name], rtol=1e-12, atol=1e-12)
-    with pytest.raises(AssemblyError, match=r"the angle of 'C', which a load sees with its turns, swings .* deg from the middle"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"the angle of 'C', which a load sees with its turns, swings .* deg from the middle",
+    ):
         evaluate(scene, parameters={"p": 0.05})
 
 
@@ -190,7 +278,9 @@ def test_exported_c_refuses_what_might_be_a_turn_further(tmp_path):
     """As the API does; and where it does not, a call knows nothing of the one before."""
     made = export(sprung("C", **DRAG_LINK, parametric=True), tmp_path)
     prepare = "status = @_prepare(&model, &parameters); @_motion(&model, %s, &inputs); "
-    status, effort, sentence = told(tmp_path, made, "parameters.p = 0.05; " + prepare % 0.02 + EVALUATED)
+    status, effort, sentence = told(
+        tmp_path, made, "parameters.p = 0.05; " + prepare % 0.02 + EVALUATED
+    )
     assert sentence == "an angle that a load sees with its turns might be a turn further"
     assert math.isnan(effort)
     solution = evaluate(sprung("C", **DRAG_LINK, parametric=True), t=(0.0, 1.75, 8), backend="c")
@@ -209,7 +299,9 @@ def test_peaks_between_instants_see_the_turns():
 
 @pytest.mark.long
 def test_loops_that_are_iterated():
-    """Three bars on three legs, and springs between legs and bars; one of them crosses half a turn."""
+    """Three bars on three legs, and springs between legs and bars; one of
+    them crosses half a turn.
+    """
 
     def loads(m):
         for joint in ("corner0", "mate1", "foot2"):
@@ -221,7 +313,9 @@ def test_loops_that_are_iterated():
 
 
 def whitworth(direction=False):
-    """A crank's pin in the slot of a link whose pivot lies within the crank's circle: the slotted link goes all the way round."""
+    """A crank's pin in the slot of a link whose pivot lies within the crank's circle: the slotted
+    link goes all the way round.
+    """
     m = Mechanism("whitworth")
     a, b = m.link("a", length=0.3, mass=0.3), m.link("b", length=0.6, mass=0.5)
     m.revolute("O", m.ground, a)
@@ -244,7 +338,9 @@ def test_a_link_s_direction_counts_as_its_joint_at_the_ground():
 def geared_five_bar():
     """Two cranks tied by a gear of ratio -2, two bars between them."""
     m = Mechanism("five_bar")
-    a, b, c, d = (m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True))
+    a, b, c, d = (
+        m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True)
+    )
     first = m.revolute("O", m.ground, a)
     second = m.revolute("Q", m.ground.at(0.5, 0.0), d)
     m.revolute("A", a.tip, b)
@@ -255,7 +351,9 @@ def geared_five_bar():
 
 
 def test_what_a_gear_turns_is_counted_by_the_gear():
-    """Between the second crank and its bar the joint goes round twice for each turn of the drive; the second crank's own too."""
+    """Between the second crank and its bar the joint goes round twice for each turn of the drive;
+    the second crank's own too.
+    """
     m, motion, posture = geared_five_bar()
     coil(m, "D")
     coil(m, "Q")
@@ -265,7 +363,9 @@ def test_what_a_gear_turns_is_counted_by_the_gear():
         angle = solution.motion(joint)
         # A gear says what the angle is; what loops set starts in (-pi, pi].
         np.testing.assert_allclose(
-            solution.series[f"load:coil_{joint}:mz"], -STIFFNESS * (angle.value - FREE) - DAMPING * angle.rate, atol=1e-12
+            solution.series[f"load:coil_{joint}:mz"],
+            -STIFFNESS * (angle.value - FREE) - DAMPING * angle.rate,
+            atol=1e-12,
         )
     assert solution.motion("Q").value[0] == pytest.approx(0.3 - 0.2)
     assert np.ptp(solution.motion("D").value) > 4 * math.pi
@@ -274,7 +374,9 @@ def test_what_a_gear_turns_is_counted_by_the_gear():
 def test_two_drives():
     """Five bars: a joint between moving links goes round with either drive."""
     m = Mechanism("five_bar")
-    a, b, c, d = (m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True))
+    a, b, c, d = (
+        m.link(n, length=l, mass=0.3) for n, l in zip("abcd", (0.1, 0.4, 0.4, 0.12), strict=True)
+    )
     m.revolute("O", m.ground, a)
     m.revolute("Q", m.ground.at(0.5, 0.0), d)
     m.revolute("A", a.tip, b)
@@ -297,16 +399,31 @@ def test_a_drive_that_slides():
     m.revolute("P", piston.base, boom.at(0.3))
     for joint in "OP":
         coil(m, joint)
-    assert_followed(Scene(m, {"stroke": harmonic(0.62, 0.1, 0.7)}, posture={"boom": 1.5, "barrel": 0.2}, t=(0, 2, 65)), "OP")
+    assert_followed(
+        Scene(
+            m,
+            {"stroke": harmonic(0.62, 0.1, 0.7)},
+            posture={"boom": 1.5, "barrel": 0.2},
+            t=(0, 2, 65),
+        ),
+        "OP",
+    )
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_many_turns_keep_their_phase(precision):
-    """A spring that only swings, between links that go round a million times: no digit is lost on how many."""
-    near, far = (sprung("B", law=polynomial(start, 9.0), **DRAG_LINK) for start in (0.2, 0.2 + 2e6 * math.pi))
+    """A spring that only swings, between links that go round a million times: no digit is lost on
+    how many.
+    """
+    near, far = (
+        sprung("B", law=polynomial(start, 9.0), **DRAG_LINK) for start in (0.2, 0.2 + 2e6 * math.pi)
+    )
     graphs = [derive(scene, ["load:coil_B"]) for scene in (near, far)]
     assert all("_turned:B" in graph.names for graph in graphs)
-    one, other = (evaluate(scene, wanted=["load:coil_B"], precision=precision).series["load:coil_B:mz"] for scene in (near, far))
+    one, other = (
+        evaluate(scene, wanted=["load:coil_B"], precision=precision).series["load:coil_B:mz"]
+        for scene in (near, far)
+    )
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-5 if precision == "single" else 1e-8)
 
 
@@ -327,7 +444,11 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
     ):
         m = slider_crank().mechanism
         m = Mechanism("seen")
-        a, b, s = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.3, mass=0.3), m.point_mass("s", 1.0)
+        a, b, s = (
+            m.link("a", length=0.1, mass=0.3),
+            m.link("b", length=0.3, mass=0.3),
+            m.point_mass("s", 1.0),
+        )
         m.revolute("O", m.ground, a)
         joint = m.revolute("A", a.tip, b)
         m.revolute("B", b.tip, s)
@@ -364,13 +485,19 @@ def test_whether_an_expression_tells_turns_apart(see, tells):
     if not tells:
         f = ca.Function("f", [x, y], [see(x, y)])
         for at, other in np.random.default_rng(0).uniform(-4, 4, (50, 2)):
-            assert float(f(at + 3 * math.tau, other)) == pytest.approx(float(f(at, other)), rel=1e-9, abs=1e-9)
+            assert float(f(at + 3 * math.tau, other)) == pytest.approx(
+                float(f(at, other)), rel=1e-9, abs=1e-9
+            )
 
 
 def led(span):
     """Two slides lead a pin round the pivot of a slotted link: it goes round, and no drive does."""
     m = Mechanism("led")
-    carriage, pin, b = m.link("carriage", length=0.1, mass=1.0), m.point_mass("pin", 1.0), m.link("b", length=0.6, mass=0.5)
+    carriage, pin, b = (
+        m.link("carriage", length=0.1, mass=1.0),
+        m.point_mass("pin", 1.0),
+        m.link("b", length=0.6, mass=0.5),
+    )
     m.prismatic("X", m.ground, carriage, axis=(1, 0))
     m.prismatic("Y", carriage, pin, axis=(0, 1))
     m.revolute("Q", m.ground, b)
@@ -385,12 +512,19 @@ def test_an_angle_whose_turns_nothing_tells_is_refused():
     solution = evaluate(led(0.7))
     assert solution.motion("Q").value[-1] == pytest.approx(0.7 * math.tau)
     np.testing.assert_allclose(
-        solution.series["load:coil_Q:mz"], -STIFFNESS * (0.7 * math.tau * np.linspace(0, 1, 65) - FREE) - DAMPING * math.tau
+        solution.series["load:coil_Q:mz"],
+        -STIFFNESS * (0.7 * math.tau * np.linspace(0, 1, 65) - FREE) - DAMPING * math.tau,
     )
-    with pytest.raises(AssemblyError, match=r"the angle of 'Q', which a load sees with its turns, swings -?1\d\d deg"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"the angle of 'Q', which a load sees with its turns, swings -?1\d\d deg",
+    ):
         evaluate(led(0.7), t=(0.0, 2.0, 201))
     with pytest.raises(
-        DeclarationError, match="load 'coil_Q': the angle of 'Q' is seen with its turns, but how many it makes does not"
+        DeclarationError,
+        match=(
+            "load 'coil_Q': the angle of 'Q' is seen with its turns, but how many it makes does not"
+        ),
     ):
         evaluate(led(1.5))
     evaluate(led(1.5), wanted=["motion"])

@@ -42,7 +42,24 @@ def test_units_are_read(text, factor, powers):
     assert {name: n for name, n in zip(BASE, unit.exponents, strict=True) if n} == powers
 
 
-@pytest.mark.parametrize("text", ["", "furlong", "N/m s", "degC", "m^", "m^0.5", "2 m", "m/", "/s", "kkg", "N-m", "(m)", "m^1^2"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "furlong",
+        "N/m s",
+        "degC",
+        "m^",
+        "m^0.5",
+        "2 m",
+        "m/",
+        "/s",
+        "kkg",
+        "N-m",
+        "(m)",
+        "m^1^2",
+    ],
+)
 def test_what_is_not_known_is_left_alone(text):
     assert base_unit(text) is None
 

@@ -1,4 +1,6 @@
-"""Files that HDF5 and JSON find valid, and no run or sweep ever wrote: one line each, whatever they hold."""
+"""Files that HDF5 and JSON find valid, and no run or sweep ever wrote: one line each, whatever they
+hold.
+"""
 
 import hashlib
 import itertools
@@ -30,7 +32,17 @@ SOME, MANY = 15, 2000
 """Forgeries of each kind that the ordinary lane tries, and the long one."""
 
 WORDS = ("", "x", "3", "null", "[]", "{}", '{"a": 1}', "[" * 100_000, "1" * 5000, "\N{SNOWMAN}")
-VALUES = (*WORDS, 3, -1.5, np.nan, np.arange(3), np.array(["a", "b"], object), b"\xff\xfe", h5py.Empty("f8"), np.uint8(1))
+VALUES = (
+    *WORDS,
+    3,
+    -1.5,
+    np.nan,
+    np.arange(3),
+    np.array(["a", "b"], object),
+    b"\xff\xfe",
+    h5py.Empty("f8"),
+    np.uint8(1),
+)
 NODES = (None, True, 3, -1, 10**400, 0.5, float("nan"), "", "x", [], [None], {}, {"x": None})
 
 
@@ -52,7 +64,9 @@ def replaced(tree):
 
 
 def attributes(path):
-    """Every attribute of a file gone or something else, and what is JSON with every node of it so."""
+    """Every attribute of a file gone or something else, and what is JSON with
+    every node of it so.
+    """
     with h5py.File(path) as file:
         places = ["/"]
         file.visit(places.append)
@@ -60,14 +74,23 @@ def attributes(path):
             for name in file[place].attrs:
                 if name in ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"):
                     continue
-                yield f"{place} {name} gone", lambda h, place=place, name=name: h[place].attrs.__delitem__(name)
+                yield (
+                    f"{place} {name} gone",
+                    lambda h, place=place, name=name: h[place].attrs.__delitem__(name),
+                )
                 for value in VALUES:
-                    yield f"{place} {name} {value!r:.40}", lambda h, p=place, n=name, v=value: h[p].attrs.__setitem__(n, v)
+                    yield (
+                        f"{place} {name} {value!r:.40}",
+                        lambda h, p=place, n=name, v=value: h[p].attrs.__setitem__(n, v),
+                    )
                 told = file[place].attrs[name]
                 if isinstance(told, str) and told[:1] in ("{", "["):
                     for tree in replaced(json.loads(told)):
                         text = json.dumps(tree)
-                        yield f"{place} {name} {text:.40}", lambda h, p=place, n=name, v=text: h[p].attrs.__setitem__(n, v)
+                        yield (
+                            f"{place} {name} {text:.40}",
+                            lambda h, p=place, n=name, v=text: h[p].attrs.__setitem__(n, v),
+                        )
 
 
 def put(h, place, **keywords):
@@ -86,7 +109,9 @@ def elsewhere(h, place, link):
 
 
 def others(shape, fifo):
-    """What may stand in a dataset's place: other shapes and types, none of the data, or data that are elsewhere."""
+    """What may stand in a dataset's place: other shapes and types, none of the data, or data that
+    are elsewhere.
+    """
     layout = h5py.VirtualLayout(shape, float)
     layout[...] = h5py.VirtualSource(str(fifo), "x", shape)
 
@@ -98,14 +123,27 @@ def others(shape, fifo):
     yield "a group", lambda h, place: (h.__delitem__(place), h.create_group(place))
     yield "a soft link", lambda h, place: elsewhere(h, place, h5py.SoftLink("/nowhere"))
     yield "a link to itself", lambda h, place: elsewhere(h, place, h5py.SoftLink(f"/{place}"))
-    yield "a link to a pipe", lambda h, place: elsewhere(h, place, h5py.ExternalLink(str(fifo), "/x"))
+    yield (
+        "a link to a pipe",
+        lambda h, place: elsewhere(h, place, h5py.ExternalLink(str(fifo), "/x")),
+    )
     yield "virtual", virtual
     yield (
         "in a pipe",
-        lambda h, place: put(h, place, shape=shape, dtype=float, external=[(str(fifo), 0, 8 * max(shape, default=1))]),
+        lambda h, place: put(
+            h, place, shape=shape, dtype=float, external=[(str(fifo), 0, 8 * max(shape, default=1))]
+        ),
     )
-    yield "not there", lambda h, place: put(h, place, shape=shape, dtype=float, chunks=shape or None)
-    yield "enormous", lambda h, place: put(h, place, shape=(1 << 40,) * max(len(shape), 1), dtype=float, chunks=(1,) * len(shape))
+    yield (
+        "not there",
+        lambda h, place: put(h, place, shape=shape, dtype=float, chunks=shape or None),
+    )
+    yield (
+        "enormous",
+        lambda h, place: put(
+            h, place, shape=(1 << 40,) * max(len(shape), 1), dtype=float, chunks=(1,) * len(shape)
+        ),
+    )
     kinds = {
         "a number": 1.0,
         "nothing": h5py.Empty("f8"),
@@ -130,7 +168,11 @@ def datasets(path, fifo):
     """Every dataset of a file something else."""
     with h5py.File(path) as file:
         found = {}
-        file.visititems(lambda place, item: found.update({place: item.shape}) if isinstance(item, h5py.Dataset) else None)
+        file.visititems(
+            lambda place, item: (
+                found.update({place: item.shape}) if isinstance(item, h5py.Dataset) else None
+            )
+        )
     for place, shape in found.items():
         for word, change in others(shape, fifo):
             yield f"{place} {word}", lambda h, change=change, place=place: change(h, place)
@@ -168,7 +210,9 @@ def attempt(path, change, readers):
 
 
 def commanded(*arguments):
-    """A command of the command line, which turns errors of ours into a status; anything else is raised."""
+    """A command of the command line, which turns errors of ours into a status; anything else is
+    raised.
+    """
     return lambda path: main([str(path) if word == "FILE" else word for word in arguments])
 
 
@@ -182,7 +226,13 @@ def fifo(tmp_path_factory):
 
 @pytest.fixture
 def run(slider_crank, here):
-    solution = evaluate(slider_crank.scene, t=(0, 0.08, 5), xi=(0, 1, 3), wanted=("effort", "section:rod", "motion"), backend="vm")
+    solution = evaluate(
+        slider_crank.scene,
+        t=(0, 0.08, 5),
+        xi=(0, 1, 3),
+        wanted=("effort", "section:rod", "motion"),
+        backend="vm",
+    )
     save(solution, here / "x.h5", dump_specs([TimePlot("effort", ("effort:O",))]))
     return here / "x.h5"
 
@@ -191,7 +241,11 @@ def run(slider_crank, here):
 def swept(request, monkeypatch, here):
     sweeps.use(monkeypatch)
     rows = np.array([[0.1, 0.2], [0.15, 0.3], [0.2, 0.25]])
-    designs = {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]} if request.param == "grid" else Listed(("l", "r"), rows)
+    designs = (
+        {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]}
+        if request.param == "grid"
+        else Listed(("l", "r"), rows)
+    )
     return sweep(sweeps.scene(), designs, out=here / "x.h5", xi=(0, 1, 3), keep="histories").path
 
 
@@ -200,7 +254,9 @@ def all_of(path):
     found = Sweep.open(path)
     for name in (*found.columns, *found.parameters, "t", "xi"):
         assert found[name].size
-    for _ in found.blocks([*found.parameters, *(name for name, kept in found.columns.items() if not kept.axes)]):
+    for _ in found.blocks(
+        [*found.parameters, *(name for name, kept in found.columns.items() if not kept.axes)]
+    ):
         pass
     repr(found)
     found.counts()
@@ -216,7 +272,9 @@ SWEEP = (
     commanded("info", "FILE"),
     commanded("check", "FILE"),
     commanded("table", "FILE", "--csv", "x.csv"),
-    commanded("best", "FILE", "--minimise", "peak:effort:O", "--maximise", "peak:section:rod:shear"),
+    commanded(
+        "best", "FILE", "--minimise", "peak:effort:O", "--maximise", "peak:section:rod:shear"
+    ),
 )
 DRAWN = commanded("plot", "FILE", "--out", "figures")
 
@@ -332,26 +390,34 @@ def test_a_forged_plan_is_one_line(here, capsys):
                 assert capsys.readouterr().err.count("\n") <= 1, text
         for text in (*WORDS, '{"grid": 3}'):
             (folder.path / "plan.json").write_text(text)
-            with pytest.raises(StoreError, match=r"plan\.json: damaged: .*; start anew with force=True$"):
+            with pytest.raises(
+                StoreError, match=r"plan\.json: damaged: .*; start anew with force=True$"
+            ):
                 progress(folder)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_forged_part_is_done_again(monkeypatch, here, long):
-    """Whatever the head of a part says, with a digest that fits, the file is the one that there would have been."""
+    """Whatever the head of a part says, with a digest that fits, the file is the one that there
+    would have been.
+    """
     sweeps.use(monkeypatch)
     grid = {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]}
     whole = sweep(sweeps.scene(), grid, out=here / "whole.h5").path.read_bytes()
     identity, folder = dict(Sweep.open(here / "whole.h5").identity), Folder(here / "x.h5")
     head = {"start": 0, "stop": 6, "columns": {"status": [6, 0]}}
-    names = itertools.cycle(["000000000000-000000000006", "000000000000-000000000003", "000000000002-000000000006"])
+    names = itertools.cycle(
+        ["000000000000-000000000006", "000000000000-000000000003", "000000000002-000000000006"]
+    )
     forged = chosen(map(json.dumps, replaced(head)), long)
     for text in [*WORDS, *map(json.dumps, [head, {**head, "stop": 10**30}, identity]), *forged]:
         digest = hashlib.sha256(text.encode()).hexdigest()
         with folder.locked():
             folder.begin(identity)
-            (folder.path / f"{next(names)}.part").write_bytes(f"{text}\n{digest}\n".encode() + b"status")
+            (folder.path / f"{next(names)}.part").write_bytes(
+                f"{text}\n{digest}\n".encode() + b"status"
+            )
         assert folder.done() in (0, 3, 4, 6)
         assert all("\n" not in flaw for flaw in folder.flaws())
         found = sweep(sweeps.scene(), grid, out=folder.target, resume=True)

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 import strong
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, load, save, vibration
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    evaluate,
+    load,
+    save,
+    vibration,
+)
 from lagrange_casadi.elastic.bending_modes import closed
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
@@ -21,17 +30,30 @@ def shaken(rate, count=65):
     m = Mechanism("shaken")
     m.set_gravity(0.0, 0.0)
     frame = m.link("frame", length=1.0, mass=1.0)
-    bar, foot = m.link("bar", length=1.0, beam=beams.Beam(SHAPE, strong.STEEL)), m.point_mass("foot", 0.0)
+    bar, foot = (
+        m.link("bar", length=1.0, beam=beams.Beam(SHAPE, strong.STEEL)),
+        m.point_mass("foot", 0.0),
+    )
     m.prismatic("up", m.ground, frame, axis=(0, 1), angle=0)
     m.revolute("A", frame, bar)
     m.prismatic("slide", frame.tip, foot, axis=(1, 0))
     m.revolute("B", bar.tip, foot)
-    return Scene(m, {"up": harmonic(0.0, 1e-3, rate)}, posture={"bar": 0.0, "slide": 0.0}, t=(0, 1 / rate, count))
+    return Scene(
+        m,
+        {"up": harmonic(0.0, 1e-3, rate)},
+        posture={"bar": 0.0, "slide": 0.0},
+        t=(0, 1 / rate, count),
+    )
 
 
 def natural():
     p = SHAPE.properties()
-    return closed(strong.STEEL.elasticity * p.iz, strong.STEEL.density * p.area, 1.0, ("pinned", "pinned")) / math.tau
+    return (
+        closed(
+            strong.STEEL.elasticity * p.iz, strong.STEEL.density * p.area, 1.0, ("pinned", "pinned")
+        )
+        / math.tau
+    )
 
 
 @pytest.mark.sampled(2)
@@ -51,8 +73,13 @@ def test_a_bar_shaken_by_a_sine(part):
 
 
 def test_a_result_says_that_rigid_links_are_not_enough(tmp_path):
-    """In its notes, which commands and pages show, where its deflection is wanted; a file that is read again says so too."""
-    slow, fast = (evaluate(shaken(part * natural()), wanted=["deflection:bar"], certificate=False) for part in (0.05, 0.8))
+    """In its notes, which commands and pages show, where its deflection is wanted; a file that is
+    read again says so too.
+    """
+    slow, fast = (
+        evaluate(shaken(part * natural()), wanted=["deflection:bar"], certificate=False)
+        for part in (0.05, 0.8)
+    )
     assert slow.notes == ()
     (note,) = fast.notes
     assert note == f"link 'bar': {vibration(fast, 'bar').words}"
@@ -76,7 +103,10 @@ def test_what_is_no_cycle_is_told():
     assert half.excess is None
     assert half.enough is None
     assert "does not end as it began" in half.words
-    assert "so few instants" in vibration(evaluate(scene, t=(0, 0.1, 3), certificate=False), "bar").words
+    assert (
+        "so few instants"
+        in vibration(evaluate(scene, t=(0, 0.1, 3), certificate=False), "bar").words
+    )
 
 
 def test_uneven_instants_are_told():
@@ -93,25 +123,39 @@ def test_joints_tell_how_ends_are_held():
     arms = evaluate(strong.arms(), certificate=False)
     assert vibration(arms, "upper").ends == ("clamped", "guided")
     assert vibration(arms, "plate").ends == ("clamped", "free")
-    assert vibration(arms, "plate", ("clamped", "clamped")).frequency > vibration(arms, "plate").frequency
+    assert (
+        vibration(arms, "plate", ("clamped", "clamped")).frequency
+        > vibration(arms, "plate").frequency
+    )
 
 
 def test_in_space_the_softer_plane_counts():
     m = SpatialMechanism("arm")
     arm = m.link("arm", length=0.8, beam=beams.Beam(beams.rectangle(0.03, 0.01), strong.STEEL))
     m.revolute("O", m.ground, arm, axis=(0, 0, 1))
-    found = vibration(evaluate(Scene(m, {"O": harmonic(0.0, 1.0, 5.0)}, t=(0, 0.2, 65)), certificate=False), "arm")
+    found = vibration(
+        evaluate(Scene(m, {"O": harmonic(0.0, 1.0, 5.0)}, t=(0, 0.2, 65)), certificate=False), "arm"
+    )
     p = beams.rectangle(0.03, 0.01).properties()
-    soft = closed(strong.STEEL.elasticity * p.iy, strong.STEEL.density * p.area, 0.8, ("clamped", "free")) / math.tau
+    soft = (
+        closed(
+            strong.STEEL.elasticity * p.iy, strong.STEEL.density * p.area, 0.8, ("clamped", "free")
+        )
+        / math.tau
+    )
     assert found.ends == ("clamped", "free")
     assert found.frequency == pytest.approx(soft, rel=1e-6)
-    # It is swung in its stiff plane, and its weight at rest bends the soft one: off by a few per cent of what the stiff one says.
+    # It is swung in its stiff plane, and its weight at rest bends the soft one: off by a few per
+    # cent of what the stiff one says.
     assert 0.0 < found.excess < 0.05
     assert np.isfinite(found.excess)
 
 
 def test_other_words_are_refused():
-    with pytest.raises(DeclarationError, match="expected how base and tip are held, two of pinned, clamped, free, guided"):
+    with pytest.raises(
+        DeclarationError,
+        match="expected how base and tip are held, two of pinned, clamped, free, guided",
+    ):
         vibration(evaluate(strong.press(SHAPE), certificate=False), "rod", ("pinned", "loose"))
 
 
@@ -124,6 +168,11 @@ def test_a_link_without_mass_has_no_frequency_and_swings_nowhere(kind):
     scene = Scene(m, {"O": harmonic(0.0, 1.0, 5.0)}, t=(0, 0.2, 65), wanted=("deflection",))
     solution = evaluate(scene, certificate=False)
     found = vibration(solution, "arm")
-    assert (found.frequency, found.lower, found.excess, found.enough) == (math.inf, math.inf, 0.0, True)
+    assert (found.frequency, found.lower, found.excess, found.enough) == (
+        math.inf,
+        math.inf,
+        0.0,
+        True,
+    )
     assert found.words == "no bending frequency of its own, for it has no mass"
     assert solution.notes == ()

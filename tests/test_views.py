@@ -33,9 +33,15 @@ def test_up_is_against_gravity(gravity, up):
 
 
 @settings(deadline=None)
-@given(azimuth=ANGLES, elevation=ANGLES, gravity=st.sampled_from([(0, 0, -1), (0, -1, 0), (-1, 0, 0), (0, 0, 1)]))
+@given(
+    azimuth=ANGLES,
+    elevation=ANGLES,
+    gravity=st.sampled_from([(0, 0, -1), (0, -1, 0), (-1, 0, 0), (0, 0, 1)]),
+)
 def test_a_view_is_from_where_it_says(azimuth, elevation, gravity):
-    """Whoever looks sees the direction from which he does as a point, and lengths across it as they are."""
+    """Whoever looks sees the direction from which he does as a point, and lengths across it as they
+    are.
+    """
     axes = upright(gravity)
     a, e = math.radians(azimuth), math.radians(elevation)
     toward = math.cos(e) * (math.cos(a) * axes[0] + math.sin(a) * axes[1]) + math.sin(e) * axes[2]
@@ -49,24 +55,39 @@ def test_a_view_is_from_where_it_says(azimuth, elevation, gravity):
 def test_views_along_axes_have_their_coordinates_to_the_last_digit():
     seen = [one.coordinates for one in views((0, 0, -9.81), -60, 25)]
     assert seen == [("x", "y"), None, ("x", "z"), ("y", "z")]
-    assert [one.coordinates for one in views((0, -9.81, 0), -60, 25)] == [("x", "-z"), None, ("x", "y"), ("-z", "y")]
+    assert [one.coordinates for one in views((0, -9.81, 0), -60, 25)] == [
+        ("x", "-z"),
+        None,
+        ("x", "y"),
+        ("-z", "y"),
+    ]
     point = np.array([0.1, 0.2, 0.3])
     np.testing.assert_array_equal(views((0, -9.81, 0), -60, 25)[3].on_page(point), [-0.3, 0.2])
 
 
 def test_titles_say_from_where():
     titles = [one.title for one in views((0, -9.81, 0), 30, -10)]
-    assert titles == ["from above (+y)", "azimuth 30°, elevation -10°, y up", "from the front (+z)", "from the right (+x)"]
+    assert titles == [
+        "from above (+y)",
+        "azimuth 30°, elevation -10°, y up",
+        "from the front (+z)",
+        "from the right (+x)",
+    ]
 
 
 @settings(deadline=None)
-@given(seed=st.integers(0, 10**6), flat=st.sampled_from([(1, 1, 1), (1, 1e-3, 1), (1e3, 1, 1), (1, 1, 0), (0, 0, 1)]))
+@given(
+    seed=st.integers(0, 10**6),
+    flat=st.sampled_from([(1, 1, 1), (1, 1e-3, 1), (1e3, 1, 1), (1, 1, 0), (0, 0, 1)]),
+)
 def test_a_page_has_one_scale_and_holds_all(seed, flat):
     points = np.random.default_rng(seed).normal(size=(9, 3)) * flat
     size = np.ptp(points, axis=0).max()
     four = views((0, 0, -9.81), -60, 25)
     sheet = page(four, points, (0.1 * size,) * 4, 0.3, 0.4)
-    for one, (left, bottom, wide, high), (x0, x1, y0, y1) in zip(four, sheet.places, sheet.boxes, strict=True):
+    for one, (left, bottom, wide, high), (x0, x1, y0, y1) in zip(
+        four, sheet.places, sheet.boxes, strict=True
+    ):
         assert wide / (x1 - x0) == pytest.approx(sheet.scale, rel=1e-9)
         assert high / (y1 - y0) == pytest.approx(sheet.scale, rel=1e-9)
         assert 0.0 < left < left + wide < sheet.size[0]

@@ -1,4 +1,6 @@
-"""Sensitivities wanted as other outputs are: beside those that are made backwards, in files, as tables, and what is refused."""
+"""Sensitivities wanted as other outputs are: beside those that are made backwards, in files, as
+tables, and what is refused.
+"""
 
 import math
 import re
@@ -28,9 +30,15 @@ SHORT = (0.001, 0.08, 7)
 
 
 def two_drives():
-    """One drive by samples that are numbers, one by a law; a beam of any taper, with a load along it and one at a station."""
+    """One drive by samples that are numbers, one by a law; a beam of any taper, with a load along
+    it and one at a station.
+    """
     m = Mechanism("drives")
-    l, taper, swing = m.parameter("l", 1.2, "m"), m.parameter("taper", -2.0, "kg/m"), m.parameter("swing", 0.6, "rad")
+    l, taper, swing = (
+        m.parameter("l", 1.2, "m"),
+        m.parameter("taper", -2.0, "kg/m"),
+        m.parameter("swing", 0.6, "rad"),
+    )
     place = m.parameter("place", 0.7, "m")
     beam = m.link("beam", length=l, density=density(5.0, taper))
     arm = m.link("arm", length=0.4, mass=1.0)
@@ -63,10 +71,15 @@ def test_they_are_those_made_backwards(make, asked):
     changes = sensitivities(scene, solution, backend="vm")
     for parameter, of in scene.mechanism.parameters.items():
         for name in solution.names():
-            found, exact = solution.sensitivities.array(name, parameter), changes.array(name, parameter)
+            found, exact = (
+                solution.sensitivities.array(name, parameter),
+                changes.array(name, parameter),
+            )
             assert found.shape == solution.array(name).shape
             size = np.abs(exact).max() + np.abs(solution.array(name)).max() / abs(of.default)
-            np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12 * size + 1e-15, err_msg=f"{name} by {parameter}")
+            np.testing.assert_allclose(
+                found, exact, rtol=0, atol=1e-12 * size + 1e-15, err_msg=f"{name} by {parameter}"
+            )
 
 
 def test_few_rows_are_made_backwards():
@@ -79,12 +92,16 @@ def test_few_rows_are_made_backwards():
     assert backwards.n_instructions() < 0.6 * singles
     given = [0.01, *graph.motion(0.01, (values := [0.1, 0.2, 0.1, 0.1, 0.1])), [], values]
     place = [*graph.outputs.values()].index(row[0])
-    np.testing.assert_allclose(backwards(*given).full()[:, 0], forward(*given).full()[:, place], rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(
+        backwards(*given).full()[:, 0], forward(*given).full()[:, place], rtol=1e-13, atol=1e-15
+    )
 
 
 @pytest.fixture(scope="module")
 def solution():
-    return evaluate(slider_crank(), wanted=["effort", "section:rod", "sensitivity"], t=SHORT, xi=(0, 1, 5))
+    return evaluate(
+        slider_crank(), wanted=["effort", "section:rod", "sensitivity"], t=SHORT, xi=(0, 1, 5)
+    )
 
 
 def test_a_file_has_them(tmp_path, capsys, solution):
@@ -94,7 +111,12 @@ def test_a_file_has_them(tmp_path, capsys, solution):
     assert check(file) == []
     again = load(file)
     assert again.sensitivities.parameters == ("r", "l", "m1", "m2", "m3")
-    assert again.sensitivities.quantities == ("effort:O", "section:rod:axial", "section:rod:shear", "section:rod:bending")
+    assert again.sensitivities.quantities == (
+        "effort:O",
+        "section:rod:axial",
+        "section:rod:shear",
+        "section:rod:bending",
+    )
     for found, told in zip(derivatives(solution), derivatives(again), strict=True):
         np.testing.assert_array_equal(found.values, told.values)
         assert (found.name, found.unit) == (told.name, told.unit)
@@ -126,22 +148,37 @@ def test_what_is_not_wanted_costs_nothing(tmp_path, solution):
 def test_some_parameters(tmp_path, solution):
     one = evaluate(slider_crank(), wanted=["effort", "sensitivity:l"], t=SHORT)
     assert one.sensitivities.parameters == ("l",)
-    np.testing.assert_allclose(one.sensitivities.array("effort:O", "l"), solution.sensitivities.array("effort:O", "l"), rtol=1e-12)
+    np.testing.assert_allclose(
+        one.sensitivities.array("effort:O", "l"),
+        solution.sensitivities.array("effort:O", "l"),
+        rtol=1e-12,
+    )
     part = one.during(slice(2, 4))
-    np.testing.assert_array_equal(part.sensitivities.array("effort:O", "l"), one.sensitivities.array("effort:O", "l")[2:4])
+    np.testing.assert_array_equal(
+        part.sensitivities.array("effort:O", "l"), one.sensitivities.array("effort:O", "l")[2:4]
+    )
     save(one, tmp_path / "one.h5")
     assert load(tmp_path / "one.h5").sensitivities.parameters == ("l",)
-    with pytest.raises(UnknownNameError, match="unknown parameter with sensitivities 'r'; valid: l"):
+    with pytest.raises(
+        UnknownNameError, match="unknown parameter with sensitivities 'r'; valid: l"
+    ):
         one.sensitivities.array("effort:O", "r")
-    with pytest.raises(UnknownNameError, match="unknown quantity with sensitivities 'reaction:O:fx'; valid: effort:O"):
+    with pytest.raises(
+        UnknownNameError,
+        match="unknown quantity with sensitivities 'reaction:O:fx'; valid: effort:O",
+    ):
         one.sensitivities.array("reaction:O:fx", "l")
 
 
 def test_tables_have_them(solution):
     frame = solution.to_pandas()
-    np.testing.assert_array_equal(frame["sensitivity:m3:effort:O [N m/kg]"], solution.sensitivities.array("effort:O", "m3"))
+    np.testing.assert_array_equal(
+        frame["sensitivity:m3:effort:O [N m/kg]"], solution.sensitivities.array("effort:O", "m3")
+    )
     column = frame["sensitivity:l:section:rod:shear xi/l=0.25 [N/m]"]
-    np.testing.assert_array_equal(column, solution.sensitivities.array("section:rod:shear", "l")[:, 1])
+    np.testing.assert_array_equal(
+        column, solution.sensitivities.array("section:rod:shear", "l")[:, 1]
+    )
     data = solution.to_xarray()["sensitivity:r:section:rod:axial"]
     assert data.dims == ("t", "xi")
     assert data.attrs["units"] == "N/m"
@@ -153,7 +190,9 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
     assert main([*asked, "--want", "effort,sensitivity:r", "--csv", "a.csv"]) == 0
     told = capsys.readouterr().out
     assert re.search(r"how peaks change.*\n +r \[m\]\n  effort:O +212\.\d+\n", told)
-    assert re.search(r"how means over time change.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told)
+    assert re.search(
+        r"how means over time change.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told
+    )
     assert load("a.h5").sensitivities.parameters == ("r",)
     assert "sensitivity:r:effort:O [N m/m]" in (tmp_path / "a.csv").read_text().splitlines()[0]
     capsys.readouterr()
@@ -164,10 +203,22 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda h: h["sensitivity/l"].__delitem__("effort"), "the sensitivities are not those of all quantities"),
-        (lambda h: h["sensitivity"].move("l", "length"), "there are sensitivities by what is no parameter"),
-        (lambda h: h["sensitivity/l"].__setitem__("more", [1.0]), "the sensitivities are not those of all quantities"),
-        (lambda h: h["sensitivity/l"].move("effort", "efforts"), "the sensitivities are not those of all quantities"),
+        (
+            lambda h: h["sensitivity/l"].__delitem__("effort"),
+            "the sensitivities are not those of all quantities",
+        ),
+        (
+            lambda h: h["sensitivity"].move("l", "length"),
+            "there are sensitivities by what is no parameter",
+        ),
+        (
+            lambda h: h["sensitivity/l"].__setitem__("more", [1.0]),
+            "the sensitivities are not those of all quantities",
+        ),
+        (
+            lambda h: h["sensitivity/l"].move("effort", "efforts"),
+            "the sensitivities are not those of all quantities",
+        ),
     ],
 )
 def test_a_damaged_file_is_refused(tmp_path, solution, change, says):
@@ -192,7 +243,9 @@ def test_check_looks_at_them(tmp_path, solution):
 
 
 def test_a_derivative_that_is_none_is_told(tmp_path):
-    """The root of an angle that begins at nothing grows without bound there, and so does its derivative by the swing."""
+    """The root of an angle that begins at nothing grows without bound there, and so does its
+    derivative by the swing.
+    """
     m = Mechanism("root")
     arm = m.link("arm", length=1.0, mass=1.0)
     swing = m.parameter("swing", 0.5, "rad")
@@ -204,9 +257,13 @@ def test_a_derivative_that_is_none_is_told(tmp_path):
     slopes = solution.sensitivities.array("effort:O", "swing")
     assert not np.isfinite(slopes[0])
     assert np.isfinite(slopes[1:]).all()
-    assert solution.notes == ("the derivative of effort:O by swing is no number at 1 of 6 instants",)
+    assert solution.notes == (
+        "the derivative of effort:O by swing is no number at 1 of 6 instants",
+    )
     save(solution, tmp_path / "a.h5")
-    assert check(tmp_path / "a.h5") == ["sensitivity/swing/effort/O: holds values that are not finite"]
+    assert check(tmp_path / "a.h5") == [
+        "sensitivity/swing/effort/O: holds values that are not finite"
+    ]
 
 
 def test_names():

@@ -1,4 +1,6 @@
-"""What is of another kind than was expected is told in one line that says what was, whatever function it is given to."""
+"""What is of another kind than was expected is told in one line that says what was, whatever
+function it is given to.
+"""
 
 import os
 
@@ -69,14 +71,29 @@ WRONG = {
     ),
     "derive": (lambda s: derive("swing"), "compile_scene: scene: expected a Scene, got 'swing'"),
     "refine": (lambda s: refine(s, None), "refine: solution: expected a Solution, got None"),
-    "tool_deflection": (lambda s: tool_deflection(None, "arm"), "tool_deflection: scene: expected a Scene, got None"),
+    "tool_deflection": (
+        lambda s: tool_deflection(None, "arm"),
+        "tool_deflection: scene: expected a Scene, got None",
+    ),
     "shaking": (lambda s: shaking("m"), "shaking: expected a Mechanism, got 'm'"),
-    "about": (lambda s: shaking(s.mechanism, about=1.0), "shaking: expected a place (x, y) for about, got 1.0"),
-    "strength": (lambda s: strength.safety(None, "arm"), "safety: solution: expected a Solution, got None"),
+    "about": (
+        lambda s: shaking(s.mechanism, about=1.0),
+        "shaking: expected a place (x, y) for about, got 1.0",
+    ),
+    "strength": (
+        lambda s: strength.safety(None, "arm"),
+        "safety: solution: expected a Solution, got None",
+    ),
     "vibration": (lambda s: vibration(s, "arm"), "vibration: solution: expected a Solution, got"),
-    "best": (lambda s: best("sweep.h5", minimise="l"), "best: sweep: expected a Sweep, got 'sweep.h5'"),
+    "best": (
+        lambda s: best("sweep.h5", minimise="l"),
+        "best: sweep: expected a Sweep, got 'sweep.h5'",
+    ),
     "gears": (lambda s: elements.gears("pair", 1, 2, 3), "gears: mechanism: expected a Mechanism"),
-    "plate": (lambda s: elements.plate("p", "p", []), "plate 'p': mechanism: expected a Mechanism, got 'p'"),
+    "plate": (
+        lambda s: elements.plate("p", "p", []),
+        "plate 'p': mechanism: expected a Mechanism, got 'p'",
+    ),
     "fit": (lambda s: bearings.fit("O", None), "fit: expected a Mechanism first, got 'O'"),
     "load": (lambda s: load(True), "path: expected a path, got True"),
     "check": (lambda s: check(None), "path: expected a path, got None"),
@@ -84,38 +101,101 @@ WRONG = {
     "read_designs": (lambda s: read_designs(3), "read_designs: path: expected a path, got 3"),
     "read_samples": (lambda s: motion.read_samples(3), "path: expected a path, got 3"),
     "export": (lambda s: export(s, None), "export: out: expected a path, got None"),
-    "parameters": (lambda s: s.mechanism.values([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
-    "a sweep's": (lambda s: sweep(s, ONE, parameters=3), "parameters: expected values by name, as {'l': 0.25}, got 3"),
-    "a search's": (lambda s: optimise(s, minimise="l", over=ONE, parameters=3), "parameters: expected values by name"),
-    "limits": (lambda s: optimise(s, minimise="l", over=ONE, subject_to=3), "subject_to: expected a list of texts, got 3"),
-    "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number from 1 to 16777216"),
-    "sine": (lambda s: optimise(s, minimise="l", over=ONE, transmission="x"), "transmission: expected a number, got 'x'"),
-    "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
-    "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),
+    "parameters": (
+        lambda s: s.mechanism.values([0.3]),
+        "expected values by name, as {'l': 0.25}, got [0.3]",
+    ),
+    "a sweep's": (
+        lambda s: sweep(s, ONE, parameters=3),
+        "parameters: expected values by name, as {'l': 0.25}, got 3",
+    ),
+    "a search's": (
+        lambda s: optimise(s, minimise="l", over=ONE, parameters=3),
+        "parameters: expected values by name",
+    ),
+    "limits": (
+        lambda s: optimise(s, minimise="l", over=ONE, subject_to=3),
+        "subject_to: expected a list of texts, got 3",
+    ),
+    "starts": (
+        lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]),
+        "starts: expected a whole number from 1 to 16777216",
+    ),
+    "sine": (
+        lambda s: optimise(s, minimise="l", over=ONE, transmission="x"),
+        "transmission: expected a number, got 'x'",
+    ),
+    "wanted": (
+        lambda s: derive(s, 3.0),
+        "wanted: expected a list of output names, got 3.0; valid: all, effort",
+    ),
+    "a sweep's wanted": (
+        lambda s: sweep(s, ONE, wanted=3),
+        "wanted: expected a list of output names, got 3; valid: all",
+    ),
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
     "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
-    "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
-    "prepared numbers": (lambda s: prepare(s, backend="vm")(0.3, 0.2), "expected values by name, as {'l': 0.25}, got 0.3"),
-    "a scene's": (lambda s: Scene(), "Scene: missing a required argument: 'mechanism'; it takes mechanism, motion, wanted"),
-    "opened twice": (lambda s: Sweep.open("x.h5", "y.h5"), "open: too many positional arguments; it takes path"),
+    "prepared": (
+        lambda s: prepare(s, backend="vm")([0.3]),
+        "expected values by name, as {'l': 0.25}, got [0.3]",
+    ),
+    "prepared numbers": (
+        lambda s: prepare(s, backend="vm")(0.3, 0.2),
+        "expected values by name, as {'l': 0.25}, got 0.3",
+    ),
+    "a scene's": (
+        lambda s: Scene(),
+        "Scene: missing a required argument: 'mechanism'; it takes mechanism, motion, wanted",
+    ),
+    "opened twice": (
+        lambda s: Sweep.open("x.h5", "y.h5"),
+        "open: too many positional arguments; it takes path",
+    ),
     "default": (
         lambda s: Mechanism("m").parameter("l", "long", "m"),
         "parameter 'l': expected a number [m], or a text such as '100 mm', got 'long'",
     ),
-    "low": (lambda s: Mechanism("m").parameter("l", 1.0, low=None), "parameter 'l': low: expected a number or a text, got None"),
-    "huge": (lambda s: Mechanism("m").point_mass("p", 10**400), "must be a number or an expression in parameters, got 1000"),
-    "stiffness": (lambda s: sprung(stiffness=float("nan")), "load 'spring' must be finite, got nan"),
-    "damping": (lambda s: sprung(damping="much"), "load 'spring' must be a number or an expression"),
+    "low": (
+        lambda s: Mechanism("m").parameter("l", 1.0, low=None),
+        "parameter 'l': low: expected a number or a text, got None",
+    ),
+    "huge": (
+        lambda s: Mechanism("m").point_mass("p", 10**400),
+        "must be a number or an expression in parameters, got 1000",
+    ),
+    "stiffness": (
+        lambda s: sprung(stiffness=float("nan")),
+        "load 'spring' must be finite, got nan",
+    ),
+    "damping": (
+        lambda s: sprung(damping="much"),
+        "load 'spring' must be a number or an expression",
+    ),
     "a place": (
         lambda s: SpatialMechanism("m").at("arm", 0.0, 0.0, 0.0),
         "place: expected a body, got 'arm'",
     ),
-    "table": (lambda s: table("x", [0, 1], [0, 1]), "table: expected a number or an expression, got 'x'"),
+    "table": (
+        lambda s: table("x", [0, 1], [0, 1]),
+        "table: expected a number or an expression, got 'x'",
+    ),
     "samples": (lambda s: motion.samples(1.0, [0, 1]), "expected a row of numbers, got 1.0"),
-    "along": (lambda s: beams.along(["a", 1], [RECT, RECT]), "along: ratios: expected a row of numbers, got ['a', 1]"),
-    "stepped": (lambda s: beams.stepped(0.5, [RECT, RECT]), "stepped: steps: expected a row of numbers, got 0.5"),
-    "notches": (lambda s: beams.Beam(RECT, STEEL, notches=None), "Beam: notches: expected a list, each a Notch, got None"),
-    "columns": (lambda s: beams.Beam(RECT, STEEL, columns=1.0), "beam: expected two effective lengths, positive, got 1.0"),
+    "along": (
+        lambda s: beams.along(["a", 1], [RECT, RECT]),
+        "along: ratios: expected a row of numbers, got ['a', 1]",
+    ),
+    "stepped": (
+        lambda s: beams.stepped(0.5, [RECT, RECT]),
+        "stepped: steps: expected a row of numbers, got 0.5",
+    ),
+    "notches": (
+        lambda s: beams.Beam(RECT, STEEL, notches=None),
+        "Beam: notches: expected a list, each a Notch, got None",
+    ),
+    "columns": (
+        lambda s: beams.Beam(RECT, STEEL, columns=1.0),
+        "beam: expected two effective lengths, positive, got 1.0",
+    ),
 }
 
 

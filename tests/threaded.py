@@ -1,6 +1,8 @@
-"""What many threads do at once: `python tests/threaded.py THREADS FOLDER` prints a digest of what each of 10 jobs gave.
+"""What many threads do at once: `python tests/threaded.py THREADS FOLDER` prints a digest of what
+each of 10 jobs gave.
 
-With one thread the jobs come one after another. The scenes are built where they are evaluated, as users' threads do it.
+With one thread the jobs come one after another. The scenes are built where they are evaluated, as
+users' threads do it.
 """
 
 import hashlib
@@ -28,13 +30,22 @@ def press(own, pin=Mechanism.revolute):
 
 def _press(m, own, pin):
     l, r = m.parameter("l", 0.5, "m", low=0.0), m.parameter("r", 0.1, "m", low=0.0)
-    crank, rod = m.link("crank", length=r, mass=1.2 + own / 8), m.link("rod", length=2 * l - l, mass=l * 4)
+    crank, rod = (
+        m.link("crank", length=r, mass=1.2 + own / 8),
+        m.link("rod", length=2 * l - l, mass=l * 4),
+    )
     ram = m.point_mass("ram", 15.0)
     m.revolute("O", m.ground, crank)
     m.revolute("A", crank.tip, rod)
     pin(m, "B", rod.tip, ram)
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
-    return Scene(m, {"O": polynomial(0.3, 10)}, t=(0, 62.8, 301), xi=(0, 1, 3), posture={"rod": 1.5, "guide": 0.6})
+    return Scene(
+        m,
+        {"O": polynomial(0.3, 10)},
+        t=(0, 62.8, 301),
+        xi=(0, 1, 3),
+        posture={"rod": 1.5, "guide": 0.6},
+    )
 
 
 SHARED, ITERATED = press(0), press(0, pinned)
@@ -45,12 +56,23 @@ def numbers(solution):
 
 
 def files(folder):
-    return b"".join(path.name.encode() + path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file())
+    return b"".join(
+        path.name.encode() + path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    )
 
 
 def swept(own, folder):
     scene, grid = press(own), {"l": (0.4, 0.6, 5), "r": (0.08, 0.1, 3)}
-    sweep(scene, grid, t=(0, 0.6, 21), wanted=["effort", "section:rod"], flags=QUICK, out=folder / "sweep.h5")
+    sweep(
+        scene,
+        grid,
+        t=(0, 0.6, 21),
+        wanted=["effort", "section:rod"],
+        flags=QUICK,
+        out=folder / "sweep.h5",
+    )
     return files(folder)
 
 

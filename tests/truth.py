@@ -1,4 +1,6 @@
-"""How far a solution really is off: its outputs against the scene's graphs in fifty digits, on the side of a jump that it took."""
+"""How far a solution really is off: its outputs against the scene's graphs in fifty digits, on the
+side of a jump that it took.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +24,16 @@ NEAR = 1e-3
 """How near to a jump a result may be on its other side, of the largest of what is compared."""
 
 MOST = 4
-"""Of so many jumps that are near at an instant every choice of sides is tried, of more the first ones'."""
+"""Of so many jumps that are near at an instant every choice of sides is tried, of more the first
+ones'.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a scene has at some instants: for each the columns by name, and those on the other side of every jump that is near."""
+    """What a scene has at some instants: for each the columns by name, and those on the other side
+    of every jump that is near.
+    """
 
     mechanism: object
     values: dict
@@ -36,7 +42,9 @@ class Truth:
 
 @MP.workdps(DIGITS)
 def truth(scene, t, parameters=None):
-    """What a scene has at instants ``t``, one after the other in time, of loops that are closed: numbers of fifty digits."""
+    """What a scene has at instants ``t``, one after the other in time, of loops that are closed:
+    numbers of fifty digits.
+    """
     values = scene.mechanism.values(parameters)
     graph, p = derive(scene), list(values.values())
     z = None
@@ -45,13 +53,21 @@ def truth(scene, t, parameters=None):
         z = run(graph, grid, np.array(p), Rung("vm"))[0].iterated[:, np.searchsorted(grid, t)]
     decisions = [[] for _ in t]
     rest = iter(decisions)
-    rows = reference(graph, t, p, z=z, following=lambda arithmetic: _listening(arithmetic, next(rest)))
+    rows = reference(
+        graph, t, p, z=z, following=lambda arithmetic: _listening(arithmetic, next(rest))
+    )
     sides = []
     for i, (row, others) in enumerate(zip(rows, _others(decisions), strict=True)):
         found = [row]
         for taken in others:
             at = None if z is None else z[:, i : i + 1]
-            found += reference(graph, t[i : i + 1], p, z=at, following=lambda arithmetic, taken=taken: _taking(arithmetic, taken))
+            found += reference(
+                graph,
+                t[i : i + 1],
+                p,
+                z=at,
+                following=lambda arithmetic, taken=taken: _taking(arithmetic, taken),
+            )
         sides.append([dict(zip(graph.names, one, strict=True)) for one in found])
     return Truth(scene.mechanism, values, sides)
 
@@ -60,16 +76,28 @@ def truth(scene, t, parameters=None):
 def true_errors(solution, exact):
     """The largest error of every output over the instants, by full name; angles up to whole turns.
 
-    A section force is looked at at :data:`RATIOS` and on both sides of stations, where each station is seen as in the solution.
+    A section force is looked at at :data:`RATIOS` and on both sides of stations, where each station
+    is seen as in the solution.
     """
-    names = [name for name in exact.sides[0][0] if name in solution.series and solution.determined(name)]
+    names = [
+        name for name in exact.sides[0][0] if name in solution.series and solution.determined(name)
+    ]
     angles = {name for name in names if _is_angle(solution, name)}
     size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
-    gaps, looked = {}, {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections}
+    gaps, looked = (
+        {},
+        {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections},
+    )
     matter = {link: matter_of(exact.mechanism, exact.values, link) for link in looked}
     for i, sides in enumerate(exact.sides):
-        found = [{name: _gap(row[name], solution.series[name][i], name in angles) for name in names} for row in sides]
-        best = min(range(len(sides)), key=lambda k: max((found[k][name] / size[name] for name in names), default=0.0))
+        found = [
+            {name: _gap(row[name], solution.series[name][i], name in angles) for name in names}
+            for row in sides
+        ]
+        best = min(
+            range(len(sides)),
+            key=lambda k: max((found[k][name] / size[name] for name in names), default=0.0),
+        )
         for name, gap in found[best].items():
             gaps.setdefault(name, []).append(gap)
         for link, found in looked.items():
@@ -80,19 +108,25 @@ def true_errors(solution, exact):
 
 
 def section(columns, matter, link, ratio, seen=None):
-    """Axial, shear and bending of a link at a ratio, from its law and stations, by the moments as they are defined.
+    """Axial, shear and bending of a link at a ratio, from its law and stations, by the moments as
+    they are defined.
 
-    ``matter`` is the link's :func:`matter_of`. ``seen`` says of each station whether the section sees it, by default where it lies
-    between the section and the tip.
+    ``matter`` is the link's :func:`matter_of`. ``seen`` says of each station whether the section
+    sees it, by default where it lies between the section and the tip.
     """
     (l, beyond), u = matter, MP.mpf(ratio)
     mu, xi = beyond(u), u * l
-    n0, n1, n2, f0, f1, f2, m0 = (columns[f"section:{link}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0"))
+    n0, n1, n2, f0, f1, f2, m0 = (
+        columns[f"section:{link}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+    )
     axial, shear = n0 + n1 * mu[0] + n2 * mu[1], f0 + f1 * mu[0] + f2 * mu[1]
     bending = m0 + f0 * (l - xi) + f1 * (mu[1] - xi * mu[0]) + f2 * (mu[2] - xi * mu[1])
     for name in columns:
         if name.startswith(f"section:{link}:") and name.endswith(":station"):
-            n, f, m, station = (columns[name.removesuffix("station") + member] for member in ("n", "f", "m", "station"))
+            n, f, m, station = (
+                columns[name.removesuffix("station") + member]
+                for member in ("n", "f", "m", "station")
+            )
             there = sees(u, station) if seen is None else seen[name.split(":")[2]]
             if there:
                 axial, shear, bending = axial + n, shear + f, bending + m + f * (station - u) * l
@@ -100,35 +134,56 @@ def section(columns, matter, link, ratio, seen=None):
 
 
 def sees(u, station, side="tip", slack=1e-12):
-    """Whether a section at a ratio feels what acts at a station; what misses an end by less than ``slack`` acts there."""
+    """Whether a section at a ratio feels what acts at a station; what misses an end by less than
+    ``slack`` acts there.
+    """
     near = min(max(u, slack), 1 - slack)
     return near < station or (side == "base" and near == station)
 
 
 def matter_of(mechanism, values, link):
-    """A link's length, and as a function of a ratio the moments of what lies beyond it, about the base."""
+    """A link's length, and as a function of a ratio the moments of what lies beyond it, about the
+    base.
+    """
     body = mechanism.links[link]
     l = MP.mpf(mechanism.number(body.length, values))
     size = l if body.mass.per_length else 1
-    cells = [[MP.mpf(mechanism.number(coefficient, values)) * size for coefficient in cell] for cell in body.mass.cells]
+    cells = [
+        [MP.mpf(mechanism.number(coefficient, values)) * size for coefficient in cell]
+        for cell in body.mass.cells
+    ]
 
     @functools.cache
     def beyond(u):
         mu = [MP.mpf(0)] * 3
-        for (a, b), cell in zip(itertools.pairwise(map(MP.mpf, body.mass.breaks)), cells, strict=True):
+        for (a, b), cell in zip(
+            itertools.pairwise(map(MP.mpf, body.mass.breaks)), cells, strict=True
+        ):
             for (j, density), k in itertools.product(enumerate(cell), range(3)):
-                mu[k] += density * l**k * max(b ** (j + k + 1) - max(a, u) ** (j + k + 1), 0) / (j + k + 1)
+                mu[k] += (
+                    density
+                    * l**k
+                    * max(b ** (j + k + 1) - max(a, u) ** (j + k + 1), 0)
+                    / (j + k + 1)
+                )
         return mu
 
     return l, beyond
 
 
 def _looked_at(law):
-    """A law's stations by name, the ratios to look at, (t, n), and the forces there by side, each (t, n)."""
+    """A law's stations by name, the ratios to look at, (t, n), and the forces there by side, each
+    (t, n).
+    """
     stations = {load.name: load.station for load in law.loads}
     ratios = np.tile(RATIOS, (law.coefficients["n0"].size, 1))
-    ratios = np.column_stack([ratios, *(np.clip(station, 0.0, 1.0) for station in stations.values())])
-    forces = {side: [law.at(force, ratios, side) for force in FORCES] for side in (("tip", "base") if stations else ("tip",))}
+    ratios = np.column_stack(
+        [ratios, *(np.clip(station, 0.0, 1.0) for station in stations.values())]
+    )
+    forces = {
+        side: [law.at(force, ratios, side) for force in FORCES]
+        for side in (("tip", "base") if stations else ("tip",))
+    }
     return stations, ratios, forces, law.slack
 
 
@@ -164,7 +219,12 @@ def _numbered(arithmetic, apply):
     def rule(code, operation):
         return lambda *values: apply(next(count), code, values, operation(*values))
 
-    return replace(arithmetic, operations={code: rule(code, operation) for code, operation in arithmetic.operations.items()})
+    return replace(
+        arithmetic,
+        operations={
+            code: rule(code, operation) for code, operation in arithmetic.operations.items()
+        },
+    )
 
 
 def _listening(arithmetic, decisions):
@@ -184,16 +244,28 @@ def _taking(arithmetic, taken):
 
 
 def _others(decisions):
-    """For every instant the ways in which decisions that are near a jump there may be taken otherwise."""
+    """For every instant the ways in which decisions that are near a jump there may be taken
+    otherwise.
+    """
     sizes = {}
     for at_instant in decisions:
         for k, code, values, _ in at_instant:
             compared = values[1:] if code == ca.OP_COPYSIGN else values
             sizes[k] = max(sizes.get(k, MP.mpf(0)), *map(abs, compared))
     for at_instant in decisions:
-        near = [(k, found) for k, *decision in at_instant if (found := _otherwise(*decision, NEAR * sizes[k]))][:MOST]
-        choices = itertools.product(*([(k, None), *((k, result) for result in found)] for k, found in near))
-        yield [taken for choice in choices if (taken := {k: result for k, result in choice if result is not None})]
+        near = [
+            (k, found)
+            for k, *decision in at_instant
+            if (found := _otherwise(*decision, NEAR * sizes[k]))
+        ][:MOST]
+        choices = itertools.product(
+            *([(k, None), *((k, result) for result in found)] for k, found in near)
+        )
+        yield [
+            taken
+            for choice in choices
+            if (taken := {k: result for k, result in choice if result is not None})
+        ]
 
 
 def _otherwise(code, values, result, near):
@@ -206,7 +278,11 @@ def _otherwise(code, values, result, near):
     if code == ca.OP_COPYSIGN:
         return [-result] if abs(values[1]) <= near else []
     if code in WHOLE:
-        return [other for other in (result - 1, result + 1) if abs(x - MP.nint(x)) <= near and abs(other - x) <= 1 + near]
+        return [
+            other
+            for other in (result - 1, result + 1)
+            if abs(x - MP.nint(x)) <= near and abs(other - x) <= 1 + near
+        ]
     period = abs(values[1]) if code in PERIODIC else 2 * MP.pi
     edges = (0, period) if code == ca.OP_FMOD else (period / 2,)
     if min(abs(abs(result) - edge) for edge in edges) > (near if code in PERIODIC else NEAR):

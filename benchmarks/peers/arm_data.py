@@ -1,4 +1,6 @@
-"""The arm in space as bare numbers: slender links, and revolute joints that turn by a polynomial of the time."""
+"""The arm in space as bare numbers: slender links, and revolute joints that turn by a polynomial of
+the time.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,14 @@ from .paper_case import Array
 
 LENGTHS = (0.16, 0.42, 0.39, 0.12, 0.1, 0.08)
 MASSES = (3.7, 8.4, 2.3, 1.2, 1.2, 0.2)
-AXES = ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
+AXES = (
+    (0.0, 0.0, 1.0),
+    (0.0, 0.0, 1.0),
+    (0.0, 0.0, 1.0),
+    (1.0, 0.0, 0.0),
+    (0.0, 0.0, 1.0),
+    (0.0, 1.0, 0.0),
+)
 """On the link before; the first link stands upright where its joint is at zero."""
 
 UPRIGHT = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
@@ -25,4 +34,8 @@ SECOND = 1
 def motion(t: Array) -> tuple[Array, Array, Array]:
     """Angles, rates and accelerations, (6, t) each."""
     first, rate, half = (np.array(row)[:, None] for row in (FIRST, RATE, TURN))
-    return first + (rate + half * t) * t, rate + 2 * half * t, np.broadcast_to(2 * half, (len(FIRST), len(t))).copy()
+    return (
+        first + (rate + half * t) * t,
+        rate + 2 * half * t,
+        np.broadcast_to(2 * half, (len(FIRST), len(t))).copy(),
+    )

@@ -1,4 +1,6 @@
-"""The arm by vector Newton-Euler in ground axes, an instant at a time, tip to base: the reference of errors."""
+"""The arm by vector Newton-Euler in ground axes, an instant at a time, tip to base: the reference
+of errors.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,10 @@ def efforts(t: Array) -> Array:
 
 def sections(t: Array, xi: Array) -> Array:
     """Six section forces of the second link, (6, t, xi)."""
-    rows = [[_instant(*row)[1](ratio) for ratio in xi] for row in zip(*(x.T for x in motion(t)), strict=True)]
+    rows = [
+        [_instant(*row)[1](ratio) for ratio in xi]
+        for row in zip(*(x.T for x in motion(t)), strict=True)
+    ]
     return np.moveaxis(np.array(rows), -1, 0)
 
 
@@ -48,21 +53,36 @@ def _instant(q: Array, v: Array, a: Array) -> tuple[list[Any], Callable[[float],
         if k == SECOND:
             piece = (frame, base, gained, along, MASSES[k], force, moment)
         # Of a slender link: mass times the mean acceleration, and its first moment about the base.
-        moment = moment + np.cross(along, force) + MASSES[k] * np.cross(along, base / 2 + gained / 3)
+        moment = (
+            moment + np.cross(along, force) + MASSES[k] * np.cross(along, base / 2 + gained / 3)
+        )
         force = force + MASSES[k] * (base + gained / 2)
         found.append(own @ moment)
     return found[::-1], lambda ratio: _section(ratio, *piece)
 
 
 def _section(
-    ratio: float, frame: Array, base: Array, gained: Array, along: Array, mass: float, force: Array, moment: Array
+    ratio: float,
+    frame: Array,
+    base: Array,
+    gained: Array,
+    along: Array,
+    mass: float,
+    force: Array,
+    moment: Array,
 ) -> Array:
     """What the piece beyond a ratio does to the rest: less what it needs."""
     left, middle = 1 - ratio, (1 + ratio) / 2
     own = mass * left * (base + middle * gained)
-    first = left**2 / 2  # of the places from the section on, and with the acceleration's growth along the link
+    first = (
+        left**2 / 2
+    )  # of the places from the section on, and with the acceleration's growth along the link
     second = (1 - ratio**3) / 3 - ratio * (1 - ratio**2) / 2
-    about = moment + np.cross(left * along, force) + mass * np.cross(along, first * base + second * gained)
+    about = (
+        moment
+        + np.cross(left * along, force)
+        + mass * np.cross(along, first * base + second * gained)
+    )
     return -np.concatenate([frame.T @ (force + own), frame.T @ about])
 
 

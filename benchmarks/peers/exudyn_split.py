@@ -1,4 +1,6 @@
-"""Section forces by Exudyn: a kinematic tree for each ratio, the rod's halves welded by three joints that are held at zero."""
+"""Section forces by Exudyn: a kinematic tree for each ratio, the rod's halves welded by three
+joints that are held at zero.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +15,22 @@ sys.exudynFast = True  # type: ignore[attr-defined]  # its module without range 
 import exudyn as exu  # noqa: E402
 from exudyn.itemInterface import NodeGenericODE2, ObjectKinematicTree  # noqa: E402
 
-JOINTS = (*[exu.JointType.RevoluteZ] * 2, exu.JointType.PrismaticX, exu.JointType.PrismaticY, exu.JointType.RevoluteZ)
+JOINTS = (
+    *[exu.JointType.RevoluteZ] * 2,
+    exu.JointType.PrismaticX,
+    exu.JointType.PrismaticY,
+    exu.JointType.RevoluteZ,
+)
 SIZE = len(JOINTS)
 
 
 def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What works out axial, shear and bending of the rod, (3, t, xi), by a loop over the instants.
 
-    Exudyn has no inverse dynamics, but M a - f, the residual of its implicit solver's equations of motion at a given state and
-    acceleration, is the efforts, times the Newmark factor beta h^2 of a step h. The trees of all ratios are one system of a sparse
-    mass matrix; one tree with a cut at every ratio is slower, as its mass matrix is full. 0 < xi < 1, strictly.
+    Exudyn has no inverse dynamics, but M a - f, the residual of its implicit solver's equations of
+    motion at a given state and acceleration, is the efforts, times the Newmark factor beta h^2 of a
+    step h. The trees of all ratios are one system of a sparse mass matrix; one tree with a cut at
+    every ratio is slower, as its mass matrix is full. 0 < xi < 1, strictly.
     """
     q, v, a = joint_motion(case, t)
     container = exu.SystemContainer()
@@ -32,7 +40,9 @@ def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     system.Assemble()
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
-    settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False  # they would be those of the free fall
+    settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = (
+        False  # they would be those of the free fall
+    )
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     solver = exu.MainSolverImplicitSecondOrder()
     solver.InitializeSolver(system, settings)
@@ -41,7 +51,9 @@ def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     states = [np.tile(x, (1, len(xi))) for x in states]
 
     def work() -> Array:
-        now = container.GetSystem(0).systemData  # of the container, which has to outlive its systems
+        now = container.GetSystem(
+            0
+        ).systemData  # of the container, which has to outlive its systems
         effort = np.empty((len(t), SIZE * len(xi)))
         for i, (q_i, v_i, a_i) in enumerate(zip(*states, strict=True)):
             now.SetODE2Coordinates(q_i)
@@ -64,7 +76,10 @@ def _add_tree(system: exu.MainSystem, case: SliderCrank, ratio: float) -> None:
     moments = (case.m1 * case.r**2 / 12, inner * near**2 / 12, 0.0, 0.0, about_centre)
     zeros = [0.0] * SIZE
     node = NodeGenericODE2(
-        numberOfODE2Coordinates=SIZE, referenceCoordinates=zeros, initialCoordinates=zeros, initialCoordinates_t=zeros
+        numberOfODE2Coordinates=SIZE,
+        referenceCoordinates=zeros,
+        initialCoordinates=zeros,
+        initialCoordinates_t=zeros,
     )
     tree = ObjectKinematicTree(
         nodeNumber=system.AddNode(node),
@@ -74,7 +89,9 @@ def _add_tree(system: exu.MainSystem, case: SliderCrank, ratio: float) -> None:
         jointTransformations=exu.Matrix3DList([np.eye(3)] * SIZE),
         jointOffsets=exu.Vector3DList([[x, 0.0, 0.0] for x in (0.0, case.r, near, 0.0, 0.0)]),
         linkInertiasCOM=exu.Matrix3DList([np.diag([0.0, 0.0, moment]) for moment in moments]),
-        linkCOMs=exu.Vector3DList([[x, 0.0, 0.0] for x in (case.r / 2, near / 2, 0.0, 0.0, centre)]),
+        linkCOMs=exu.Vector3DList(
+            [[x, 0.0, 0.0] for x in (case.r / 2, near / 2, 0.0, 0.0, centre)]
+        ),
         linkMasses=[case.m1, inner, 0.0, 0.0, outer + case.m3],
     )
     system.AddObject(tree)

@@ -1,4 +1,6 @@
-"""The closed form in C, written by hand: scalar, with the flags of the package's own C, and as far as a compiler vectorises it."""
+"""The closed form in C, written by hand: scalar, with the flags of the package's own C, and as far
+as a compiler vectorises it.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,10 @@ SCALAR = ("-fno-tree-vectorize",)
 
 @cache
 def library(flags: tuple[str, ...]) -> ctypes.CDLL:
-    """The compiled source, loaded, with flags after the package's. Raises :class:`RuntimeError` where there is no C compiler."""
+    """The compiled source, loaded, with flags after the package's.
+
+    Raises :class:`RuntimeError` where there is no C compiler.
+    """
     compiler = find_compiler()
     if compiler is None:
         raise RuntimeError("the handwritten peer needs a C compiler")
@@ -30,7 +35,9 @@ def library(flags: tuple[str, ...]) -> ctypes.CDLL:
 
 
 def instants(case: SliderCrank, t: Array, flags: tuple[str, ...] = SCALAR) -> Work:
-    """What fills the package's columns of ``wanted="all"``, (columns, t); the array is the same at every call."""
+    """What fills the package's columns of ``wanted="all"``, (columns, t); the array is the same at
+    every call.
+    """
     entry = library(flags).slider_crank_instants
     times, parameters, out = _flat(t), _flat(case.parameters), np.empty((COLUMNS, len(t)))
     return _caller(entry, (len(t),), times, parameters, out)
@@ -51,9 +58,16 @@ def designs(case: SliderCrank, t: Array, lengths: Array, flags: tuple[str, ...] 
 
 
 def sections(case: SliderCrank, t: Array, xi: Array, flags: tuple[str, ...] = SCALAR) -> Work:
-    """What fills axial, shear and bending of the rod, (3, t, xi); the array is the same at every call."""
+    """What fills axial, shear and bending of the rod, (3, t, xi); the array is the same at every
+    call.
+    """
     entry = library(flags).slider_crank_sections
-    times, parameters, ratios, out = _flat(t), _flat(case.parameters), _flat(xi), np.empty((3, len(t), len(xi)))
+    times, parameters, ratios, out = (
+        _flat(t),
+        _flat(case.parameters),
+        _flat(xi),
+        np.empty((3, len(t), len(xi))),
+    )
     return _caller(entry, (len(t), len(xi)), times, parameters, ratios, out)
 
 
@@ -62,7 +76,9 @@ def _flat(values: Array | tuple[float, ...]) -> Array:
 
 
 def _caller(entry: ctypes._NamedFuncPointer, sizes: tuple[int, ...], *arrays: Array) -> Work:
-    """A call with every argument ready; the last array is the result, and the arrays live as long as the call."""
+    """A call with every argument ready; the last array is the result, and the arrays live as long
+    as the call.
+    """
     entry.restype = None
     entry.argtypes = [ctypes.c_longlong] * len(sizes) + [ctypes.c_void_p] * len(arrays)
     pointers = [array.ctypes.data for array in arrays]

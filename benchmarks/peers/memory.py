@@ -10,7 +10,10 @@ from .paper_case import Array, SliderCrank, Work
 
 def fill(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What copies the section forces, (3, t, xi), from one place to another."""
-    source = np.concatenate([sections(case, part, xi)() for part in np.array_split(t, 1 + t.size * xi.size // 10**6)], axis=1)
+    source = np.concatenate(
+        [sections(case, part, xi)() for part in np.array_split(t, 1 + t.size * xi.size // 10**6)],
+        axis=1,
+    )
     out = np.empty_like(source)
 
     def call() -> Array:

@@ -1,4 +1,6 @@
-"""The closed form in NumPy: arrays of t for the coefficients, then the forces on the (t, xi) grid by broadcasting."""
+"""The closed form in NumPy: arrays of t for the coefficients, then the forces on the (t, xi) grid
+by broadcasting.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from .paper_case import Array, SliderCrank, Work
 
 @dataclass(frozen=True)
 class _Rod:
-    """The rod's angle and direction, rate and acceleration, the acceleration of its base, and its action on the slider."""
+    """The rod's angle and direction, rate and acceleration, the acceleration of its base, and its
+    action on the slider.
+    """
 
     phi: Array
     cos: Array
@@ -61,7 +65,9 @@ def designs(case: SliderCrank, t: Array, lengths: Array) -> Work:
 
 
 def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
-    """What returns axial, shear and bending of the rod, (3, t, xi), as polynomials of the part beyond the section."""
+    """What returns axial, shear and bending of the rod, (3, t, xi), as polynomials of the part
+    beyond the section.
+    """
 
     def call() -> Array:
         n0, n1, n2, f0, f1, f2 = _rod(case, *case.motion(t[:, None])).law(case.g)
@@ -85,5 +91,7 @@ def _rod(case: SliderCrank, theta: Array, omega: Array, alpha: Array) -> _Rod:
     turn = (sin * spin**2 - ay / l) / cos
     acceleration = ax - l * (cos * spin**2 + sin * turn)
     bx = m3 * acceleration
-    by = ((bx + m2 * ax / 2) * sin - m2 * l * turn / 3) / cos - m2 * (ay + case.g) / 2  # the rod's moments about its base
+    by = ((bx + m2 * ax / 2) * sin - m2 * l * turn / 3) / cos - m2 * (
+        ay + case.g
+    ) / 2  # the rod's moments about its base
     return _Rod(np.arcsin(sin), cos, sin, spin, turn, ax, ay, acceleration, bx, by)

@@ -1,6 +1,8 @@
-"""The least peak torque of the slider-crank under a limit of its rod's bending, written by hand in CasADi's Opti.
+"""The least peak torque of the slider-crank under a limit of its rod's bending, written by hand in
+CasADi's Opti.
 
-The closed form is that of :mod:`.numpy_closed`. Peaks are held at all instants, and at some ratios along the rod.
+The closed form is that of :mod:`.numpy_closed`. Peaks are held at all instants, and at some ratios
+along the rod.
 """
 
 from __future__ import annotations
@@ -15,24 +17,37 @@ from .paper_case import Array, SliderCrank
 
 
 def solved(
-    case: SliderCrank, t: Array, xi: Array, limit: float, bounds: Mapping[str, tuple[float, float]], start: Mapping[str, float]
+    case: SliderCrank,
+    t: Array,
+    xi: Array,
+    limit: float,
+    bounds: Mapping[str, tuple[float, float]],
+    start: Mapping[str, float],
 ) -> tuple[dict[str, float], float]:
-    """The values of ``l`` and ``r``, and the least peak torque [N m] for bending [N m] within a limit."""
+    """The values of ``l`` and ``r``, and the least peak torque [N m] for bending [N m] within a
+    limit.
+    """
     opti = ca.Opti()
     chosen = {name: opti.variable() for name in bounds}
     level = opti.variable()
-    torque, bending = _forces(case).map(t.size)(ca.DM(np.array(case.motion(t))), ca.vertcat(chosen["r"], chosen["l"]), ca.DM(xi))
+    torque, bending = _forces(case).map(t.size)(
+        ca.DM(np.array(case.motion(t))), ca.vertcat(chosen["r"], chosen["l"]), ca.DM(xi)
+    )
     opti.minimize(level)
     opti.subject_to(opti.bounded(-level, ca.vec(torque), level))
     opti.subject_to(opti.bounded(-limit, ca.vec(bending), limit))
     for name, variable in chosen.items():
         opti.subject_to(opti.bounded(bounds[name][0], variable, bounds[name][1]))
         opti.set_initial(variable, start[name])
-    first, _ = _forces(case).map(t.size)(ca.DM(np.array(case.motion(t))), ca.DM([start["r"], start["l"]]), ca.DM(xi))
+    first, _ = _forces(case).map(t.size)(
+        ca.DM(np.array(case.motion(t))), ca.DM([start["r"], start["l"]]), ca.DM(xi)
+    )
     opti.set_initial(level, float(np.abs(first.full()).max()))
     opti.solver("ipopt", {"print_time": False}, {"print_level": 0, "sb": "yes", "tol": 1e-10})
     solution = opti.solve()
-    return {name: float(solution.value(variable)) for name, variable in chosen.items()}, float(solution.value(level))
+    return {name: float(solution.value(variable)) for name, variable in chosen.items()}, float(
+        solution.value(level)
+    )
 
 
 def _forces(case: SliderCrank) -> Any:

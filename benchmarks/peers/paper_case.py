@@ -19,7 +19,9 @@ HALF_ACCELERATION = math.pi / 200
 
 @dataclass(frozen=True)
 class SliderCrank:
-    """Crank ``r`` and rod ``l`` [m], uniform slender bars; masses of crank, rod and slider [kg]; gravity [m/s^2] along -y."""
+    """Crank ``r`` and rod ``l`` [m], uniform slender bars; masses of crank, rod and slider [kg];
+    gravity [m/s^2] along -y.
+    """
 
     r: float = 0.1
     l: float = 0.2

@@ -1,4 +1,6 @@
-"""The reference: Newton-Euler of the free bodies with 50 digits, as linear equations, and nothing solved on paper."""
+"""The reference: Newton-Euler of the free bodies with 50 digits, as linear equations, and nothing
+solved on paper.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ FORCES = ("O:fx", "O:fy", "A:fx", "A:fy", "B:fx", "B:fy", "guide:fy")
 
 @dataclass(frozen=True)
 class _Instant:
-    """The linkage at one instant: crank, rod and slider as (coordinate, rate, acceleration), and forces by name."""
+    """The linkage at one instant: crank, rod and slider as (coordinate, rate, acceleration), and
+    forces by name.
+    """
 
     crank: tuple[Any, Any, Any]
     rod: tuple[Any, Any, Any]
@@ -31,10 +35,20 @@ def instants(case: SliderCrank, t: Array) -> dict[str, Array]:
     with mp.workdps(DIGITS):
         for time in t:
             now = _solve(case, float(time))
-            motions = {"O": now.crank, "A": tuple(b - a for a, b in zip(now.crank, now.rod, strict=True)), "guide": now.slider}
-            values = {f"motion:{j}{end}": m[i] for j, m in motions.items() for i, end in enumerate(("", "_rate", "_acceleration"))}
+            motions = {
+                "O": now.crank,
+                "A": tuple(b - a for a, b in zip(now.crank, now.rod, strict=True)),
+                "guide": now.slider,
+            }
+            values = {
+                f"motion:{j}{end}": m[i]
+                for j, m in motions.items()
+                for i, end in enumerate(("", "_rate", "_acceleration"))
+            }
             values |= {f"reaction:{name}": force for name, force in now.reactions.items()}
-            for name, value in (values | {"effort:O": now.effort, "reaction:guide:fx": mpf(0)}).items():
+            for name, value in (
+                values | {"effort:O": now.effort, "reaction:guide:fx": mpf(0)}
+            ).items():
                 rows.setdefault(name, []).append(value)
         return {name: np.array([float(value) for value in row]) for name, row in rows.items()}
 
@@ -51,7 +65,9 @@ def sections(case: SliderCrank, t: Array, xi: Array) -> Array:
 
 
 def _solve(case: SliderCrank, time: float) -> _Instant:
-    """The loop r e(theta) + l e(phi) = (x, 0) and its derivatives, then three equations a bar and two for the slider."""
+    """The loop r e(theta) + l e(phi) = (x, 0) and its derivatives, then three equations a bar and
+    two for the slider.
+    """
     r, l, m1, m2, m3 = map(mpf, case.parameters)
     g, t, half = mpf(case.g), mpf(time), mpf(HALF_ACCELERATION)
     theta, omega, alpha = (half * t + mpf(SPEED)) * t, 2 * half * t + mpf(SPEED), 2 * half
@@ -75,10 +91,14 @@ def _solve(case: SliderCrank, time: float) -> _Instant:
         ([0, 0, 0, 0, 0, 1, 0, 0], m3 * acceleration),
         ([0, 0, 0, 0, 0, 0, 1, 1], m3 * g),
     ]
-    effort, *forces = mp.lu_solve(mp.matrix([row for row, _ in equations]), mp.matrix([value for _, value in equations]))
+    effort, *forces = mp.lu_solve(
+        mp.matrix([row for row, _ in equations]), mp.matrix([value for _, value in equations])
+    )
     position = r * cx + l * ex
     reactions = dict(zip(FORCES, forces, strict=True))
-    return _Instant((theta, omega, alpha), (phi, spin, turn), (position, speed, acceleration), effort, reactions)
+    return _Instant(
+        (theta, omega, alpha), (phi, spin, turn), (position, speed, acceleration), effort, reactions
+    )
 
 
 def _cut(case: SliderCrank, now: _Instant, ratio: Any) -> tuple[Any, Any, Any]:
@@ -105,7 +125,9 @@ def _relative(ex: Any, ey: Any, length: Any, spin: Any, turn: Any) -> Any:
 
 
 def chain(n: int, t: Array) -> Array:
-    """Efforts of an open chain of uniform links, (n, t), driven as in :mod:`.pinocchio_chain`: Newton-Euler, tip to base."""
+    """Efforts of an open chain of uniform links, (n, t), driven as in :mod:`.pinocchio_chain`:
+    Newton-Euler, tip to base.
+    """
     length, mass, gravity = mpf("0.5"), mpf(1), mpf("9.81")
     out = np.empty((n, len(t)))
     with mp.workdps(DIGITS):
@@ -120,7 +142,9 @@ def chain(n: int, t: Array) -> Array:
             force, couple = mp.matrix([0, 0]), mpf(0)
             for k, (e, centre, turn) in reversed(list(enumerate(links))):
                 own = mass * centre
-                couple += mass * length**2 / 12 * turn + length / 2 * (e[0] * own[1] - e[1] * own[0])
+                couple += mass * length**2 / 12 * turn + length / 2 * (
+                    e[0] * own[1] - e[1] * own[0]
+                )
                 couple += length * (e[0] * force[1] - e[1] * force[0])
                 force += own
                 out[k, i] = float(couple)

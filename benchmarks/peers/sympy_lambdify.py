@@ -1,4 +1,6 @@
-"""SymPy: the equilibrium of the rod's outboard piece, derived symbolically, and a NumPy function by ``lambdify``."""
+"""SymPy: the equilibrium of the rod's outboard piece, derived symbolically, and a NumPy function by
+``lambdify``.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from .paper_case import Array, SliderCrank, Work
 
 
 def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
-    """What returns axial, shear and bending of the rod, (3, t, xi); they are derived here, before."""
+    """What returns axial, shear and bending of the rod, (3, t, xi);
+    they are derived here, before.
+    """
     forces, ratios = _forces(), xi[None, :]
 
     def call() -> Array:
@@ -37,10 +41,18 @@ def _forces() -> Any:
     tip = sp.Matrix([-bx, -by])  # the action of the slider on the rod
 
     def beyond(arm: Any, direction: sp.Matrix) -> Any:
-        """Weight and inertia of the piece from ``u`` to the tip, resolved on a direction, times an arm linear in ``x``."""
+        """Weight and inertia of the piece from ``u`` to the tip, resolved on a direction, times an
+        arm linear in ``x``.
+        """
         field = sp.Matrix([0, -g]) - (base + x * l * along).diff(t, 2)
-        coefficients = [direction.dot(field.subs(x, 0)), direction.dot(field.subs(x, 1) - field.subs(x, 0))]
-        return m2 * sum(c * sp.integrate(sp.expand(arm * x**power), (x, u, 1)) for power, c in enumerate(coefficients))
+        coefficients = [
+            direction.dot(field.subs(x, 0)),
+            direction.dot(field.subs(x, 1) - field.subs(x, 0)),
+        ]
+        return m2 * sum(
+            c * sp.integrate(sp.expand(arm * x**power), (x, u, 1))
+            for power, c in enumerate(coefficients)
+        )
 
     axial = along.dot(tip) + beyond(sp.Integer(1), along)
     shear = across.dot(tip) + beyond(sp.Integer(1), across)
@@ -48,6 +60,14 @@ def _forces() -> Any:
     pull = m3 * (base + l * along)[0].diff(t, 2)
     moment = bending.subs(u, 0)  # at the pin A, which bears none
     push = -moment.subs(by, 0) / moment.diff(by)
-    known = [(by, push), (bx, pull), (theta.diff(t, 2), acceleration), (theta.diff(t), rate), (theta, angle)]
+    known = [
+        (by, push),
+        (bx, pull),
+        (theta.diff(t, 2), acceleration),
+        (theta.diff(t), rate),
+        (theta, angle),
+    ]
     results = [force.subs(known).doit() for force in (axial, shear, bending)]
-    return sp.lambdify((angle, rate, acceleration, u, r, l, m1, m2, m3, g), results, "numpy", cse=True)
+    return sp.lambdify(
+        (angle, rate, acceleration, u, r, l, m1, m2, m3, g), results, "numpy", cse=True
+    )

@@ -1,4 +1,7 @@
-"""Andrews' squeezer: seven bodies, three loops that share a pin, one drive, a spring. No gravity."""
+"""Andrews' squeezer: seven bodies, three loops that share a pin, one drive, a spring.
+
+No gravity.
+"""
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.motion import polynomial
@@ -17,7 +20,8 @@ BETA, BETA_RATE, BETA_ACCELERATION = 15.81077119629904, 1139.920302151208, -2463
 def scene() -> Scene:
     m = Mechanism("andrews_squeezer")
     m.set_gravity(0, 0)
-    # The set's own angles: beta and theta + beta from x; gamma, phi + delta from -y; delta, omega + epsilon, epsilon as said.
+    # The set's own angles: beta and theta + beta from x; gamma, phi + delta from -y; delta, omega +
+    # epsilon, epsilon as said.
     k1 = m.link("k1", length=RR, mass=M1, centre=(RA, 0), inertia=I1)
     k2 = m.link("k2", length=D, mass=M2, centre=(D - DA, 0), inertia=I2)
     k3 = m.link("k3", length=SS, mass=M3, centre=(SB, SA), inertia=I3)

@@ -1,4 +1,6 @@
-"""An arm of six revolute joints with a payload, as robots are described: each axis on the link before it."""
+"""An arm of six revolute joints with a payload, as robots are described: each axis on the link
+before it.
+"""
 
 from math import pi
 
@@ -15,8 +17,13 @@ MASSES = (3.7, 8.4, 2.3, 1.2, 1.2, 0.2)
 def scene() -> Scene:
     m = SpatialMechanism("arm6")
     payload = m.parameter("payload", 5.0, "kg", low=0.0, high=20.0)
-    links = [m.link(f"link{k}", length=l, mass=mass) for k, (l, mass) in enumerate(zip(LENGTHS, MASSES, strict=True), 1)]
-    tool = m.link("tool", length=0.1, mass=payload, centre=(0.05, 0.01, 0.0), inertia=(0.01, 0.02, 0.02))
+    links = [
+        m.link(f"link{k}", length=l, mass=mass)
+        for k, (l, mass) in enumerate(zip(LENGTHS, MASSES, strict=True), 1)
+    ]
+    tool = m.link(
+        "tool", length=0.1, mass=payload, centre=(0.05, 0.01, 0.0), inertia=(0.01, 0.02, 0.02)
+    )
     along, up = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
     # Upright at zero: turn, shoulder, elbow, and a wrist of three axes.
     m.revolute("turn", m.ground, links[0], axis=up, turned=[("y", "-90 deg")])

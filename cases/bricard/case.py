@@ -1,4 +1,6 @@
-"""Bricard's loop: six links of one length on six revolute joints at right angles move, though a count of freedoms gives none."""
+"""Bricard's loop: six links of one length on six revolute joints at right angles move, though a
+count of freedoms gives none.
+"""
 
 from math import acos, cos
 
@@ -16,8 +18,15 @@ def scene() -> Scene:
     axis, right = (0.0, 0.0, 1.0), [1 if k % 2 == 0 else -1 for k in range(6)]
     m.revolute("J0", m.ground, links[0], axis=axis)
     for k in range(1, 5):
-        m.revolute(f"J{k}", links[k - 1].tip, links[k], axis=(0.0, -right[k - 1], 0.0), turned=[("x", f"{90 * right[k - 1]} deg")])
-    # The ground is the sixth link: from the last joint it leads back to the first, whose axis is its tip's.
+        m.revolute(
+            f"J{k}",
+            links[k - 1].tip,
+            links[k],
+            axis=(0.0, -right[k - 1], 0.0),
+            turned=[("x", f"{90 * right[k - 1]} deg")],
+        )
+    # The ground is the sixth link: from the last joint it leads back to the first, whose axis is
+    # its tip's.
     m.revolute("J5", m.ground.at(-length, 0.0, 0.0), links[4].tip, axis=(0.0, -1.0, 0.0))
     return Scene(m, {"J0": harmonic(START, 0.2, 1.0)}, t=(0.0, 1.0, 201), posture=_posture())
 

@@ -1,4 +1,6 @@
-"""A cardan shaft: two universal joints, in phase or not, lead a shaft's turning to one that stands parallel beside it."""
+"""A cardan shaft: two universal joints, in phase or not, lead a shaft's turning to one that stands
+parallel beside it.
+"""
 
 from math import pi
 
@@ -28,4 +30,9 @@ def scene() -> Scene:
     m.cylindrical("far", m.ground.at(0.6, aside, 0.0), output, axis=along)
     m.torque("load", output, x=-load)
     posture = {"first:turn_1": 0.3, "first:turn_2": 0.0, "far:turn": 0.0, "far:slide": 0.0}
-    return Scene(m, {"bearing": polynomial(0.0, 2 * pi / 60 * rpm)}, over=("bearing", 0.0, 2 * pi, 361), posture=posture)
+    return Scene(
+        m,
+        {"bearing": polynomial(0.0, 2 * pi / 60 * rpm)},
+        over=("bearing", 0.0, 2 * pi, 361),
+        posture=posture,
+    )

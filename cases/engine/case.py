@@ -1,4 +1,6 @@
-"""A four-stroke engine: an offset slider-crank with a tapered rod and the pressure of its gas, two turns of the crank."""
+"""A four-stroke engine: an offset slider-crank with a tapered rod and the pressure of its gas, two
+turns of the crank.
+"""
 
 from math import pi
 
@@ -8,9 +10,56 @@ from lagrange_casadi import Mechanism, Scene, table
 from lagrange_casadi.density import polynomial as taper
 from lagrange_casadi.motion import polynomial
 
-# Gauge pressure [bar] over the crank's angle [deg] from the top dead centre at the start of the intake.
-ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
-PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
+# Gauge pressure [bar] over the crank's angle [deg] from the top dead centre at the start of the
+# intake.
+ANGLES = (
+    0,
+    20,
+    180,
+    220,
+    260,
+    300,
+    320,
+    335,
+    350,
+    360,
+    368,
+    375,
+    390,
+    410,
+    440,
+    480,
+    520,
+    540,
+    560,
+    600,
+    700,
+    720,
+)
+PRESSURES = (
+    0.3,
+    -0.2,
+    -0.2,
+    0.1,
+    0.9,
+    3.4,
+    6.5,
+    10.5,
+    18,
+    27,
+    42,
+    45,
+    30,
+    15,
+    6.5,
+    3.2,
+    2.0,
+    1.4,
+    0.6,
+    0.3,
+    0.3,
+    0.3,
+)
 
 
 def scene() -> Scene:
@@ -30,4 +79,6 @@ def scene() -> Scene:
     pressure = 1e5 * table(turned, ANGLES, PRESSURES)
     m.force("gas", piston, y=-pressure * pi / 4 * bore**2)
     speed = 3000 * 2 * pi / 60
-    return Scene(m, motion={"main": polynomial(pi / 2, speed)}, t=(0, 0.04, 1441), posture={"rod": pi / 2})
+    return Scene(
+        m, motion={"main": polynomial(pi / 2, speed)}, t=(0, 0.04, 1441), posture={"rod": pi / 2}
+    )

@@ -1,4 +1,6 @@
-"""An excavator that levels the ground: its bucket follows a line, and three cylinders make it do so."""
+"""An excavator that levels the ground: its bucket follows a line, and three cylinders make it do
+so.
+"""
 
 from math import pi
 
@@ -30,7 +32,10 @@ def scene() -> Scene:
     }
     power = 0.0
     for name, (rear, front, length) in ends.items():
-        barrel, rod = m.link(f"{name}_barrel", length=length, mass=90.0), m.link(f"{name}_rod", length=length, mass=50.0)
+        barrel, rod = (
+            m.link(f"{name}_barrel", length=length, mass=90.0),
+            m.link(f"{name}_rod", length=length, mass=50.0),
+        )
         m.revolute(f"{name}_rear", rear, barrel)
         cylinder = m.prismatic(f"{name}_cylinder", barrel, rod.base, axis=(1, 0))
         m.revolute(f"{name}_front", rod.tip, front)

@@ -22,13 +22,21 @@ def scene() -> Scene:
     travel = m.parameter("travel", 0.05, "m", low=0.0, high=0.08)
     stand, side = m.parameter("stand", 4000.0, "N"), m.parameter("side", 2500.0, "N")
     x, y, z = WHEEL
-    hub = m.link("hub", between=((x, y - 0.1, z), WHEEL), mass=18.0, centre=(x, y - 0.03, z), inertia=(0.4, 0.6, 0.4))
+    hub = m.link(
+        "hub",
+        between=((x, y - 0.1, z), WHEEL),
+        mass=18.0,
+        centre=(x, y - 0.03, z),
+        inertia=(0.4, 0.6, 0.4),
+    )
     for name, (inner, outer) in BARS.items():
         bar = m.link(name, between=(inner, outer), mass=0.9)
         m.spherical(f"{name}_body", m.ground, bar, at=inner)
         m.spherical(f"{name}_hub", bar, hub, at=outer)
     m.free("wheel", m.ground, hub, at=WHEEL)
     spring = m.at(hub, x, y - 0.08, z - 0.02)
-    m.spring("strut", m.ground.at(0.0, 0.45, 0.75), spring, stiffness=30e3, length=0.62, damping=1.8e3)
+    m.spring(
+        "strut", m.ground.at(0.0, 0.45, 0.75), spring, stiffness=30e3, length=0.62, damping=1.8e3
+    )
     m.force("tyre", m.at(hub, x, y, 0.0), y=-side, z=stand)
     return Scene(m, {"wheel:slide_3": harmonic(0.0, travel, 1.0)}, t=(0.0, 1.0, 201))

@@ -8,7 +8,10 @@ from lagrange_casadi.motion import polynomial
 
 def scene() -> Scene:
     m = Mechanism("four_bar")
-    a, b, c = (m.parameter(name, value, "m", low=0.0) for name, value in (("a", 0.1), ("b", 0.35), ("c", 0.25)))
+    a, b, c = (
+        m.parameter(name, value, "m", low=0.0)
+        for name, value in (("a", 0.1), ("b", 0.35), ("c", 0.25))
+    )
     crank = m.link("crank", length=a, mass=0.3)
     coupler = m.link("coupler", length=b, mass=0.5)
     rocker = m.link("rocker", length=c, mass=0.4)

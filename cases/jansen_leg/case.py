@@ -1,4 +1,6 @@
-"""A leg of Theo Jansen's walking beasts: a crank moves a knee and a shin so that the foot goes straight on the ground."""
+"""A leg of Theo Jansen's walking beasts: a crank moves a knee and a shin so that the foot goes
+straight on the ground.
+"""
 
 from math import pi, sqrt
 
@@ -45,7 +47,9 @@ def scene() -> Scene:
 
 
 def _apex(base: float, near: float, far: float) -> tuple[float, float]:
-    """The third corner of a triangle on a link, by its distances from the link's base and tip; on the left."""
+    """The third corner of a triangle on a link, by its distances from the link's base and tip; on
+    the left.
+    """
     x = (base**2 + near**2 - far**2) / (2 * base)
     return x, sqrt(near**2 - x**2)
 
@@ -57,7 +61,10 @@ def _triangle(m: Mechanism, name: str, base: float, near: float, far: float) -> 
     masses = [PER_LENGTH * length for length in (base, near, far)]
     middles = [((p[0] + q[0]) / 2, (p[1] + q[1]) / 2) for p, q in corners]
     mass = sum(masses)
-    cx, cy = (sum(w * middle[n] for w, middle in zip(masses, middles, strict=True)) / mass for n in range(2))
+    cx, cy = (
+        sum(w * middle[n] for w, middle in zip(masses, middles, strict=True)) / mass
+        for n in range(2)
+    )
     inertia = sum(
         w * (length**2 / 12 + (u - cx) ** 2 + (v - cy) ** 2)
         for w, length, (u, v) in zip(masses, (base, near, far), middles, strict=True)

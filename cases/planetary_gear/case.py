@@ -1,4 +1,6 @@
-"""A planetary gear: a sun drives three planets in a ring that stands still, and their carrier stirs slowly."""
+"""A planetary gear: a sun drives three planets in a ring that stands still, and their carrier stirs
+slowly.
+"""
 
 from math import pi
 
@@ -20,13 +22,35 @@ def scene() -> Scene:
     unsteady = m.parameter("unsteady", 0.3, "1", low=0.0, high=1.0)
     width = 0.025
     sun = wheel(m, "sun", radius=module * SUN / 2, width=width, teeth=SUN)
-    ring = wheel(m, "ring", radius=module * RING * 0.6, bore=module * RING / 2, width=width, teeth=RING, internal=True)
-    carrier = m.link("carrier", length=module * (SUN + PLANET) / 2, mass=1.2, centre=(0, 0), inertia=8e-4)
+    ring = wheel(
+        m,
+        "ring",
+        radius=module * RING * 0.6,
+        bore=module * RING / 2,
+        width=width,
+        teeth=RING,
+        internal=True,
+    )
+    carrier = m.link(
+        "carrier", length=module * (SUN + PLANET) / 2, mass=1.2, centre=(0, 0), inertia=8e-4
+    )
     main = m.revolute("input", m.ground, sun)
     output = m.revolute("output", m.ground, carrier)
     m.weld("housing", m.ground, ring)
-    planetary(m, "set", sun, carrier, ring, teeth=(SUN, PLANET, RING), module=module, planets=3, width=width)
+    planetary(
+        m,
+        "set",
+        sun,
+        carrier,
+        ring,
+        teeth=(SUN, PLANET, RING),
+        module=module,
+        planets=3,
+        width=width,
+    )
     # A stirrer of four blades.
     m.torque("stirred", carrier, -torque * (1.0 + unsteady * ca.sin(4.0 * m.coordinate(output))))
     m.output("power", m.results.effort(main) * m.rate(main), unit="W")
-    return Scene(m, {"input": polynomial(0.0, 2 * pi / 60 * rpm)}, over=("input", 0, "1260 deg", 421))
+    return Scene(
+        m, {"input": polynomial(0.0, 2 * pi / 60 * rpm)}, over=("input", 0, "1260 deg", 421)
+    )

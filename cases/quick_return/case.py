@@ -1,4 +1,6 @@
-"""A shaper's quick return: a crank's pin in the slot of a rocker, and a ram that the rocker's end drives."""
+"""A shaper's quick return: a crank's pin in the slot of a rocker, and a ram that the rocker's end
+drives.
+"""
 
 from math import pi
 
@@ -20,7 +22,13 @@ def scene() -> Scene:
     m.revolute("D", rocker.tip, connecting)
     m.revolute("E", connecting.tip, ram)
     way = m.prismatic("way", m.ground.at(0, 0.3), ram, axis=(1, 0))
-    # The tool cuts on the slow stroke and meets nothing on the quick one: the force follows the sign of the ram's rate.
+    # The tool cuts on the slow stroke and meets nothing on the quick one: the force follows the
+    # sign of the ram's rate.
     rate = m.rate(way)
     m.force("cut", ram, x=-cutting * (rate > 0))
-    return Scene(m, motion={"O": polynomial(0, -4 * pi)}, t=(0, 0.5, 401), posture={"rocker": 1.5, "connecting": 0.0})
+    return Scene(
+        m,
+        motion={"O": polynomial(0, -4 * pi)},
+        t=(0, 0.5, 401),
+        posture={"rocker": 1.5, "connecting": 0.0},
+    )

@@ -1,4 +1,6 @@
-"""A disc cam that lifts a valve by a roller, against a spring: from the lift to the profile and the contact's force."""
+"""A disc cam that lifts a valve by a roller, against a spring: from the lift to the profile and the
+contact's force.
+"""
 
 from math import pi
 
@@ -11,7 +13,9 @@ RISE, TOP, FALL = 100 * pi / 180, 20 * pi / 180, 150 * pi / 180
 START = 50 * pi / 180
 """The instants begin within the way up, at this angle of the cam [rad]."""
 GUIDED, ASIDE = 0.05, 0.003
-"""The guide holds the stem so far from its roller, and the spring acts so far beside its axis [m]."""
+"""The guide holds the stem so far from its roller, and the spring acts so
+far beside its axis [m].
+"""
 
 
 def scene() -> Scene:
@@ -25,7 +29,9 @@ def scene() -> Scene:
     cam = m.link("cam", length=0.05, mass=1.8, centre=(0, 0), inertia=2.2e-3)
     stem = m.link("stem", length=0.12, mass=0.5)
     shaft = m.revolute("shaft", m.ground, cam)
-    guide = m.prismatic("guide", m.ground.at(offset, 0), stem.at(GUIDED), axis=(0, 1), angle="90 deg")
+    guide = m.prismatic(
+        "guide", m.ground.at(offset, 0), stem.at(GUIDED), axis=(0, 1), angle="90 deg"
+    )
     cycle = [
         move(lift, time=RISE, law="cycloidal", name="rise"),
         dwell(TOP, name="top"),
@@ -33,7 +39,23 @@ def scene() -> Scene:
         dwell(name="rest"),
     ]
     law = moves(cycle, cyclic=True, period=2 * pi)
-    disc_cam(m, "contact", shaft, guide, law, base_radius=base, point=stem.base, roller=0.012, width=0.014)
+    disc_cam(
+        m,
+        "contact",
+        shaft,
+        guide,
+        law,
+        base_radius=base,
+        point=stem.base,
+        roller=0.012,
+        width=0.014,
+    )
     least = ((base + 0.012) ** 2 - offset**2) ** 0.5
-    m.force("spring", stem.at(0.11, ASIDE), y=-preload - stiffness * (m.coordinate(guide) - GUIDED - least))
-    return Scene(m, {"shaft": polynomial(START, speed)}, t=(0, 2 * pi / 60, 220), posture={"guide": 0.1})
+    m.force(
+        "spring",
+        stem.at(0.11, ASIDE),
+        y=-preload - stiffness * (m.coordinate(guide) - GUIDED - least),
+    )
+    return Scene(
+        m, {"shaft": polynomial(START, speed)}, t=(0, 2 * pi / 60, 220), posture={"guide": 0.1}
+    )

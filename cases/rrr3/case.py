@@ -19,7 +19,10 @@ def scene() -> Scene:
     posture, motion = {"platform": 0.0}, {}
     for i in range(3):
         (fx, fy), (px, py) = corner(BASE, i), corner(PLATFORM, i)
-        upper, lower = m.link(f"upper{i}", length=LEG, mass=0.8), m.link(f"lower{i}", length=LEG, mass=0.5)
+        upper, lower = (
+            m.link(f"upper{i}", length=LEG, mass=0.8),
+            m.link(f"lower{i}", length=LEG, mass=0.5),
+        )
         m.revolute(f"drive{i}", m.ground.at(fx, fy), upper)
         m.revolute(f"knee{i}", upper.tip, lower)
         m.revolute(f"foot{i}", lower.tip, platform.at(px, py))

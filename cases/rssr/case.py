@@ -14,7 +14,8 @@ def scene() -> Scene:
     crank = m.link("crank", length=m.parameter("r", 0.1, "m", low=0.01, high=0.15), mass=0.4)
     coupler = m.link("coupler", length=m.parameter("l", 0.4, "m", low=0.2, high=1.0), mass=0.8)
     rocker = m.link("rocker", length=0.25, mass=0.6)
-    # The rocker turns about (0.48, 0.8, 0.36), and lies along (0.6, 0, -0.8) where its angle is zero.
+    # The rocker turns about (0.48, 0.8, 0.36), and lies along (0.6, 0, -0.8) where its angle is
+    # zero.
     axis, along = (0.48, 0.8, 0.36), (0.6, 0.0, -0.8)
     across = (-0.64, 0.6, -0.48)
     m.revolute("O", m.ground, crank)

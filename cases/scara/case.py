@@ -1,4 +1,6 @@
-"""A SCARA arm seen from above: pick and place, as its controller plays it from a file of S-curves."""
+"""A SCARA arm seen from above: pick and place, as its controller plays it
+from a file of S-curves.
+"""
 
 from pathlib import Path
 
@@ -10,7 +12,9 @@ from lagrange_casadi.motion import Motion, read_samples
 CYCLE = 1.2
 """Seconds from pick to place and back, with the rests to grip and to drop."""
 READING = 0.0003
-"""What is rounded off the angles in the file, in the root mean square: a thousandth of a degree over the root of twelve."""
+"""What is rounded off the angles in the file, in the root mean square: a thousandth of a degree
+over the root of twelve.
+"""
 
 
 def scene() -> Scene:
@@ -32,7 +36,15 @@ def scene() -> Scene:
     played = Path(__file__).parent / "moves.csv"
 
     def axis(column: str) -> Motion:
-        return read_samples(played, value=column, unit="deg", time_unit="ms", smoothing=READING, periodic=True, stretch=1 / pace)
+        return read_samples(
+            played,
+            value=column,
+            unit="deg",
+            time_unit="ms",
+            smoothing=READING,
+            periodic=True,
+            stretch=1 / pace,
+        )
 
     return Scene(
         m,

@@ -1,4 +1,6 @@
-"""A servo press: a crank that runs slowly while its ram draws a part, and quickly for the rest of the stroke."""
+"""A servo press: a crank that runs slowly while its ram draws a part, and quickly for the rest of
+the stroke.
+"""
 
 from math import pi
 
@@ -15,7 +17,9 @@ SHARES = (0.55, 0.7, 0.95, 1.0, 0.6, 0.0)
 def scene() -> Scene:
     m = Mechanism("servo_press")
     strokes = m.parameter("strokes", 30.0, "1/min", low=0.0)
-    slowing = m.parameter("slowing", 0.5, low=0.0, high=0.9)  # by how much of its mean speed the crank is slower at the bottom
+    slowing = m.parameter(
+        "slowing", 0.5, low=0.0, high=0.9
+    )  # by how much of its mean speed the crank is slower at the bottom
     drawing = m.parameter("drawing", 250e3, "N", low=0.0)
     r = m.parameter("r", 0.08, "m", low=0.0)
     l = m.parameter("l", 0.6, "m", low=0.0)
@@ -28,12 +32,23 @@ def scene() -> Scene:
     m.revolute("wrist", rod.tip, ram)
     guide = m.prismatic("guide", m.ground, ram, axis=(0, -1))
     height = 1000 * (r + l - m.coordinate(guide))
-    m.force("part", ram, y=drawing * table(height, HEIGHTS, SHARES) * (height < HEIGHTS[-1]) * (m.rate(guide) > 0))
+    m.force(
+        "part",
+        ram,
+        y=drawing * table(height, HEIGHTS, SHARES) * (height < HEIGHTS[-1]) * (m.rate(guide) > 0),
+    )
     m.force("counterbalance", ram, y=mass * 9.81)
     m.output("height", height / 1000, unit="m")
     m.output("power", m.results.effort(main) * m.rate(main), unit="W")
     turn = 2 * pi / 60 * strokes
-    # From the top, where the crank is at a right angle; it is slowest half a turn later, at the bottom.
+    # From the top, where the crank is at a right angle; it is slowest half a turn later, at the
+    # bottom.
     law = expression(lambda t: pi / 2 + turn * t + slowing * ca.sin(turn * t))
     # A whole stroke at any rate; no instant lies at the bottom, where the force jumps.
-    return Scene(m, {"main": law}, t=(0, 2, 720), over=("main", "90 deg", "450 deg", 720), posture={"rod": -pi / 2})
+    return Scene(
+        m,
+        {"main": law},
+        t=(0, 2, 720),
+        over=("main", "90 deg", "450 deg", 720),
+        posture={"rod": -pi / 2},
+    )

@@ -1,4 +1,6 @@
-"""A Stephenson III six-bar: a four-bar whose coupler carries, beside its axis, the pin that drives a second rocker."""
+"""A Stephenson III six-bar: a four-bar whose coupler carries, beside its axis, the pin that drives
+a second rocker.
+"""
 
 from math import pi
 

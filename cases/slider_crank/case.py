@@ -1,4 +1,7 @@
-"""The slider-crank of Nguyen, Petre and Stroe, with the motion of their eq. (22) and the figures of their section 3."""
+"""The slider-crank of Nguyen, Petre and Stroe, with the motion of their eq.
+
+(22) and the figures of their section 3.
+"""
 
 from math import pi
 
@@ -52,6 +55,14 @@ def figures() -> list[Spec]:
     ]
     for force, (along, over, words, note) in forces.items():
         name = f"section:rod:{force}"
-        specs.append(SpanPlot(f"fig{along:02}_{force}", name, INSTANT, f"Fig. {along}: {words}", -1, note))
-        specs.append(TimePlot(f"fig{over:02}_{force}", (name,), f"Fig. {over}: {words}", RATIOS, -1, note))
-    return [*sorted(specs, key=lambda spec: spec.name), SectionMaps("rod_maps", "rod"), MechanismDrawing()]
+        specs.append(
+            SpanPlot(f"fig{along:02}_{force}", name, INSTANT, f"Fig. {along}: {words}", -1, note)
+        )
+        specs.append(
+            TimePlot(f"fig{over:02}_{force}", (name,), f"Fig. {over}: {words}", RATIOS, -1, note)
+        )
+    return [
+        *sorted(specs, key=lambda spec: spec.name),
+        SectionMaps("rod_maps", "rod"),
+        MechanismDrawing(),
+    ]

@@ -6,4 +6,15 @@ from .duty import Duty, InertiaRatio, duty_of
 from .inertia import inertia_at
 from .plot import plot_duty
 
-__all__ = ["Choice", "Duty", "InertiaRatio", "Motor", "duty_of", "inertia_at", "judge", "plot_duty", "read_motors", "select"]
+__all__ = [
+    "Choice",
+    "Duty",
+    "InertiaRatio",
+    "Motor",
+    "duty_of",
+    "inertia_at",
+    "judge",
+    "plot_duty",
+    "read_motors",
+    "select",
+]

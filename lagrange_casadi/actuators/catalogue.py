@@ -28,7 +28,9 @@ _UNITS = {
     "mass": {"kg": 1.0, "g": 1e-3},
     "constant": {"s": 1.0, "min": 60.0},
 }
-"""The units that a column may have, by the last word of its name; the first is meant where none is said."""
+"""The units that a column may have, by the last word of its name; the first is meant where none is
+said.
+"""
 
 _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
@@ -36,13 +38,14 @@ _HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 @public
 @dataclass(frozen=True)
 class Motor:
-    """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one forces in N, speeds in m/s, and
-    the mass of what moves in kg.
+    """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one
+    forces in N, speeds in m/s, and the mass of what moves in kg.
 
-    It bears ``stall_torque`` continuously at rest and ``rated_torque`` at its ``rated_speed``, linear between and on;
-    ``peak_torque`` for a short time, and no speed above ``max_speed``. Where its voltage limits it, it gives ``peak_torque`` up to
-    ``knee_speed`` alone, and from there less, linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its
-    winding: in so long it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
+    It bears ``stall_torque`` continuously at rest and ``rated_torque`` at its ``rated_speed``,
+    linear between and on; ``peak_torque`` for a short time, and no speed above ``max_speed``. Where
+    its voltage limits it, it gives ``peak_torque`` up to ``knee_speed`` alone, and from there less,
+    linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its winding: in so
+    long it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
     """
 
     name: str
@@ -66,7 +69,13 @@ class Motor:
         """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
-        return np.asarray(np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque]))
+        return np.asarray(
+            np.interp(
+                np.abs(speed),
+                [self.knee_speed, self.max_speed],
+                [self.peak_torque, self.end_torque],
+            )
+        )
 
     @property
     def rated_power(self) -> float:
@@ -78,22 +87,27 @@ class Motor:
 def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     """The motors of a CSV file, one a row, below a head of columns in any order and beside others.
 
-    The columns are name, stall_torque, rated_torque, peak_torque [N m], rated_speed, max_speed [1/min] and inertia [kg m^2]; of
-    linear motors name, stall_force, rated_force, peak_force [N], rated_speed, max_speed [m/s] and mass [kg]. There may be
-    knee_speed with end_torque or end_force, and time_constant [s]: a motor whose cell is empty has none. Other units stand with the
-    column, as ``inertia [kg cm^2]``. Cells are parted as :func:`.read_rows` says.
+    The columns are name, stall_torque, rated_torque, peak_torque [N m], rated_speed, max_speed
+    [1/min] and inertia [kg m^2]; of linear motors name, stall_force, rated_force, peak_force [N],
+    rated_speed, max_speed [m/s] and mass [kg]. There may be knee_speed with end_torque or
+    end_force, and time_constant [s]: a motor whose cell is empty has none. Other units stand with
+    the column, as ``inertia [kg cm^2]``. Cells are parted as :func:`.read_rows` says.
 
-    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a column that is missing, and for a
-    line that is no motor, by its number.
+    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a
+    column that is missing, and for a line that is no motor, by its number.
     """
     rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}")
     head = next(rows)
     cells = [_HEAD.fullmatch(cell) for cell in head.cells]
-    names = [match.group(1) if match else cell for match, cell in zip(cells, head.cells, strict=True)]
+    names = [
+        match.group(1) if match else cell for match, cell in zip(cells, head.cells, strict=True)
+    ]
     linear = any(name in names for name in ("stall_force", "rated_force", "peak_force"))
     needed, knee = (_LINEAR if linear else _ROTARY), _KNEE[linear]
     if missing := [column for column in ("name", *needed) if column not in names]:
-        raise DeclarationError(f"{head.where}: it lacks the column '{missing[0]}'; expected name, {', '.join(needed)}")
+        raise DeclarationError(
+            f"{head.where}: it lacks the column '{missing[0]}'; expected name, {', '.join(needed)}"
+        )
     if sum(column in names for column in knee) == 1:
         raise DeclarationError(f"{head.where}: expected both columns {' and '.join(knee)}, or none")
     if twice := [column for column in ("name", *needed, *knee, _LASTS) if names.count(column) > 1]:
@@ -119,12 +133,19 @@ def _unit(head: Row, column: str, unit: str | None, linear: bool) -> float:
     kind = column.rpartition("_")[2]
     units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
     if unit is not None and unit not in units:
-        raise DeclarationError(f"{head.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(units)}")
+        raise DeclarationError(
+            f"{head.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(units)}"
+        )
     return units[unit] if unit is not None else next(iter(units.values()))
 
 
 def _motor(
-    row: Row, names: list[str], units: dict[str, float], needed: tuple[str, ...], knee: tuple[str, str], linear: bool
+    row: Row,
+    names: list[str],
+    units: dict[str, float],
+    needed: tuple[str, ...],
+    knee: tuple[str, str],
+    linear: bool,
 ) -> Motor:
     cells = dict(zip(names, row.cells, strict=True))
     if not cells["name"]:
@@ -135,7 +156,9 @@ def _motor(
             continue
         number = row.number(cells[column])
         if not number >= 0.0 or (number == 0.0 and column not in (needed[-1], *knee)):
-            raise DeclarationError(f"{row.where}: {column} must be a positive number, got {cells[column]!r}")
+            raise DeclarationError(
+                f"{row.where}: {column} must be a positive number, got {cells[column]!r}"
+            )
         numbers[column] = number * unit
     stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
     if rated > stall or stall > peak or rated_speed > most:
@@ -144,8 +167,19 @@ def _motor(
     if (knee[0] in numbers) != (knee[1] in numbers):
         raise DeclarationError(f"{row.where}: expected both {' and '.join(knee)}, or none")
     if knee[0] in numbers and not (numbers[knee[0]] <= most and numbers[knee[1]] <= peak):
-        raise DeclarationError(f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}")
+        raise DeclarationError(
+            f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}"
+        )
     turning = numbers.get(knee[0]), numbers.get(knee[1])
     return Motor(
-        cells["name"], stall, rated, rated_speed, peak, most, inertia, *turning, numbers.get(_LASTS, math.inf), linear=linear
+        cells["name"],
+        stall,
+        rated,
+        rated_speed,
+        peak,
+        most,
+        inertia,
+        *turning,
+        numbers.get(_LASTS, math.inf),
+        linear=linear,
     )

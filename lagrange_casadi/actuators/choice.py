@@ -1,4 +1,6 @@
-"""What a duty takes of a motor: its warmth, its torque, its speed; and the smallest of a catalogue that serves."""
+"""What a duty takes of a motor: its warmth, its torque, its speed; and the smallest of a catalogue
+that serves.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from .warmth import warmest
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """A motor with a gear ratio and what it does: its ``duty``, and how much of its limits that takes, each 1 at most.
+    """A motor with a gear ratio and what it does: its ``duty``, and how much of its limits that
+    takes, each 1 at most.
 
     ``refused`` says of each smaller motor why it does not serve.
     """
@@ -54,32 +57,42 @@ class Choice:
 def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     """What a duty takes of a motor.
 
-    Heat is the root mean square of its torque over what it bears continuously at the mean speed; of a motor with a
-    ``time_constant`` the root of its largest warmth in a cycle that goes on over and over. The peak torque is beside what it gives
-    at the speed of that instant. Raises :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and
-    the reverse.
+    Heat is the root mean square of its torque over what it bears continuously at the mean speed; of
+    a motor with a ``time_constant`` the root of its largest warmth in a cycle that goes on over and
+    over. The peak torque is beside what it gives at the speed of that instant. Raises
+    :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and the
+    reverse.
     """
     if motor.linear != duty.linear:
         kinds = ("a rotary", "a linear")
         raise DeclarationError(
-            f"motor '{motor.name}' is {kinds[motor.linear]} one, and the duty of '{duty.joint}' is that of {kinds[duty.linear]} one"
+            f"motor '{motor.name}' is {kinds[motor.linear]} one, and the duty of '{duty.joint}' is"
+            f" that of {kinds[duty.linear]} one"
         )
     lasting = float(motor.lasting(duty.mean_speed))
-    heat = warmest(duty.t, duty.torque, motor.time_constant) / lasting if lasting > 0.0 else math.inf
+    heat = (
+        warmest(duty.t, duty.torque, motor.time_constant) / lasting if lasting > 0.0 else math.inf
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         torque = float(np.nanmax(np.abs(duty.torque) / motor.at_most(duty.speed)))
     return Choice(motor, duty, heat, torque, duty.peak_speed / motor.max_speed, refused)
 
 
 @public
-def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, ratios: Sequence[float] = (1.0,)) -> Choice:
+def select(
+    motors: Iterable[Motor],
+    duty: Callable[[float, float], Duty],
+    *,
+    ratios: Sequence[float] = (1.0,),
+) -> Choice:
     """The smallest motor that serves, by rated power, with the ratio that heats it least.
 
-    ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as
-    ``lambda ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where no share of its limits is
-    above 1, as :func:`judge` has them.
+    ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as ``lambda
+    ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where no
+    share of its limits is above 1, as :func:`judge` has them.
 
-    Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and :class:`.DeclarationError` for none.
+    Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and
+    :class:`.DeclarationError` for none.
     """
     given = sorted(motors, key=lambda motor: (motor.rated_power, motor.name))
     if not given or not list(ratios):
@@ -87,7 +100,9 @@ def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, rat
     refused: list[str] = []
     nearest: Choice | None = None
     for motor in given:
-        tried = [judge(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios]
+        tried = [
+            judge(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios
+        ]
         serving = [choice for choice in tried if choice.serves]
         if serving:
             return min(serving, key=lambda choice: choice.heat)
@@ -95,7 +110,9 @@ def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, rat
         refused.append(f"{motor.name}: {_told(best)}")
         nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
     assert nearest is not None
-    raise NoDesignError(f"no motor of {len(given)} serves; nearest comes {nearest.motor.name}: {_told(nearest)}")
+    raise NoDesignError(
+        f"no motor of {len(given)} serves; nearest comes {nearest.motor.name}: {_told(nearest)}"
+    )
 
 
 def _worst(choice: Choice) -> float:

@@ -1,4 +1,6 @@
-"""What a cycle asks of the motor of a drive: speeds and torques behind its gearbox, their means, power and energy."""
+"""What a cycle asks of the motor of a drive: speeds and torques behind its gearbox, their means,
+power and energy.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ _COARSE = 0.01
 
 
 class InertiaRatio(NamedTuple):
-    """The inertia of what is driven over that of the motor, both at the motor: over a cycle the least, the mean, the largest."""
+    """The inertia of what is driven over that of the motor, both at the motor: over a cycle the
+    least, the mean, the largest.
+    """
 
     least: float
     mean: float
@@ -29,12 +33,14 @@ class InertiaRatio(NamedTuple):
 @public
 @dataclass(frozen=True, eq=False)
 class Duty:
-    """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m], each (t,).
+    """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N
+    m], each (t,).
 
-    The motor turns ``ratio`` times as fast as the drive. Its gearbox loses a share of what passes it, whichever way: 1 less its
-    ``efficiency``. The torque turns the motor's own ``inertia`` [kg m^2] too. Of a drive that slides the ratio is in rad/m; a
-    ``linear`` motor has speeds in m/s, forces in N and a mass in kg in their place. ``carried`` is the inertia that the drive feels
-    [kg m^2 or kg], (t,), where it is known: see :func:`.inertia_at`.
+    The motor turns ``ratio`` times as fast as the drive. Its gearbox loses a share of what passes
+    it, whichever way: 1 less its ``efficiency``. The torque turns the motor's own ``inertia`` [kg
+    m^2] too. Of a drive that slides the ratio is in rad/m; a ``linear`` motor has speeds in m/s,
+    forces in N and a mass in kg in their place. ``carried`` is the inertia that the drive feels [kg
+    m^2 or kg], (t,), where it is known: see :func:`.inertia_at`.
     """
 
     joint: str
@@ -84,7 +90,9 @@ class Duty:
 
     @property
     def peak_return(self) -> float:
-        """The largest power that comes back to it [W], nothing where none does: what a brake resistor bears."""
+        """The largest power that comes back to it [W], nothing where none does: what a brake
+        resistor bears.
+        """
         return max(0.0, float(-self.power.min()))
 
     @property
@@ -101,21 +109,34 @@ class Duty:
     def inertia_ratio(self) -> InertiaRatio:
         """The inertia of what is driven, as the motor feels it, over the motor's own.
 
-        Raises :class:`.DeclarationError` where the inertia of what is driven is not known, or the motor's is zero.
+        Raises :class:`.DeclarationError` where the inertia of what is driven is not known, or the
+        motor's is zero.
         """
         if self.carried is None or self.inertia == 0.0:
-            lacking = "the motor's inertia" if self.carried is not None else "what the drive feels, as inertia_at tells it"
+            lacking = (
+                "the motor's inertia"
+                if self.carried is not None
+                else "what the drive feels, as inertia_at tells it"
+            )
             raise DeclarationError(f"inertia ratio of '{self.joint}': expected {lacking}")
         ratio = self.carried / (self.ratio**2 * self.inertia)
         return InertiaRatio(float(ratio.min()), mean_of(self.t, ratio), float(ratio.max()))
 
     @property
     def coarse(self) -> bool:
-        """Whether instants are too few: every second one tells a root of the mean square, or a peak, that is 1 % off."""
-        half = replace(self, t=self.t[::2], speed=self.speed[::2], torque=self.torque[::2], carried=None)
+        """Whether instants are too few: every second one tells a root of the mean square, or a
+        peak, that is 1 % off.
+        """
+        half = replace(
+            self, t=self.t[::2], speed=self.speed[::2], torque=self.torque[::2], carried=None
+        )
         if half.t.size < 2:
             return True
-        pairs = ((self.rms_torque, half.rms_torque), (self.peak_torque, half.peak_torque), (self.peak_speed, half.peak_speed))
+        pairs = (
+            (self.rms_torque, half.rms_torque),
+            (self.peak_torque, half.peak_torque),
+            (self.peak_speed, half.peak_speed),
+        )
         return any(abs(whole - part) > _COARSE * whole for whole, part in pairs)
 
 
@@ -133,16 +154,21 @@ def duty_of(
 ) -> Duty:
     """The duty of a drive's motor, from a solution that has the drive's effort and its motion.
 
-    ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in rad/m; a negative one turns it the
-    other way. ``efficiency`` is that of the gearbox, ``inertia`` [kg m^2] that of the motor's rotor and what turns with it.
-    A ``linear`` motor pushes a drive that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held`` is the range
-    of its efforts, by default the solution's: where joints that rub are at rest the effort is the larger in size of it.
+    ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in
+    rad/m; a negative one turns it the other way. ``efficiency`` is that of the gearbox, ``inertia``
+    [kg m^2] that of the motor's rotor and what turns with it. A ``linear`` motor pushes a drive
+    that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
+    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held``
+    is the range of its efforts, by default the solution's: where joints that rub are at rest the
+    effort is the larger in size of it.
 
-    Raises :class:`.UnknownNameError` for what is no drive of the solution, :class:`.DeclarationError` for numbers that cannot be,
-    for fewer than two instants, and where the effort is open, as where a joint that rubs is at rest.
+    Raises :class:`.UnknownNameError` for what is no drive of the solution,
+    :class:`.DeclarationError` for numbers that cannot be, for fewer than two instants, and where
+    the effort is open, as where a joint that rubs is at rest.
     """
-    drives = [str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")]
+    drives = [
+        str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")
+    ]
     if joint not in drives:
         raise UnknownNameError("drive", joint, drives)
     if not (math.isfinite(ratio) and ratio != 0.0):
@@ -150,13 +176,19 @@ def duty_of(
     if not 0.0 < efficiency <= 1.0:
         raise DeclarationError(f"efficiency must be above 0 and at most 1, got {efficiency!r}")
     if not 0.0 <= inertia < math.inf:
-        raise DeclarationError(f"inertia must be a finite number that is not negative, got {inertia!r}")
+        raise DeclarationError(
+            f"inertia must be a finite number that is not negative, got {inertia!r}"
+        )
     if linear and not slides(solution, joint):
-        raise DeclarationError(f"drive '{joint}' turns, and a linear motor slides; expected a rotary one")
+        raise DeclarationError(
+            f"drive '{joint}' turns, and a linear motor slides; expected a rotary one"
+        )
     if solution.t.size < 2:
         raise DeclarationError("a duty needs two instants or more, over a whole cycle")
     if carried is not None and np.shape(carried) != solution.t.shape:
-        raise DeclarationError(f"carried: expected an inertia at each of the {solution.t.size} instants")
+        raise DeclarationError(
+            f"carried: expected an inertia at each of the {solution.t.size} instants"
+        )
     effort, motion = solution.effort(joint), solution.motion(joint)
     rests = np.isnan(effort)
     held = solution.held.get(joint) if held is None else held
@@ -164,16 +196,33 @@ def duty_of(
         effort = np.where(rests, held.worst, effort)
     open_ = int(np.count_nonzero(~np.isfinite(effort)))
     if open_:
-        why = "; joints that rub are at rest there: give what holding() tells, or their friction smooth"
+        why = (
+            "; joints that rub are at rest there: give what holding() tells, or their friction"
+            " smooth"
+        )
         if held is not None:
-            why = f"; joints that rub are at rest there, and {held.untold}: give their friction smooth"
+            why = (
+                f"; joints that rub are at rest there, and {held.untold}: give their friction"
+                " smooth"
+            )
         why = why if solution.resting.any() else ""
-        raise DeclarationError(f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{why}")
-    # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from it.
+        raise DeclarationError(
+            f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{why}"
+        )
+    # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from
+    # it.
     passed = np.where(rests | (effort * motion.rate >= 0.0), 1.0 / efficiency, efficiency)
     torque = effort * passed / ratio + inertia * ratio * motion.acceleration
     return Duty(
-        joint, float(ratio), float(efficiency), float(inertia), solution.t, ratio * motion.rate, torque, bool(linear), carried
+        joint,
+        float(ratio),
+        float(efficiency),
+        float(inertia),
+        solution.t,
+        ratio * motion.rate,
+        torque,
+        bool(linear),
+        carried,
     )
 
 

@@ -28,14 +28,16 @@ def inertia_at(
     t: Times | None = None,
     over: Over | None = None,
 ) -> Array:
-    """The inertia that a drive feels at the scene's instants, or at others, (t,) [kg m^2; kg of a drive that slides].
+    """The inertia that a drive feels at the scene's instants, or at others, (t,) [kg m^2; kg of a
+    drive that slides].
 
-    It is twice the kinetic energy of all that moves where the drive moves at unit rate and other drives are at rest, whatever the
-    motion: at rest too. A mechanism's varies over its cycle. It is infinite where the drive cannot move the mechanism, at a dead
-    centre. Where friction is, it is without it.
+    It is twice the kinetic energy of all that moves where the drive moves at unit rate and other
+    drives are at rest, whatever the motion: at rest too. A mechanism's varies over its cycle. It is
+    infinite where the drive cannot move the mechanism, at a dead centre. Where friction is, it is
+    without it.
 
-    Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives and motions are not as many, and
-    as :func:`.evaluate` does.
+    Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives
+    and motions are not as many, and as :func:`.evaluate` does.
     """
     values = scene.values(parameters)
     seen = seen_inertia(scene, values)
@@ -44,9 +46,18 @@ def inertia_at(
     several = len(seen.motions) > 1
     rows = seen.program.data.template.content["rows"]
     if rows or (several and len(seen.drives) != len(seen.motions)):
-        why = "non-holonomic constraints" if rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
-        raise DeclarationError(f"inertia at '{joint}': with {why} no drive moves alone, the others at rest")
-    times, p = instants_of(scene.prescribed, scene.timing(t, over), values).t, np.array(list(values.values()))
+        why = (
+            "non-holonomic constraints"
+            if rows
+            else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
+        )
+        raise DeclarationError(
+            f"inertia at '{joint}': with {why} no drive moves alone, the others at rest"
+        )
+    times, p = (
+        instants_of(scene.prescribed, scene.timing(t, over), values).t,
+        np.array(list(values.values())),
+    )
     found, _ = run(seen.program, times, p, _VM)
     refuse(seen.program, found, times, p, _VM)
     return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
@@ -55,7 +66,10 @@ def inertia_at(
 def _alone(seen: SeenInertia, out: Array, drive: int) -> Array:
     """Of the columns M and R (columns, t) the inertia that one drive feels alone."""
     count = len(seen.motions)
-    matrix, by_rate = (part.reshape(-1, count, out.shape[1]).transpose(2, 0, 1) for part in (out[: count * count], out[count**2 :]))
+    matrix, by_rate = (
+        part.reshape(-1, count, out.shape[1]).transpose(2, 0, 1)
+        for part in (out[: count * count], out[count**2 :])
+    )
     if count == 1:
         with np.errstate(divide="ignore"):
             return np.asarray(matrix[:, 0, 0] / by_rate[:, drive, 0] ** 2)

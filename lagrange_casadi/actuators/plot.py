@@ -16,7 +16,9 @@ from .duty import Duty
 
 
 def check_picture(path: str | Path) -> None:
-    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and :class:`.PathError`."""
+    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and
+    :class:`.PathError`.
+    """
     target = Path(path)
     if target.suffix not in PICTURES:
         raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
@@ -26,7 +28,8 @@ def check_picture(path: str | Path) -> None:
 @public
 @one_at_a_time()
 def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
-    """Draw a duty's points of torque over speed, its root mean square at its mean speed, and the limits of a motor, into a file.
+    """Draw a duty's points of torque over speed, its root mean square at its mean speed, and the
+    limits of a motor, into a file.
 
     Raises as :func:`check_picture` does.
     """
@@ -37,11 +40,30 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     turns = 1.0 if duty.linear else 60.0 / math.tau
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
-    axes.plot(turns * np.abs(duty.speed), np.abs(duty.torque), ".-", color="#1f4e79", lw=0.8, ms=3, label=f"motor of {duty.joint}")
-    axes.plot(turns * duty.mean_speed, duty.rms_torque, "D", color="#c0392b", label="root mean square, at the mean speed")
+    axes.plot(
+        turns * np.abs(duty.speed),
+        np.abs(duty.torque),
+        ".-",
+        color="#1f4e79",
+        lw=0.8,
+        ms=3,
+        label=f"motor of {duty.joint}",
+    )
+    axes.plot(
+        turns * duty.mean_speed,
+        duty.rms_torque,
+        "D",
+        color="#c0392b",
+        label="root mean square, at the mean speed",
+    )
     if motor is not None:
         speeds = np.linspace(0.0, motor.max_speed, 200)
-        axes.plot(turns * speeds, motor.lasting(speeds), color="#2e7d4f", label=f"{motor.name}, continuous")
+        axes.plot(
+            turns * speeds,
+            motor.lasting(speeds),
+            color="#2e7d4f",
+            label=f"{motor.name}, continuous",
+        )
         limit, ends = np.append(motor.at_most(speeds), 0.0), np.append(speeds, motor.max_speed)
         axes.plot(turns * ends, limit, color="#b3541e", label=f"{motor.name}, peak")
     speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")

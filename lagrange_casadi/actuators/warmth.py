@@ -13,15 +13,17 @@ from .duty import mean_of
 def warmest(t: Array, torque: Array, time_constant: float = math.inf) -> float:
     """The torque [N m] that would warm for ever as much as a cycle's warmest instant does.
 
-    The losses in the winding go with the square of the torque, and warm it by the law tau w' + w = torque^2, straight between
-    instants, w the same at the start of a cycle as at its end. Where tau is infinite that is the root of the mean square.
+    The losses in the winding go with the square of the torque, and warm it by the law tau w' + w =
+    torque^2, straight between instants, w the same at the start of a cycle as at its end. Where tau
+    is infinite that is the root of the mean square.
     """
     heat, steps = torque**2, np.diff(t)
     if math.isinf(time_constant):
         return math.sqrt(mean_of(t, heat))
     parts = steps / time_constant
     keep, gain = np.exp(-parts), -np.expm1(-parts)
-    # The exact solution for heat that goes straight from a to b: w1 = keep w0 + gain a + (1 - gain/part) (b - a).
+    # The exact solution for heat that goes straight from a to b: w1 = keep w0 + gain a + (1 -
+    # gain/part) (b - a).
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = np.where(parts > 1e-6, 1.0 - gain / parts, parts / 2.0)
     added = gain * heat[:-1] + slope * (heat[1:] - heat[:-1])

@@ -1,4 +1,6 @@
-"""The mechanism itself on the sheet: bodies, joints, springs, what stands still, ways of points, names."""
+"""The mechanism itself on the sheet: bodies, joints, springs, what stands still, ways of points,
+names.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,16 @@ import numpy as np
 from ..base.arrays import Array
 from ..declare.description import in_space
 from ..shapes.places import placed
-from ..shapes.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
+from ..shapes.shapes import (
+    JointShape,
+    Place,
+    Shape,
+    Spot,
+    joint_shapes,
+    load_shapes,
+    path_spots,
+    shapes,
+)
 from ..shapes.solid import COLOURS, PATH
 from .drawn import INK, Dot, Line, Thing, Words, across, along
 from .motion import Motion
@@ -56,7 +67,11 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
     for joint in joints:
         if joint.kind in _PINS:
             ball = joint.kind == "spherical"
-            yield Dot(stage.on_sheet(motion.place(joint.child)), (4.0 if ball else 4.8) * stage.unit, INK if ball else "#ffffff")
+            yield Dot(
+                stage.on_sheet(motion.place(joint.child)),
+                (4.0 if ball else 4.8) * stage.unit,
+                INK if ball else "#ffffff",
+            )
     for spot in path_spots(description).values():
         yield Dot(stage.on_sheet(motion.place(spot)), 3.6 * stage.unit, PATH)
     if names:
@@ -64,12 +79,20 @@ def mechanism(motion: Motion, stage: Stage, *, names: bool) -> Iterator[Thing]:
 
 
 def _depth(motion: Motion, stage: Stage, shape: Shape) -> float:
-    return stage.depth(motion.place(Spot(shape.name, shape.axis[1] if shape.axis else shape.centre or (0.0, 0.0, 0.0))))
+    return stage.depth(
+        motion.place(
+            Spot(shape.name, shape.axis[1] if shape.axis else shape.centre or (0.0, 0.0, 0.0))
+        )
+    )
 
 
-def _body(motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], colour: str) -> Iterator[Thing]:
+def _body(
+    motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], colour: str
+) -> Iterator[Thing]:
     def on_sheet(places: Sequence[Place]) -> Array:
-        return np.stack([stage.on_sheet(motion.place(Spot(shape.name, at))) for at in places], axis=1)
+        return np.stack(
+            [stage.on_sheet(motion.place(Spot(shape.name, at))) for at in places], axis=1
+        )
 
     unit = stage.unit
     for plate in shape.plates:
@@ -80,7 +103,10 @@ def _body(motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], 
         yield Line(on_sheet(shape.axis), colour, 8.0 * unit)
     for arm in shape.arms:
         yield Line(on_sheet(arm), colour, 5.0 * unit)
-    slides = any(joint.kind in _SLIDES and shape.name in (joint.parent.body, joint.child.body) for joint in joints)
+    slides = any(
+        joint.kind in _SLIDES and shape.name in (joint.parent.body, joint.child.body)
+        for joint in joints
+    )
     if shape.kind == "point" and not slides:
         half = 9.0 * unit * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         yield Line(on_sheet([(0.0, 0.0, 0.0)]) + half, INK, 1.2 * unit, closed=True, fill=colour)
@@ -96,13 +122,25 @@ def _disc(motion: Motion, stage: Stage, shape: Shape, colour: str) -> Iterator[T
 
 
 def rim(motion: Motion, shape: Shape) -> Array | None:
-    """The edge of a body that is a disc (frames, n, 3) [m], about the joint by which it turns; None of any other."""
-    joints = [one for one in joint_shapes(motion.solution.description) if shape.name in (one.parent.body, one.child.body)]
+    """The edge of a body that is a disc (frames, n, 3) [m], about the joint by which it turns; None
+    of any other.
+    """
+    joints = [
+        one
+        for one in joint_shapes(motion.solution.description)
+        if shape.name in (one.parent.body, one.child.body)
+    ]
     turning = next((one for one in joints if one.kind in _TURNS), None)
     if not shape.disc or (turning is None and any(one.kind in _SLIDES for one in joints)):
         return None
     axis = np.array([0.0, 0.0, 1.0])
-    own = np.stack([motion.way(shape.name, way) for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))], axis=1)
+    own = np.stack(
+        [
+            motion.way(shape.name, way)
+            for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        ],
+        axis=1,
+    )
     if not np.isfinite(own).all():
         return None
     if turning is not None and in_space(motion.solution.description):
@@ -123,14 +161,24 @@ def _slide(motion: Motion, stage: Stage, joint: JointShape) -> Array:
 
 def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
     """A line along which a joint slides, as far as it ever does."""
-    start, way = motion.place(joint.parent), motion.way(joint.parent.body, joint.axes[0], joint.parent.at)
+    start, way = (
+        motion.place(joint.parent),
+        motion.way(joint.parent.body, joint.axes[0], joint.parent.at),
+    )
     reach = np.einsum("fc,fc->f", motion.place(joint.child) - start, way)
     pad = 26.0 * stage.unit / stage.scale
     ends = [start + way * (reach.min() - pad), start + way * (reach.max() + pad)]
-    return Line(np.stack([stage.on_sheet(end) for end in ends], axis=1), "#888888", 1.2 * stage.unit, dashed=True)
+    return Line(
+        np.stack([stage.on_sheet(end) for end in ends], axis=1),
+        "#888888",
+        1.2 * stage.unit,
+        dashed=True,
+    )
 
 
-def _block(motion: Motion, stage: Stage, joint: JointShape, masses: set[str], colours: dict[str, str]) -> Line:
+def _block(
+    motion: Motion, stage: Stage, joint: JointShape, masses: set[str], colours: dict[str, str]
+) -> Line:
     """What slides: in the colour of its body, larger where it is the point mass itself."""
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
     mass = body in masses
@@ -161,9 +209,17 @@ def _coil(start: Array, stop: Array, unit: float) -> Line:
     """A spring between places on the sheet (frames, 2): straight at its ends, a zigzag between."""
     way = stop - start
     side = 6.0 * unit * across(along(way))
-    shares = [0.0, 0.15, *(0.15 + 0.7 * (k + 0.5) / (2 * _COILS) for k in range(2 * _COILS)), 0.85, 1.0]
+    shares = [
+        0.0,
+        0.15,
+        *(0.15 + 0.7 * (k + 0.5) / (2 * _COILS) for k in range(2 * _COILS)),
+        0.85,
+        1.0,
+    ]
     sides = [0.0, 0.0, *((-1.0) ** k for k in range(2 * _COILS)), 0.0, 0.0]
-    points = np.stack([start + u * way + s * side for u, s in zip(shares, sides, strict=True)], axis=1)
+    points = np.stack(
+        [start + u * way + s * side for u, s in zip(shares, sides, strict=True)], axis=1
+    )
     return Line(points, "#666666", 1.5 * unit)
 
 
@@ -173,7 +229,9 @@ def _names(motion: Motion, stage: Stage, joints: list[JointShape]) -> Iterator[W
     found: list[tuple[Array, list[str]]] = []
     for joint in joints:
         points = stage.on_sheet(motion.place(joint.child))
-        near = [names for other, names in found if np.max(np.abs(other - points)) < _NEAR * stage.unit]
+        near = [
+            names for other, names in found if np.max(np.abs(other - points)) < _NEAR * stage.unit
+        ]
         if near:
             near[0].append(joint.name)
         else:
@@ -182,5 +240,7 @@ def _names(motion: Motion, stage: Stage, joints: list[JointShape]) -> Iterator[W
         text = ", ".join(names)
         room = stage.width - (9.0 + _LETTER * len(text)) * stage.unit
         before = bool(np.max(points[:, 0]) > room and np.min(points[:, 0]) > stage.width - room)
-        offset = stage.unit * np.array([-9.0 if before else 9.0, -15.0 if raised & set(names) else -9.0])
+        offset = stage.unit * np.array(
+            [-9.0 if before else 9.0, -15.0 if raised & set(names) else -9.0]
+        )
         yield Words(points + offset, text, before)

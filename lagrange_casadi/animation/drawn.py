@@ -1,4 +1,7 @@
-"""What is drawn on the sheet, frame by frame: lines, faces, dots and words. Places are in points, from the upper left."""
+"""What is drawn on the sheet, frame by frame: lines, faces, dots and words.
+
+Places are in points, from the upper left.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,8 @@ INK = "#222222"
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A polyline through ``points`` (frames, n, 2), or one polygon where it is ``closed``; one frame where it stands still.
+    """A polyline through ``points`` (frames, n, 2), or one polygon where it is ``closed``; one
+    frame where it stands still.
 
     ``fill`` is a colour or nothing, ``opacity`` that of the filling. A ``width`` of 0 has no line.
     """
@@ -38,7 +42,9 @@ class Dot:
 
 @dataclass(frozen=True, eq=False)
 class Words:
-    """A text whose left end is at ``points`` (frames, 2), or its right end where it is ``before`` them."""
+    """A text whose left end is at ``points`` (frames, 2), or its right end where it is ``before``
+    them.
+    """
 
     points: Array
     text: str
@@ -50,7 +56,8 @@ Thing = Line | Dot | Words
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """All that is drawn, in the sequence in which it is, over a number of ``frames``; ``unit`` is the size of a point in pixels.
+    """All that is drawn, in the sequence in which it is, over a number of ``frames``; ``unit`` is
+    the size of a point in pixels.
 
     ``closed`` says that the first frame follows the last one.
     """

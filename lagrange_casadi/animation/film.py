@@ -39,10 +39,12 @@ _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 @public
 @dataclass(frozen=True)
 class Film:
-    """How a cycle is shown: the picture's ``width`` [pixels], frames a second, and the ``seconds`` that a cycle takes.
+    """How a cycle is shown: the picture's ``width`` [pixels], frames a second, and the ``seconds``
+    that a cycle takes.
 
-    ``forces`` adds reactions, efforts and loads as arrows, ``section`` a section force by its name, as "bending", as ribbons along
-    links. ``names`` writes the joints' names beside them. Raises :class:`.DeclarationError` for what is out of range.
+    ``forces`` adds reactions, efforts and loads as arrows, ``section`` a section force by its name,
+    as "bending", as ribbons along links. ``names`` writes the joints' names beside them. Raises
+    :class:`.DeclarationError` for what is out of range.
     """
 
     width: int = WIDTH
@@ -54,30 +56,56 @@ class Film:
 
     def __post_init__(self) -> None:
         low, high = _WIDTHS
-        if isinstance(self.width, bool) or not isinstance(self.width, int) or not low <= self.width <= high or self.width % 2:
-            raise DeclarationError(f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}")
-        for name, value, unit in (("rate", self.rate, "frames a second"), ("seconds", self.seconds, "seconds a cycle")):
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not (math.isfinite(value) and value > 0):
+        if (
+            isinstance(self.width, bool)
+            or not isinstance(self.width, int)
+            or not low <= self.width <= high
+            or self.width % 2
+        ):
+            raise DeclarationError(
+                f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}"
+            )
+        for name, value, unit in (
+            ("rate", self.rate, "frames a second"),
+            ("seconds", self.seconds, "seconds a cycle"),
+        ):
+            if (
+                isinstance(value, bool)
+                or not isinstance(value, (int, float))
+                or not (math.isfinite(value) and value > 0)
+            ):
                 raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
         if self.seconds < _SHORTEST:
-            raise DeclarationError(f"seconds: expected {_SHORTEST} seconds a cycle at least, got {self.seconds!r}")
+            raise DeclarationError(
+                f"seconds: expected {_SHORTEST} seconds a cycle at least, got {self.seconds!r}"
+            )
         if self.rate > 50:
             raise DeclarationError(f"rate: expected 50 frames a second at most, got {self.rate!r}")
         if self.rate * self.seconds > _MOST:
-            raise DeclarationError(f"rate and seconds: expected {_MOST} frames at most, got {self.rate * self.seconds:.6g}")
+            raise DeclarationError(
+                f"rate and seconds: expected {_MOST} frames at most, got"
+                f" {self.rate * self.seconds:.6g}"
+            )
 
 
 def check_ending(path: Path) -> None:
-    """Raise :class:`.DeclarationError` for a name with another ending, :class:`.LagrangeCasadiError` for an MP4 without ffmpeg."""
+    """Raise :class:`.DeclarationError` for a name with another ending,
+    :class:`.LagrangeCasadiError` for an MP4 without ffmpeg.
+    """
     if path.suffix.lower() not in ENDINGS:
-        raise DeclarationError(f"animation {path}: expected a name that ends in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
+        raise DeclarationError(
+            f"animation {path}: expected a name that ends in {', '.join(ENDINGS[:-1])} or"
+            f" {ENDINGS[-1]}"
+        )
     if path.suffix.lower() == ".mp4":
         find_ffmpeg()
 
 
 @dataclass(frozen=True)
 class Animation:
-    """An animation in a file, which a notebook shows if it is the last value of a cell; a .glb is for programs of its own."""
+    """An animation in a file, which a notebook shows if it is the last value of a cell; a .glb is
+    for programs of its own.
+    """
 
     path: Path
 
@@ -93,23 +121,32 @@ class Animation:
 
 
 @public
-def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
-    """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF, replacing the file at ``path`` whole or not at all.
+def write_animation(
+    solution: Solution, path: str | os.PathLike[str], film: Film | None = None
+) -> Animation:
+    """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF, replacing the file
+    at ``path`` whole or not at all.
 
     What it returns is shown by a notebook.
 
-    Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces that are asked for, and where
-    ``path`` has another ending; :class:`.PathError` and :class:`.StoreError` where the file cannot be written;
-    :class:`.LagrangeCasadiError` where an MP4 is asked for and ffmpeg is not found.
+    Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces
+    that are asked for, and where ``path`` has another ending; :class:`.PathError` and
+    :class:`.StoreError` where the file cannot be written; :class:`.LagrangeCasadiError` where an
+    MP4 is asked for and ffmpeg is not found.
     """
     target, film = Path(path), film or Film()
     check_ending(target)
     ending = target.suffix.lower()
     if ending == ".glb":
         if film.section:
-            raise DeclarationError(f"animation {target}: a .glb has no section forces; they are in {', '.join(ENDINGS[:-1])}")
+            raise DeclarationError(
+                f"animation {target}: a .glb has no section forces; they are in"
+                f" {', '.join(ENDINGS[:-1])}"
+            )
         require_poses(solution, "an animation")
-        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces)
+        solid = glb(
+            solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces
+        )
         with writing(target) as (file,):
             file.write(solid)
         return Animation(target)
@@ -125,15 +162,39 @@ def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film
 
 
 def picture_of(solution: Solution, film: Film) -> Picture:
-    """All that is drawn, frame by frame. Raises :class:`.DeclarationError` for motion or forces that the solution lacks."""
+    """All that is drawn, frame by frame.
+
+    Raises :class:`.DeclarationError` for motion or forces that the solution lacks.
+    """
     require_poses(solution, "an animation")
     motion = motion_of(solution, max(2, round(film.rate * film.seconds)))
-    rims = [around.reshape(-1, 3) for shape in shapes(solution.description) if (around := rim(motion, shape)) is not None]
-    cloud = np.concatenate([*(motion.place(spot) for spot in drawn_spots(solution.description)), *rims])
+    rims = [
+        around.reshape(-1, 3)
+        for shape in shapes(solution.description)
+        if (around := rim(motion, shape)) is not None
+    ]
+    cloud = np.concatenate(
+        [*(motion.place(spot) for spot in drawn_spots(solution.description)), *rims]
+    )
     size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
     shown = film.forces or film.section
-    forces = forces_of(motion, size, arrows=film.forces, section=film.section) if shown else Forces()
-    stage = stage_for(solution.description, np.concatenate([cloud, *forces.cloud()]), film.width, foot=bool(forces.scale))
+    forces = (
+        forces_of(motion, size, arrows=film.forces, section=film.section) if shown else Forces()
+    )
+    stage = stage_for(
+        solution.description,
+        np.concatenate([cloud, *forces.cloud()]),
+        film.width,
+        foot=bool(forces.scale),
+    )
     own = mechanism(motion, stage, names=film.names)
     things = (*ribbon_things(forces, stage), *own, *arrow_things(forces, stage))
-    return Picture(solution.case, stage.width, stage.height, stage.unit, motion.before.size, motion.closed, things)
+    return Picture(
+        solution.case,
+        stage.width,
+        stage.height,
+        stage.unit,
+        motion.before.size,
+        motion.closed,
+        things,
+    )

@@ -1,4 +1,6 @@
-"""Forces on the mechanism: arrows of reactions, efforts and loads to one scale, and section forces as ribbons along links."""
+"""Forces on the mechanism: arrows of reactions, efforts and loads to one scale, and section forces
+as ribbons along links.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,8 @@ _FULL = 1.5 * np.pi
 class Action:
     """What acts at a place (frames, 3): a force [N], or a moment [N m], (frames, 3) in ground axes.
 
-    ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load; a load pushes at its place.
+    ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load; a load
+    pushes at its place.
     """
 
     kind: str
@@ -55,7 +58,9 @@ class Action:
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """A force, or in space a moment: from ``tail`` to ``tip``, each (frames, 3) in ground axes [m]."""
+    """A force, or in space a moment: from ``tail`` to ``tip``, each (frames,
+    3) in ground axes [m].
+    """
 
     tail: Array
     tip: Array
@@ -64,7 +69,9 @@ class Arrow:
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A moment in the plane, about a place (frames, 3), over the largest one (frames,): counter-clockwise where positive."""
+    """A moment in the plane, about a place (frames, 3), over the largest one (frames,):
+    counter-clockwise where positive.
+    """
 
     place: Array
     share: Array
@@ -73,7 +80,9 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Ribbon:
-    """A section force along a link: its axis (frames, ratios, 3), and the ordinates' ends in ground axes [m], of a sign each."""
+    """A section force along a link: its axis (frames, ratios, 3), and the ordinates' ends in ground
+    axes [m], of a sign each.
+    """
 
     axis: Array
     positive: Array
@@ -98,7 +107,8 @@ class Forces:
 
 
 def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> Forces:
-    """The forces of a mechanism of a ``size`` [m]: reactions, efforts and loads, and one section force where one is named.
+    """The forces of a mechanism of a ``size`` [m]: reactions, efforts and loads, and one section
+    force where one is named.
 
     Raises :class:`.DeclarationError` where the solution does not have them.
     """
@@ -110,13 +120,21 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
         largest = largest_of(pushes)
         for one in pushes:
             length = one.vector * (LONGEST * size / (largest or 1.0))
-            tail, tip = (one.place, one.place + length) if one.tail else (one.place - length, one.place)
+            tail, tip = (
+                (one.place, one.place + length) if one.tail else (one.place - length, one.place)
+            )
             found.append(Arrow(tail, tip, one.colour))
         words += [f"arrows: up to {_said(largest, 'N')}"] if pushes else []
         largest = largest_of(turns)
         for one in turns:
             if in_space(motion.solution.description):
-                found.append(Arrow(one.place, one.place + one.vector * (LONGEST * size / (largest or 1.0)), one.colour))
+                found.append(
+                    Arrow(
+                        one.place,
+                        one.place + one.vector * (LONGEST * size / (largest or 1.0)),
+                        one.colour,
+                    )
+                )
             else:
                 arcs.append(Arc(one.place, one.vector[:, 2] / (largest or 1.0), one.colour))
         words += [f"drives' moments: up to {_said(largest, 'N m')}"] if turns else []
@@ -140,7 +158,10 @@ def actions_of(motion: Motion) -> tuple[list[Action], list[Action]]:
     motion = _moving(motion)
     pushes, turns = list(_pushes(motion)), list(_turns(motion))
     if not pushes and not turns:
-        raise DeclarationError(f"{motion.solution.case}: there is no reaction, effort or load to be shown; want reaction too")
+        raise DeclarationError(
+            f"{motion.solution.case}: there is no reaction, effort or load to be shown; want"
+            " reaction too"
+        )
     return pushes, turns
 
 
@@ -154,37 +175,60 @@ def _moving(motion: Motion) -> Motion:
     solution = motion.solution
     if not solution.resting.any():
         return motion
-    shown = {o: values if o in solution.left_open else np.nan_to_num(values) for o, values in solution.outputs.items()}
+    shown = {
+        o: values if o in solution.left_open else np.nan_to_num(values)
+        for o, values in solution.outputs.items()
+    }
     return replace(motion, solution=replace(solution, outputs=shown))
 
 
 def ribbon_things(forces: Forces, stage: Stage) -> Iterator[Thing]:
     """The ribbons on the sheet."""
     for ribbon in forces.ribbons:
-        for edge, colour, opacity in ((ribbon.positive, _POSITIVE, 0.4), (ribbon.negative, _NEGATIVE, 0.3)):
+        for edge, colour, opacity in (
+            (ribbon.positive, _POSITIVE, 0.4),
+            (ribbon.negative, _NEGATIVE, 0.3),
+        ):
             points = np.concatenate([ribbon.axis, edge[:, ::-1]], axis=1)
-            yield Line(stage.on_sheet(points), colour, 1.2 * stage.unit, closed=True, fill=colour, opacity=opacity)
+            yield Line(
+                stage.on_sheet(points),
+                colour,
+                1.2 * stage.unit,
+                closed=True,
+                fill=colour,
+                opacity=opacity,
+            )
 
 
 def arrow_things(forces: Forces, stage: Stage) -> Iterator[Thing]:
     """The arrows on the sheet, and at its foot what the longest of them are."""
     for arrow in forces.arrows:
         tail, tip = stage.on_sheet(arrow.tail), stage.on_sheet(arrow.tip)
-        yield from _headed(np.stack([tail, tip], axis=1), np.hypot(*(tip - tail).T), tip - tail, arrow.colour, stage.unit)
+        yield from _headed(
+            np.stack([tail, tip], axis=1),
+            np.hypot(*(tip - tail).T),
+            tip - tail,
+            arrow.colour,
+            stage.unit,
+        )
     for arc in forces.arcs:
         radius = 26.0 * stage.unit
         angles = np.pi / 4 + _FULL * arc.share[:, None] * np.linspace(0.0, 1.0, 25)
         spokes = np.stack([np.cos(angles), -np.sin(angles)], axis=-1)
         points = stage.on_sheet(arc.place)[:, None] + radius * spokes
         ahead = across(spokes[:, -1]) * np.sign(arc.share)[:, None]
-        yield from _headed(points, radius * _FULL * np.abs(arc.share), ahead, arc.colour, stage.unit)
+        yield from _headed(
+            points, radius * _FULL * np.abs(arc.share), ahead, arc.colour, stage.unit
+        )
     if forces.scale:
         at = np.array([[12.0 * stage.unit, stage.height - 12.0 * stage.unit]])
         yield Words(at, forces.scale)
 
 
 def _headed(points: Array, length: Array, ahead: Array, colour: str, unit: float) -> Iterator[Line]:
-    """A line (frames, n, 2) and the arrow's head at its end, which is smaller where the line of a ``length`` (frames,) is short."""
+    """A line (frames, n, 2) and the arrow's head at its end, which is smaller where the line of a
+    ``length`` (frames,) is short.
+    """
     head = np.minimum(13.0 * unit, length)[:, None]
     way, tip = along(ahead), points[:, -1]
     back, side = tip - head * way, 0.36 * head * across(way)
@@ -192,7 +236,13 @@ def _headed(points: Array, length: Array, ahead: Array, colour: str, unit: float
     if points.shape[1] == 2:
         shaft[:, -1] = tip - 0.8 * head * way
     yield Line(shaft, colour, 2.6 * unit)
-    yield Line(np.stack([tip, back + side, back - side], axis=1), colour, 0.8 * unit, closed=True, fill=colour)
+    yield Line(
+        np.stack([tip, back + side, back - side], axis=1),
+        colour,
+        0.8 * unit,
+        closed=True,
+        fill=colour,
+    )
 
 
 def _pushes(motion: Motion) -> Iterator[Action]:
@@ -215,7 +265,11 @@ def _turns(motion: Motion) -> Iterator[Action]:
     for joint in joint_shapes(motion.solution.description):
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind != "slide" and (effort := _effort(motion, name)) is not None:
-                way = np.array([axis]) if not in_space(motion.solution.description) else motion.way(joint.parent.body, axis)
+                way = (
+                    np.array([axis])
+                    if not in_space(motion.solution.description)
+                    else motion.way(joint.parent.body, axis)
+                )
                 yield Action("effort", name, motion.place(joint.child), effort * way, moment=True)
 
 
@@ -225,7 +279,11 @@ def _vector(motion: Motion, group: str, name: str) -> Array | None:
     columns = [motion.solution.outputs.get(output) for output in outputs]
     if all(column is None for column in columns):
         return None
-    found = motion.at(np.column_stack([np.zeros_like(motion.solution.t) if column is None else column for column in columns]))
+    found = motion.at(
+        np.column_stack(
+            [np.zeros_like(motion.solution.t) if column is None else column for column in columns]
+        )
+    )
     return found if np.isfinite(found).all() else None
 
 
@@ -240,10 +298,19 @@ def _laws(solution: Solution, force: str) -> list[str]:
     """The links whose section force is known."""
     if force not in solution.table.sections:
         raise UnknownNameError("section force", force, solution.table.sections)
-    links = [link for link in solution.links_with_sections if solution.determined(Output("section", link, force))]
+    links = [
+        link
+        for link in solution.links_with_sections
+        if solution.determined(Output("section", link, force))
+    ]
     if not links:
-        none = "bodies of which only mass and centre are known have none, nor is what equilibrium leaves open shown"
-        raise DeclarationError(f"{solution.case}: there is no section force to be shown; want section too; {none}")
+        none = (
+            "bodies of which only mass and centre are known have none, nor is what equilibrium"
+            " leaves open shown"
+        )
+        raise DeclarationError(
+            f"{solution.case}: there is no section force to be shown; want section too; {none}"
+        )
     return links
 
 
@@ -251,9 +318,13 @@ def _ribbon(motion: Motion, link: str, force: str, scale: float) -> Ribbon:
     law, xi = motion.solution.section(link).law, np.linspace(0.0, 1.0, _RATIOS)
     base, tip = (motion.place(Spot(link, (at, 0.0, 0.0)))[:, None] for at in (0.0, law.length))
     axis = base + xi[:, None] * (tip - base)
-    side = motion.way(link, (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0))[:, None]
+    side = motion.way(
+        link, (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0)
+    )[:, None]
     values = scale * motion.at(law.on_grid(force, xi))[..., None]
-    return Ribbon(axis, axis + np.maximum(values, 0.0) * side, axis + np.minimum(values, 0.0) * side)
+    return Ribbon(
+        axis, axis + np.maximum(values, 0.0) * side, axis + np.minimum(values, 0.0) * side
+    )
 
 
 def _said(value: float, unit: str) -> str:

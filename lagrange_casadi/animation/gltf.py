@@ -1,7 +1,9 @@
-"""A mechanism in motion as glTF 2.0 in one binary file (.glb), for presentations, Blender and viewers of three dimensions.
+"""A mechanism in motion as glTF 2.0 in one binary file (.glb), for presentations, Blender and
+viewers of three dimensions.
 
-Bodies are solids that move as a whole: each is a node, whose translation and rotation have a key at every instant that is shown.
-See the specification of glTF 2.0 by the Khronos Group, sections 3 (concepts) and 4 (the binary container).
+Bodies are solids that move as a whole: each is a node, whose translation and rotation have a key at
+every instant that is shown. See the specification of glTF 2.0 by the Khronos Group, sections 3
+(concepts) and 4 (the binary container).
 """
 
 from __future__ import annotations
@@ -35,7 +37,10 @@ _GIRTH = 0.013
 """Half the width of a link, over the mechanism's size."""
 
 _NOTHING, _LEAST = 1e-9, 1e-6
-"""Over the largest: a force that is none. Over the mechanism's size: the least length of an arrow, for none has a length of 0."""
+"""Over the largest: a force that is none.
+
+Over the mechanism's size: the least length of an arrow, for none has a length of 0.
+"""
 
 _METAL, _STILL, _SPRING = "#c3cad3", "#8a929c", "#6a7078"
 _FLOAT, _WHOLE, _POINTS, _CORNERS, _LINE, _TRIANGLES = 5126, 5125, 34962, 34963, 3, 4
@@ -44,12 +49,16 @@ _FLOAT, _WHOLE, _POINTS, _CORNERS, _LINE, _TRIANGLES = 5126, 5125, 34962, 34963,
 def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False) -> bytes:
     """The file: one cycle in so many ``seconds``, with at most ``frames`` keys and one more.
 
-    With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError` where there are not two
-    instants, and where none of the forces that are asked for is known.
+    With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError`
+    where there are not two instants, and where none of the forces that are asked for is known.
     """
     if solution.t.size < 2:
-        raise DeclarationError(f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more")
-    chosen = np.unique(np.linspace(0, solution.t.size - 1, min(solution.t.size, frames + 1)).round().astype(int))
+        raise DeclarationError(
+            f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
+        )
+    chosen = np.unique(
+        np.linspace(0, solution.t.size - 1, min(solution.t.size, frames + 1)).round().astype(int)
+    )
     return _Scene(solution, chosen, seconds, forces).made()
 
 
@@ -70,10 +79,17 @@ class _Scene:
         """The bytes of the file."""
         t = self.solution.t[self.chosen]
         self.keys = self._array((t - t[0]) / (t[-1] - t[0]) * self.seconds, ends=True)
-        cloud = np.concatenate([placed(self.solution, spot) for spot in drawn_spots(self.solution.description)])
+        cloud = np.concatenate(
+            [placed(self.solution, spot) for spot in drawn_spots(self.solution.description)]
+        )
         self.size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
         self.girth = _GIRTH * self.size
-        parts = [*self._bodies(), *self._springs(), *self._still(), *(self._actions() if self.forces else ())]
+        parts = [
+            *self._bodies(),
+            *self._springs(),
+            *self._still(),
+            *(self._actions() if self.forces else ()),
+        ]
         root: dict[str, Any] = {"name": self.solution.case, "children": parts}
         if in_space(self.solution.description):
             right, away, up = upright(self.solution.description["gravity"])
@@ -88,10 +104,17 @@ class _Scene:
             "animations": [{"name": "cycle", "channels": self.channels, "samplers": self.samplers}],
             "buffers": [{"byteLength": len(self.data)}],
         }
-        text = json.dumps({key: value for key, value in content.items() if value}, separators=(",", ":")).encode()
+        text = json.dumps(
+            {key: value for key, value in content.items() if value}, separators=(",", ":")
+        ).encode()
         text += b" " * (-len(text) % 4)
         body = bytes(self.data) + b"\0" * (-len(self.data) % 4)
-        chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
+        chunks = (
+            struct.pack("<II", len(text), 0x4E4F534A)
+            + text
+            + struct.pack("<II", len(body), 0x004E4942)
+            + body
+        )
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
     def _bodies(self) -> Iterator[int]:
@@ -102,14 +125,21 @@ class _Scene:
             own = [joint for joint in joints if joint.child.body == shape.name]
             solids = list(_solids(shape, self.girth))
             pins = [(joint.name, _pin(joint, self._axis(joint), self.girth)) for joint in own]
-            children = [self._node({"name": name, "mesh": self._mesh(name, mesh, _METAL)}) for name, mesh in pins]
+            children = [
+                self._node({"name": name, "mesh": self._mesh(name, mesh, _METAL)})
+                for name, mesh in pins
+            ]
             node: dict[str, Any] = {"name": shape.name}
             if solids:
                 node["mesh"] = self._mesh(shape.name, together(solids), COLOURS[k % len(COLOURS)])
             if children:
                 node["children"] = children
             number = self._node(node)
-            self._moves(number, "translation", placed(self.solution, Spot(shape.name, (0.0, 0.0, 0.0)))[self.chosen])
+            self._moves(
+                number,
+                "translation",
+                placed(self.solution, Spot(shape.name, (0.0, 0.0, 0.0)))[self.chosen],
+            )
             if shape.kind != "point":
                 self._moves(number, "rotation", _quaternions(self._axes(shape.name)))
             yield number
@@ -121,35 +151,58 @@ class _Scene:
                 continue
             start, stop = (placed(self.solution, spot)[self.chosen] for spot in load.spots)
             lengths = np.linalg.norm(stop - start, axis=1)
-            axes = np.stack([frame_along(way if way.any() else np.eye(3)[0]) for way in stop - start])
+            axes = np.stack(
+                [frame_along(way if way.any() else np.eye(3)[0]) for way in stop - start]
+            )
             rod = cylinder(np.zeros(3), np.eye(3)[0], 0.4 * self.girth)
             number = self._node({"name": load.name, "mesh": self._mesh(load.name, rod, _SPRING)})
             self._moves(number, "translation", start)
             self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
-            self._moves(number, "scale", np.stack([lengths, np.ones_like(lengths), np.ones_like(lengths)], 1))
+            self._moves(
+                number,
+                "scale",
+                np.stack([lengths, np.ones_like(lengths), np.ones_like(lengths)], 1),
+            )
             yield number
 
     def _actions(self) -> Iterator[int]:
-        """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long as they are large."""
+        """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as
+        long as they are large.
+        """
         before = np.minimum(self.chosen, self.solution.t.size - 2)
-        pushes, turns = actions_of(Motion(self.solution, before, (self.chosen - before).astype(float), closed=False))
+        pushes, turns = actions_of(
+            Motion(self.solution, before, (self.chosen - before).astype(float), closed=False)
+        )
         for actions, unit, heads in ((pushes, "N", 1), (turns, "N m", 2)):
             largest = largest_of(actions)
             if not largest:
                 continue
             scale = LONGEST * self.size / largest
-            meshes = {colour: self._mesh("arrow", arrow(heads), colour) for colour in dict.fromkeys(one.colour for one in actions)}
+            meshes = {
+                colour: self._mesh("arrow", arrow(heads), colour)
+                for colour in dict.fromkeys(one.colour for one in actions)
+            }
             for one in actions:
                 sizes = np.linalg.norm(one.vector, axis=1)
                 # What is nothing has no direction; it keeps the one before.
-                known = np.maximum.accumulate(np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0))
+                known = np.maximum.accumulate(
+                    np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0)
+                )
                 ways = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
                 axes = np.stack([frame_along(way) for way in ways])
                 extras = {"unit": unit, "metres_per_unit": scale, "largest": float(sizes.max())}
-                number = self._node({"name": f"{one.kind} {one.of}", "mesh": meshes[one.colour], "extras": extras})
-                self._moves(number, "translation", one.place if one.tail else one.place - scale * one.vector)
+                number = self._node(
+                    {"name": f"{one.kind} {one.of}", "mesh": meshes[one.colour], "extras": extras}
+                )
+                self._moves(
+                    number, "translation", one.place if one.tail else one.place - scale * one.vector
+                )
                 self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
-                self._moves(number, "scale", np.tile(np.maximum(scale * sizes, _LEAST * self.size)[:, None], 3))
+                self._moves(
+                    number,
+                    "scale",
+                    np.tile(np.maximum(scale * sizes, _LEAST * self.size)[:, None], 3),
+                )
                 yield number
 
     def _still(self) -> Iterator[int]:
@@ -159,8 +212,14 @@ class _Scene:
                 continue
             down = -upright([*self.solution.description["gravity"], 0.0][:3])[2]
             axes = frame_along(down)
-            foot = block(np.array(joint.parent.at) + 2.2 * self.girth * down, axes, [self.girth, 5 * self.girth, 5 * self.girth])
-            yield self._node({"name": f"{joint.name}, ground", "mesh": self._mesh(joint.name, foot, _STILL)})
+            foot = block(
+                np.array(joint.parent.at) + 2.2 * self.girth * down,
+                axes,
+                [self.girth, 5 * self.girth, 5 * self.girth],
+            )
+            yield self._node(
+                {"name": f"{joint.name}, ground", "mesh": self._mesh(joint.name, foot, _STILL)}
+            )
         for name, spot in path_spots(self.solution.description).items():
             way = placed(self.solution, spot)[self.chosen]
             line = {
@@ -175,7 +234,9 @@ class _Scene:
         """The first axis of a joint, on its child's axes, at the first instant."""
         way = np.array(joint.axes[0] if joint.axes else (0.0, 0.0, 1.0))
         ground = way if joint.parent.body == "ground" else self._axes(joint.parent.body)[0] @ way
-        return np.asarray(ground if joint.child.body == "ground" else self._axes(joint.child.body)[0].T @ ground)
+        return np.asarray(
+            ground if joint.child.body == "ground" else self._axes(joint.child.body)[0].T @ ground
+        )
 
     def _axes(self, body: str) -> Array:
         """The axes of a body as columns (keys, 3, 3); those that it has not go with the others."""
@@ -201,7 +262,12 @@ class _Scene:
             "NORMAL": self._array(mesh.normals, target=_POINTS),
         }
         corners = self._array(mesh.corners.ravel().astype("<u4"), target=_CORNERS)
-        primitive = {"attributes": attributes, "indices": corners, "mode": _TRIANGLES, "material": self._material(colour)}
+        primitive = {
+            "attributes": attributes,
+            "indices": corners,
+            "mode": _TRIANGLES,
+            "material": self._material(colour),
+        }
         self.told["meshes"].append({"name": name, "primitives": [primitive]})
         return len(self.told["meshes"]) - 1
 
@@ -210,24 +276,43 @@ class _Scene:
         if colour not in known:
             share = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
             linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-            surface = {"baseColorFactor": [*linear.round(6).tolist(), 1.0], "metallicFactor": 0.2, "roughnessFactor": 0.6}
+            surface = {
+                "baseColorFactor": [*linear.round(6).tolist(), 1.0],
+                "metallicFactor": 0.2,
+                "roughnessFactor": 0.6,
+            }
             self.told["materials"].append({"name": colour, "pbrMetallicRoughness": surface})
             known.append(colour)
         return known.index(colour)
 
     def _moves(self, node: int, path: str, values: Array) -> None:
-        self.samplers.append({"input": self.keys, "output": self._array(values), "interpolation": "LINEAR"})
-        self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
+        self.samplers.append(
+            {"input": self.keys, "output": self._array(values), "interpolation": "LINEAR"}
+        )
+        self.channels.append(
+            {"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}}
+        )
 
-    def _array(self, values: npt.NDArray[Any], *, ends: bool = False, target: int | None = None) -> int:
-        """Add an array, (n,) or (n, 3 or 4): of whole numbers, or in single precision; ``ends`` tells its least and largest."""
+    def _array(
+        self, values: npt.NDArray[Any], *, ends: bool = False, target: int | None = None
+    ) -> int:
+        """Add an array, (n,) or (n, 3 or 4): of whole numbers, or in single precision; ``ends``
+        tells its least and largest.
+        """
         values = values if values.dtype.kind == "u" else values.astype("<f4") + np.float32(0.0)
-        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes} | ({"target": target} if target else {})
+        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes} | (
+            {"target": target} if target else {}
+        )
         self.data += values.tobytes()
         self.told["bufferViews"].append(view)
         kind = "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}"
         component = _WHOLE if values.dtype.kind == "u" else _FLOAT
-        accessor = {"bufferView": len(self.told["bufferViews"]) - 1, "componentType": component, "count": len(values), "type": kind}
+        accessor = {
+            "bufferView": len(self.told["bufferViews"]) - 1,
+            "componentType": component,
+            "count": len(values),
+            "type": kind,
+        }
         if ends:
             rows = values.reshape(len(values), -1)
             accessor |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
@@ -262,10 +347,11 @@ def _pin(joint: JointShape, axis: Array, girth: float) -> Mesh:
 
 
 def _quaternions(axes: Array) -> Array:
-    """Rotations (n, 3, 3), whose columns are turned axes, as x, y, z, w (n, 4), each on the side of the one before.
+    """Rotations (n, 3, 3), whose columns are turned axes, as x, y, z, w (n, 4), each on the side of
+    the one before.
 
-    By the largest of four squares, so that nothing cancels: Shepperd, *Quaternion from rotation matrix*, Journal of Guidance and
-    Control 1 (1978).
+    By the largest of four squares, so that nothing cancels: Shepperd, *Quaternion from rotation
+    matrix*, Journal of Guidance and Control 1 (1978).
     """
     m = np.asarray(axes, float)
     trace = m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]

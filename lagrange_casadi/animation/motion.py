@@ -14,14 +14,18 @@ from ..shapes.places import drawn_spots, placed
 from ..shapes.shapes import Place, Spot
 
 _SAME = 1e-3
-"""Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last instant is the first again."""
+"""Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last
+instant is the first again.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """The frames lie between instants ``before`` and those that follow, at a ``share`` (frames,) of the way.
+    """The frames lie between instants ``before`` and those that follow, at a ``share`` (frames,) of
+    the way.
 
-    ``closed`` says that the first frame follows the last one. Between two instants everything goes straight.
+    ``closed`` says that the first frame follows the last one. Between two instants everything goes
+    straight.
     """
 
     solution: Solution
@@ -52,7 +56,9 @@ def motion_of(solution: Solution, count: int) -> Motion:
     """
     t = solution.t
     if t.size < 2:
-        raise DeclarationError(f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more")
+        raise DeclarationError(
+            f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more"
+        )
     ends = np.array([placed(solution, spot)[[0, -1]] for spot in drawn_spots(solution.description)])
     whole = np.array([placed(solution, spot) for spot in drawn_spots(solution.description)])
     size = float(np.max(np.ptp(whole.reshape(-1, 3), axis=0)))

@@ -1,4 +1,6 @@
-"""Solid shapes as triangles: cylinders, balls, blocks and plates, each with its corners and their normals."""
+"""Solid shapes as triangles: cylinders, balls, blocks and plates, each with its corners and their
+normals.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ _ROUND, _RINGS = 24, 12
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles between ``places`` (n, 3) [m] with ``normals`` (n, 3) of length 1; ``corners`` (m, 3) are counter-clockwise."""
+    """Triangles between ``places`` (n, 3) [m] with ``normals`` (n, 3) of length 1; ``corners`` (m,
+    3) are counter-clockwise.
+    """
 
     places: Array
     normals: Array
@@ -28,7 +32,9 @@ def together(meshes: Sequence[Mesh]) -> Mesh:
     starts = np.cumsum([0, *(len(mesh.places) for mesh in meshes)])
     corners = [mesh.corners + start for mesh, start in zip(meshes, starts, strict=False)]
     return Mesh(
-        np.concatenate([mesh.places for mesh in meshes]), np.concatenate([mesh.normals for mesh in meshes]), np.concatenate(corners)
+        np.concatenate([mesh.places for mesh in meshes]),
+        np.concatenate([mesh.normals for mesh in meshes]),
+        np.concatenate(corners),
     )
 
 
@@ -50,7 +56,8 @@ def cylinder(start: Array, stop: Array, radius: float) -> Mesh:
     k, on = np.arange(_ROUND), (np.arange(_ROUND) + 1) % _ROUND
     side = Mesh(
         np.concatenate(rims), np.concatenate([around, around]),
-        np.concatenate([np.stack([k, on, on + _ROUND], 1), np.stack([k, on + _ROUND, k + _ROUND], 1)]),
+        np.concatenate([np.stack([k, on, on + _ROUND], 1), np.stack([k, on + _ROUND, k + _ROUND],
+            1)]),
     )  # fmt: skip
     return together([_outward(side), plate(rims[0][::-1], -x), plate(rims[1], x)])
 
@@ -65,7 +72,9 @@ def cone(start: Array, tip: Array, radius: float) -> Mesh:
     angles = 2.0 * np.pi * np.concatenate([k, k + 0.5])[:, None] / _ROUND
     rim, between = np.split(np.cos(angles) * y + np.sin(angles) * z, 2)
     # The tip is there once for each side, for each has a direction of its own.
-    normals = np.concatenate([height * rim + radius * x, height * between + radius * x]) / np.hypot(height, radius)
+    normals = np.concatenate([height * rim + radius * x, height * between + radius * x]) / np.hypot(
+        height, radius
+    )
     places = np.concatenate([start + radius * rim, np.tile(tip, (_ROUND, 1))])
     side = Mesh(places, normals, np.stack([k, (k + 1) % _ROUND, k + _ROUND], 1))
     return together([_outward(side), plate((start + radius * rim)[::-1], -x)])
@@ -81,12 +90,23 @@ def arrow(heads: int) -> Mesh:
 
 def ball(centre: Array, radius: float) -> Mesh:
     """A ball."""
-    up, around = np.meshgrid(np.linspace(0.0, np.pi, _RINGS + 1), 2.0 * np.pi * np.arange(_ROUND) / _ROUND, indexing="ij")
-    normals = np.stack([np.sin(up) * np.cos(around), np.sin(up) * np.sin(around), np.cos(up)], -1).reshape(-1, 3)
-    ring, k = (part.ravel() for part in np.meshgrid(np.arange(_RINGS), np.arange(_ROUND), indexing="ij"))
+    up, around = np.meshgrid(
+        np.linspace(0.0, np.pi, _RINGS + 1), 2.0 * np.pi * np.arange(_ROUND) / _ROUND, indexing="ij"
+    )
+    normals = np.stack(
+        [np.sin(up) * np.cos(around), np.sin(up) * np.sin(around), np.cos(up)], -1
+    ).reshape(-1, 3)
+    ring, k = (
+        part.ravel() for part in np.meshgrid(np.arange(_RINGS), np.arange(_ROUND), indexing="ij")
+    )
     a, b = ring * _ROUND + k, ring * _ROUND + (k + 1) % _ROUND
-    lower, upper = np.stack([a, a + _ROUND, b + _ROUND], 1)[ring < _RINGS - 1], np.stack([a, b + _ROUND, b], 1)[ring > 0]
-    return _outward(Mesh(np.asarray(centre, float) + radius * normals, normals, np.concatenate([lower, upper])))
+    lower, upper = (
+        np.stack([a, a + _ROUND, b + _ROUND], 1)[ring < _RINGS - 1],
+        np.stack([a, b + _ROUND, b], 1)[ring > 0],
+    )
+    return _outward(
+        Mesh(np.asarray(centre, float) + radius * normals, normals, np.concatenate([lower, upper]))
+    )
 
 
 def block(centre: Array, axes: Array, sides: Sequence[float]) -> Mesh:
@@ -95,22 +115,35 @@ def block(centre: Array, axes: Array, sides: Sequence[float]) -> Mesh:
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         for sign in (1.0, -1.0):
-            out, a, b = sign * axes[i] * sides[i] / 2, axes[j] * sides[j] / 2, sign * axes[k] * sides[k] / 2
-            faces.append(plate(np.asarray(centre, float) + out + np.array([-a - b, a - b, a + b, -a + b]), sign * axes[i]))
+            out, a, b = (
+                sign * axes[i] * sides[i] / 2,
+                axes[j] * sides[j] / 2,
+                sign * axes[k] * sides[k] / 2,
+            )
+            faces.append(
+                plate(
+                    np.asarray(centre, float) + out + np.array([-a - b, a - b, a + b, -a + b]),
+                    sign * axes[i],
+                )
+            )
     return together(faces)
 
 
 def prism(corners: Array, thickness: float) -> Mesh:
     """A convex polygon (n, 3) that lies in a plane, made as thick as that."""
     corners = np.asarray(corners, float)
-    normal = sum(np.cross(a - corners[0], b - corners[0]) for a, b in itertools.pairwise(corners[1:]))
+    normal = sum(
+        np.cross(a - corners[0], b - corners[0]) for a, b in itertools.pairwise(corners[1:])
+    )
     normal = np.asarray(normal) / np.linalg.norm(normal)
     top, bottom = corners + normal * thickness / 2, corners - normal * thickness / 2
     sides = []
     for k in range(len(corners)):
         on = (k + 1) % len(corners)
         way = np.cross(corners[on] - corners[k], normal)
-        sides.append(plate(np.array([bottom[k], bottom[on], top[on], top[k]]), way / np.linalg.norm(way)))
+        sides.append(
+            plate(np.array([bottom[k], bottom[on], top[on], top[k]]), way / np.linalg.norm(way))
+        )
     return together([plate(top, normal), plate(bottom[::-1], -normal), *sides])
 
 
@@ -118,11 +151,15 @@ def plate(corners: Array, normal: Array) -> Mesh:
     """A flat convex polygon, seen from where its normal points to."""
     count = len(corners)
     fan = np.stack([np.zeros(count - 2, np.int64), np.arange(1, count - 1), np.arange(2, count)], 1)
-    return _outward(Mesh(np.asarray(corners, float), np.tile(np.asarray(normal, float), (count, 1)), fan))
+    return _outward(
+        Mesh(np.asarray(corners, float), np.tile(np.asarray(normal, float), (count, 1)), fan)
+    )
 
 
 def _outward(mesh: Mesh) -> Mesh:
     """The same with every triangle counter-clockwise, seen from where its normals point to."""
     a, b, c = (mesh.places[mesh.corners[:, k]] for k in range(3))
     inward = np.sum(np.cross(b - a, c - a) * mesh.normals[mesh.corners].sum(axis=1), axis=1) < 0.0
-    return Mesh(mesh.places, mesh.normals, np.where(inward[:, None], mesh.corners[:, ::-1], mesh.corners))
+    return Mesh(
+        mesh.places, mesh.normals, np.where(inward[:, None], mesh.corners[:, ::-1], mesh.corners)
+    )

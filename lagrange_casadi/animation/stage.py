@@ -1,4 +1,6 @@
-"""How ground axes [m] come onto the sheet: one view, one scale, everything that is ever shown inside."""
+"""How ground axes [m] come onto the sheet: one view, one scale, everything that is ever shown
+inside.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +20,18 @@ _FLATTEST, _TALLEST = 0.3, 1.0
 """The sheet's height over its width."""
 
 WIDE = 640.0
-"""The width of a sheet [points]: widths of lines and sizes of letters are for it, and grow with the picture."""
+"""The width of a sheet [points]: widths of lines and sizes of letters are for it, and grow with the
+picture.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """A sheet of a ``width`` and ``height`` [pixels], whose point is ``unit`` pixels; ``scale`` in pixels a metre.
+    """A sheet of a ``width`` and ``height`` [pixels], whose point is ``unit`` pixels; ``scale`` in
+    pixels a metre.
 
-    ``right``, ``up`` and ``toward`` are directions in ground axes (3,), ``middle`` (2,) is what stands at ``centre`` (2,).
+    ``right``, ``up`` and ``toward`` are directions in ground axes (3,), ``middle`` (2,) is what
+    stands at ``centre`` (2,).
     """
 
     width: int
@@ -73,4 +79,6 @@ def stage_for(description: Description, places: Array, width: int, *, foot: bool
     inner = max(scale * span[1] + 2 * margin, _FLATTEST * width)
     height = 2 * math.ceil((inner + below) / 2)
     centre = np.array([width / 2, (height - below) / 2])
-    return Stage(width, height, unit, float(scale), right, up, np.cross(right, up), (low + high) / 2, centre)
+    return Stage(
+        width, height, unit, float(scale), right, up, np.cross(right, up), (low + high) / 2, centre
+    )

@@ -1,7 +1,9 @@
-"""Between which bounds a function of scalars stays while what is put into it stays within bounds of its own.
+"""Between which bounds a function of scalars stays while what is put into it stays within bounds of
+its own.
 
-Every operation gives bounds of its result for all numbers between those of its operands (R. E. Moore, *Interval Analysis*, 1966).
-They are wider than need be where an operand comes twice, never narrower: each is widened by far more than rounding.
+Every operation gives bounds of its result for all numbers between those of its operands (R. E.
+Moore, *Interval Analysis*, 1966). They are wider than need be where an operand comes twice, never
+narrower: each is widened by far more than rounding.
 """
 
 from __future__ import annotations
@@ -22,14 +24,25 @@ _WIDER = 2.0**-40
 """By what part of the larger bound each is widened."""
 
 _TURN = 2.0 * math.pi
-_RISING = {ca.OP_SQRT, ca.OP_LOG, ca.OP_LOG1P, ca.OP_EXP, ca.OP_EXPM1, ca.OP_SINH, ca.OP_TANH, ca.OP_ASIN, ca.OP_ATAN}
+_RISING = {
+    ca.OP_SQRT,
+    ca.OP_LOG,
+    ca.OP_LOG1P,
+    ca.OP_EXP,
+    ca.OP_EXPM1,
+    ca.OP_SINH,
+    ca.OP_TANH,
+    ca.OP_ASIN,
+    ca.OP_ATAN,
+}
 _RISING |= {ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_ERF}
 _STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASSIGN, ca.OP_TWICE}
 """What rises with its operands, and rounds nothing."""
 
 
 def boxed(function: Any) -> tuple[list[Any], list[Box], Any]:
-    """Of a followable function ``(x, fixed) -> rows`` the symbols ``low``, ``high`` and ``fixed``, and bounds of the rows.
+    """Of a followable function ``(x, fixed) -> rows`` the symbols ``low``, ``high`` and ``fixed``,
+    and bounds of the rows.
 
     Last is how wide all bounds are, added up: where it is not finite they say nothing.
     """
@@ -37,7 +50,11 @@ def boxed(function: Any) -> tuple[list[Any], list[Box], Any]:
     low, high = ca.SX.sym("low", x.numel()), ca.SX.sym("high", x.numel())
     boxes = _Boxes()
     given = [boxes.wider((low[k], high[k])) for k in range(x.numel())]
-    (rows,) = interpret(function, [given, [(one, one) for one in ca.vertsplit(fixed)] if fixed.numel() else []], boxes.arithmetic)
+    (rows,) = interpret(
+        function,
+        [given, [(one, one) for one in ca.vertsplit(fixed)] if fixed.numel() else []],
+        boxes.arithmetic,
+    )
     return [low, high, fixed], rows, boxes.width
 
 
@@ -57,7 +74,9 @@ class _Boxes:
             ca.OP_FABS: _size,
             ca.OP_SQ: lambda x: self.wider(tuple(one**2 for one in _size(x))),
             ca.OP_COSH: lambda x: self.wider(tuple(ca.cosh(one) for one in _size(x))),
-            ca.OP_HYPOT: lambda x, y: self.wider(tuple(ca.hypot(*both) for both in zip(_size(x), _size(y), strict=True))),
+            ca.OP_HYPOT: lambda x, y: self.wider(
+                tuple(ca.hypot(*both) for both in zip(_size(x), _size(y), strict=True))
+            ),
             ca.OP_COS: lambda x: self._wave(x, 0.0, ca.cos),
             ca.OP_SIN: lambda x: self._wave(x, 0.25, ca.sin),
             ca.OP_TAN: self._tan,
@@ -71,18 +90,26 @@ class _Boxes:
             ca.OP_CONSTPOW: self._pow,
             ca.OP_ATAN2: self._atan2,
             ca.OP_FMOD: lambda x, y: self._left(x, y, lambda q: (_whole(q[0]), _whole(q[1]))),
-            ca.OP_REMAINDER: lambda x, y: self._left(x, y, lambda q: (ca.ceil(q[0] - 0.5), ca.floor(q[1] + 0.5))),
+            ca.OP_REMAINDER: lambda x, y: self._left(
+                x, y, lambda q: (ca.ceil(q[0] - 0.5), ca.floor(q[1] + 0.5))
+            ),
             ca.OP_COPYSIGN: lambda x, _: (-_size(x)[1], _size(x)[1]),
             ca.OP_LT: lambda x, y: (x[1] < y[0], x[0] < y[1]),
             ca.OP_LE: lambda x, y: (x[1] <= y[0], x[0] <= y[1]),
             ca.OP_EQ: _equal,
             ca.OP_NE: lambda x, y: _not(_equal(x, y)),
             ca.OP_NOT: lambda x: _not(_true(x)),
-            ca.OP_AND: lambda x, y: tuple(ca.logic_and(*both) for both in zip(_true(x), _true(y), strict=True)),
-            ca.OP_OR: lambda x, y: tuple(ca.logic_or(*both) for both in zip(_true(x), _true(y), strict=True)),
+            ca.OP_AND: lambda x, y: tuple(
+                ca.logic_and(*both) for both in zip(_true(x), _true(y), strict=True)
+            ),
+            ca.OP_OR: lambda x, y: tuple(
+                ca.logic_or(*both) for both in zip(_true(x), _true(y), strict=True)
+            ),
             ca.OP_IF_ELSE_ZERO: _where,
         }
-        known: dict[int, Callable[..., Box]] = {code: _once(code, rule) for code, rule in rules.items()}
+        known: dict[int, Callable[..., Box]] = {
+            code: _once(code, rule) for code, rule in rules.items()
+        }
         return Arithmetic(lambda value: (ca.SX(value),) * 2, known | {ca.OP_CALL: self._looked_up})
 
     def wider(self, box: Any) -> Box:
@@ -132,7 +159,10 @@ class _Boxes:
         """The wave is largest a part of a turn after whole turns."""
         turns = [end / _TURN for end in x]
         low, high = (ends(wave(x[0]), wave(x[1])) for ends in (ca.fmin, ca.fmax))
-        most, least = (ca.floor(turns[1] - of + 1e-9) >= ca.ceil(turns[0] - of - 1e-9) for of in (shift, shift + 0.5))
+        most, least = (
+            ca.floor(turns[1] - of + 1e-9) >= ca.ceil(turns[0] - of - 1e-9)
+            for of in (shift, shift + 0.5)
+        )
         low, high = ca.if_else(least, -1.0, low), ca.if_else(most, 1.0, high)
         # Of an angle of many turns its own rounding counts, which is in its bounds.
         return self.wider((low, high))
@@ -146,7 +176,9 @@ class _Boxes:
         if y[0].is_constant() and y[0] is y[1]:
             power = float(y[0])
             if power >= 0.0 and power.is_integer():
-                return self.wider(tuple(end**power for end in (_size(x) if power % 2.0 == 0.0 else x)))
+                return self.wider(
+                    tuple(end**power for end in (_size(x) if power % 2.0 == 0.0 else x))
+                )
         self.unknown(x[0] <= 0.0)
         return self._hull(*(one**other for one in _ends(x) for other in _ends(y)))
 
@@ -204,5 +236,7 @@ def _equal(x: Box, y: Box) -> Box:
 
 def _where(x: Box, y: Box) -> Box:
     certain, possible = _true(x)
-    low, high = (ca.if_else(possible, of(0.0, end), 0.0) for of, end in ((ca.fmin, y[0]), (ca.fmax, y[1])))
+    low, high = (
+        ca.if_else(possible, of(0.0, end), 0.0) for of, end in ((ca.fmin, y[0]), (ca.fmax, y[1]))
+    )
     return ca.if_else(certain, y[0], low), ca.if_else(certain, y[1], high)

@@ -1,10 +1,12 @@
-"""Pairs of numbers as expressions: a value and what its rounding left of it, for phases that must outlast many turns.
+"""Pairs of numbers as expressions: a value and what its rounding left of it, for phases that must
+outlast many turns.
 
-An angle of 1e10 rad in a double has lost six digits of its phase, one of 1e3 rad in a single nearly all. Followed as an
-unevaluated sum high + low, with error-free sums and products (Knuth; Dekker, *A floating-point technique for extending the
-available precision*, Numer. Math. 18, 1971), it keeps twice the digits, in arithmetic of the one precision throughout. Compilers
-must not reassociate: ``-ffast-math`` takes the low parts away. Nor must CasADi, which knows that (a + b) - a is b, which is just
-what does not hold here: see :func:`closed`.
+An angle of 1e10 rad in a double has lost six digits of its phase, one of 1e3 rad in a single nearly
+all. Followed as an unevaluated sum high + low, with error-free sums and products (Knuth; Dekker, *A
+floating-point technique for extending the available precision*, Numer. Math. 18, 1971), it keeps
+twice the digits, in arithmetic of the one precision throughout. Compilers must not reassociate:
+``-ffast-math`` takes the low parts away. Nor must CasADi, which knows that (a + b) - a is b, which
+is just what does not hold here: see :func:`closed`.
 """
 
 from __future__ import annotations
@@ -23,7 +25,9 @@ from .lookups import Lookup
 from .scalars import added, as_expression, less, product
 
 DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
-ROUNDING: dict[Precision, float] = {name: float(np.finfo(dtype).eps) / 2 for name, dtype in DTYPES.items()}
+ROUNDING: dict[Precision, float] = {
+    name: float(np.finfo(dtype).eps) / 2 for name, dtype in DTYPES.items()
+}
 """The largest relative error of one rounding."""
 
 _SPLITTER: dict[Precision, float] = {"double": 134217729.0, "single": 4097.0}
@@ -34,15 +38,18 @@ _TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
 def closed(x: Any) -> Any:
     """A value that CasADi does not look into where it simplifies: under a sign of its own.
 
-    Its patterns are of operations on operations, and none holds this one. So a value stays as it is written, in every thread and
-    however often the expression is made anew. Emitted C has no trace of it: see :func:`.opened`. A constant is folded.
+    Its patterns are of operations on operations, and none holds this one. So a value stays as it is
+    written, in every thread and however often the expression is made anew. Emitted C has no trace
+    of it: see :func:`.opened`. A constant is folded.
     """
     return ca.SX.binary(ca.OP_COPYSIGN, x, x)
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """high + low, expressions of scalars; ``low`` is None where the value is exact. ``number`` is the value where it is known.
+    """high + low, expressions of scalars; ``low`` is None where the value is exact.
+
+    ``number`` is the value where it is known.
 
     Both are ``whole`` numbers where they are entries of a table.
     """
@@ -62,8 +69,9 @@ class Pair:
 class Pairs:
     """The arithmetic of pairs in a precision, on expressions.
 
-    Sums, differences, products, quotients, roots and whole parts keep all digits; a sine, cosine or tangent is that of a pair's
-    phase, rounded once. Everything else is done on the nearest single number.
+    Sums, differences, products, quotients, roots and whole parts keep all digits; a sine, cosine or
+    tangent is that of a pair's phase, rounded once. Everything else is done on the nearest single
+    number.
     """
 
     precision: Precision
@@ -134,14 +142,20 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        low, number = (None if x.low is None else self._negative(x.low)), (None if x.number is None else -x.number)
+        low, number = (
+            (None if x.low is None else self._negative(x.low)),
+            (None if x.number is None else -x.number),
+        )
         return Pair(self._negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
         """x y; a power of two only scales."""
         for one, other in ((x, y), (y, x)):
             if other.number is not None and other.number and np.frexp(abs(other.number))[0] == 0.5:
-                return Pair(self._times(one.high, other.high), None if one.low is None else self._times(one.low, other.high))
+                return Pair(
+                    self._times(one.high, other.high),
+                    None if one.low is None else self._times(one.low, other.high),
+                )
         product, error = self._product(x.high, y.high)
         for part in ((x.high, y.low), (x.low, y.high)):
             if part[0] is not None and part[1] is not None:
@@ -158,7 +172,9 @@ class Pairs:
         """The square root, by what a first root leaves; of zero, zero."""
         first = self._rounded(ca.sqrt(x.high))
         left = self.subtract(x, self.multiply(Pair(first), Pair(first)))
-        return self._normal(first, self._over(self._value(left), self._plus(self._times(2.0, first), first == 0.0)))
+        return self._normal(
+            first, self._over(self._value(left), self._plus(self._times(2.0, first), first == 0.0))
+        )
 
     def reduced(self, x: Pair) -> Pair:
         """x less whole turns, between -pi and pi."""
@@ -184,7 +200,9 @@ class Pairs:
 
     def nearest_remainder(self, x: Pair, y: Pair) -> Pair:
         """C's remainder: x less the multiple of y that is nearest."""
-        return self.subtract(x, self.multiply(self._floor(self.add(self.divide(x, y), self.constant(0.5))), y))
+        return self.subtract(
+            x, self.multiply(self._floor(self.add(self.divide(x, y), self.constant(0.5))), y)
+        )
 
     def _looked_up(self, lookup: Lookup, x: Pair) -> Pair:
         """What a table has for a number: an entry with all the digits that a pair holds."""
@@ -226,7 +244,10 @@ class Pairs:
         return product, error
 
     def _split(self, a: Any) -> tuple[Any, Any]:
-        """The halves of a number's digits. A constant's are taken here: CasADi would fold them in doubles."""
+        """The halves of a number's digits.
+
+        A constant's are taken here: CasADi would fold them in doubles.
+        """
         if a.is_constant():
             kind = DTYPES[self.precision].type
             number, splitter = kind(float(a)), kind(_SPLITTER[self.precision])
@@ -237,7 +258,9 @@ class Pairs:
         return high, self._minus(a, high)
 
     def _once(self, code: int) -> Any:
-        """An operation on the nearest numbers: what it gives is rounded once, as are its arguments."""
+        """An operation on the nearest numbers: what it gives is rounded once,
+        as are its arguments.
+        """
         if code in _UNARY:
             return lambda x: Pair(self._rounded(ca.SX.unary(code, self._value(x))))
         return lambda x, y: Pair(self._rounded(ca.SX.binary(code, self._value(x), self._value(y))))
@@ -261,7 +284,9 @@ class Pairs:
         return closed(self._rounded(x))
 
     def _rounded(self, x: Any) -> Any:
-        """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants in doubles."""
+        """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants
+        in doubles.
+        """
         if not as_expression(x).is_constant():
             return x
         with np.errstate(over="ignore"):
@@ -303,7 +328,18 @@ def _zero_unless(where: Any, x: Any) -> Any:
 
 
 _UNARY = (
-    *(ca.OP_EXP, ca.OP_LOG, ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATAN, ca.OP_SINH, ca.OP_COSH, ca.OP_TANH, ca.OP_ASINH, ca.OP_ACOSH),
+    *(
+        ca.OP_EXP,
+        ca.OP_LOG,
+        ca.OP_ASIN,
+        ca.OP_ACOS,
+        ca.OP_ATAN,
+        ca.OP_SINH,
+        ca.OP_COSH,
+        ca.OP_TANH,
+        ca.OP_ASINH,
+        ca.OP_ACOSH,
+    ),
     *(ca.OP_ATANH, ca.OP_LOG1P, ca.OP_EXPM1, ca.OP_ERF, ca.OP_SIGN, ca.OP_NOT),
 )
 _BINARY = (

@@ -1,7 +1,8 @@
 """An SX function followed instruction by instruction, in any arithmetic.
 
-CasADi's own machine knows doubles. Here the same instructions run on whatever an :class:`Arithmetic` computes with: numbers of many
-digits, arrays with errors put on operations, or expressions that become another function.
+CasADi's own machine knows doubles. Here the same instructions run on whatever an
+:class:`Arithmetic` computes with: numbers of many digits, arrays with errors put on operations, or
+expressions that become another function.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ from .scalars import applied
 
 @dataclass(frozen=True)
 class Step:
-    """An instruction: what it does (one of CasADi's ``OP_`` codes), the places it reads, the place it writes, and its number.
+    """An instruction: what it does (one of CasADi's ``OP_`` codes), the places it reads, the place
+    it writes, and its number.
 
-    Of an input or output the places are those of argument and nonzero. Of a call there is the function, and the table if it looks
-    one up.
+    Of an input or output the places are those of argument and nonzero. Of a call there is the
+    function, and the table if it looks one up.
     """
 
     operation: int
@@ -43,7 +45,8 @@ REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
 
 @dataclass(frozen=True, eq=False)
 class Arithmetic:
-    """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers by CasADi's ``OP_`` code.
+    """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers
+    by CasADi's ``OP_`` code.
 
     That of ``OP_CALL`` takes a :class:`.Lookup` and a number.
     """
@@ -54,9 +57,15 @@ class Arithmetic:
 
 @functools.lru_cache(maxsize=64)
 def steps(function: Any) -> tuple[Step, ...]:
-    """The instructions of an SX function. Raises :class:`DeclarationError` for a function of another kind."""
+    """The instructions of an SX function.
+
+    Raises :class:`DeclarationError` for a function of another kind.
+    """
     if not function.is_a("SXFunction"):
-        raise DeclarationError(f"function '{function.name()}' cannot be followed: it is not written in scalars (casadi.SX)")
+        raise DeclarationError(
+            f"function '{function.name()}' cannot be followed: it is not written in scalars"
+            " (casadi.SX)"
+        )
     found: list[Step] = []
     written: Any = None
     for k in range(function.n_instructions()):
@@ -66,20 +75,29 @@ def steps(function: Any) -> tuple[Step, ...]:
         called = written[k].which_function() if operation == ca.OP_CALL else None
         number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
         places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))
-        found.append(Step(operation, *places, number, called, lookup(called) if called is not None else None))
+        found.append(
+            Step(operation, *places, number, called, lookup(called) if called is not None else None)
+        )
     return tuple(found)
 
 
 @functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
-    """Whether a function is written in scalars, calls nothing but tables, and does nothing that is unknown here."""
-    return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN or step.looked_up for step in steps(function))
+    """Whether a function is written in scalars, calls nothing but tables, and does nothing that is
+    unknown here.
+    """
+    return bool(function.is_a("SXFunction")) and all(
+        step.operation in _KNOWN or step.looked_up for step in steps(function)
+    )
 
 
-def replay(function: Any, inputs: Sequence[Sequence[Any]], made: Callable[[int, Step, list[Any]], Any]) -> list[list[Any]]:
+def replay(
+    function: Any, inputs: Sequence[Sequence[Any]], made: Callable[[int, Step, list[Any]], Any]
+) -> list[list[Any]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
-    ``made`` makes the value of every other step of its number, the step and its operands: a list if the step has several results.
+    ``made`` makes the value of every other step of its number, the step and its operands: a list if
+    the step has several results.
     """
     work: dict[int, Any] = {}
     outputs: list[list[Any]] = [[None] * function.nnz_out(i) for i in range(function.n_out())]
@@ -97,10 +115,13 @@ def replay(function: Any, inputs: Sequence[Sequence[Any]], made: Callable[[int, 
     return outputs
 
 
-def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic) -> list[list[Any]]:
+def interpret(
+    function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic
+) -> list[list[Any]]:
     """The nonzeros of every output of an SX function, from those of its inputs.
 
-    Raises :class:`DeclarationError` where the function calls another one, or does what the arithmetic has no name for.
+    Raises :class:`DeclarationError` where the function calls another one, or does what the
+    arithmetic has no name for.
     """
 
     def made(_k: int, step: Step, operands: list[Any]) -> Any:
@@ -119,14 +140,21 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
 
 
 def expressed(step: Step, operands: Sequence[Any]) -> Any:
-    """The expression of a step that is no call, but of a table, from the expressions that it reads."""
+    """The expression of a step that is no call, but of a table, from
+    the expressions that it reads.
+    """
     if step.operation == ca.OP_CONST:
         return ca.SX(step.constant)
-    return step.looked_up.function(*operands) if step.looked_up is not None else applied(step.operation, *operands)
+    return (
+        step.looked_up.function(*operands)
+        if step.looked_up is not None
+        else applied(step.operation, *operands)
+    )
 
 
 def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any]]]:
-    """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is applied to.
+    """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is
+    applied to.
 
     Of a table's cell (``OP_CALL``) the second is the numbers between its cells.
     """
@@ -144,10 +172,11 @@ def operations(function: Any, inputs: Sequence[Any]) -> list[tuple[int, list[Any
 
 
 def written_out(expression: Any) -> Any:
-    """Return a scalar expression with the functions that it calls written out, but for tables and what has no expression.
+    """Return a scalar expression with the functions that it calls written out, but for tables and
+    what has no expression.
 
-    So a user's function of scalars that is never inlined is followed and compiled like all else. Other functions, as a callback,
-    remain calls.
+    So a user's function of scalars that is never inlined is followed and compiled like all else.
+    Other functions, as a callback, remain calls.
     """
     symbols = ca.symvar(expression)
     function = ca.Function("expression", symbols, [expression])
@@ -168,7 +197,10 @@ def _written_out(function: Any, inputs: Sequence[Any]) -> list[Any]:
         if called is None:
             return expressed(step, operands)
         values = iter(operands)
-        given = [_filled(called.sparsity_in(i), itertools.islice(values, called.nnz_in(i))) for i in range(called.n_in())]
+        given = [
+            _filled(called.sparsity_in(i), itertools.islice(values, called.nnz_in(i)))
+            for i in range(called.n_in())
+        ]
         found = _written_out(called, given) if _has_expression(called) else called.call(given)
         every = [value for row in found for value in row.nonzeros()]
         return every if len(step.results) > 1 else every[0]
@@ -183,13 +215,18 @@ def _filled(sparsity: Any, nonzeros: Iterable[Any]) -> Any:
 
 def operation_name(operation: int) -> str:
     """Return CasADi's name of an operation."""
-    return next((name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation), str(operation))
+    return next(
+        (name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation),
+        str(operation),
+    )
 
 
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
     known = _ROUNDED | _FUNCTIONS | _EXACT | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
-    return Arithmetic(np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()})
+    return Arithmetic(
+        np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()}
+    )
 
 
 def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -257,6 +294,8 @@ _FUNCTIONS |= {
     for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
 }
 ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
-"""By how many roundings an operation may be off: functions such as a sine by two, for libraries differ. Others round nothing."""
+"""By how many roundings an operation may be off: functions such as a sine by two, for libraries
+differ. Others round nothing.
+"""
 
 _KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}

@@ -1,7 +1,9 @@
-"""Tables of numbers within graphs of scalars: in which of many cells a number lies, and what a table has for that cell.
+"""Tables of numbers within graphs of scalars: in which of many cells a number lies, and what a
+table has for that cell.
 
-A graph calls a table as a function of one number. CasADi's own machine evaluates it; whoever follows a graph (:mod:`.interpret`) or
-writes it as C finds the numbers in the function, by :func:`lookup`. So a graph does not grow with its tables.
+A graph calls a table as a function of one number. CasADi's own machine evaluates it; whoever
+follows a graph (:mod:`.interpret`) or writes it as C finds the numbers in the function, by
+:func:`lookup`. So a graph does not grow with its tables.
 """
 
 from __future__ import annotations
@@ -31,10 +33,11 @@ _LEAST = -1074
 
 @dataclass(frozen=True, eq=False)
 class Lookup:
-    """What a function looks up: the number of the ``cell`` between neighbours of rising ``numbers``, or the ``entry`` of a number.
+    """What a function looks up: the number of the ``cell`` between neighbours of rising
+    ``numbers``, or the ``entry`` of a number.
 
-    A break belongs to the cell after it; beyond the ends the first and the last cell go on. Of a cell ``ends`` tells whether a
-    number may be beyond them, which is for others to refuse.
+    A break belongs to the cell after it; beyond the ends the first and the last cell go on. Of a
+    cell ``ends`` tells whether a number may be beyond them, which is for others to refuse.
     """
 
     kind: Kind
@@ -43,14 +46,18 @@ class Lookup:
     ends: bool = False
 
     def at(self, x: Any) -> Any:
-        """What is looked up for real numbers ``x`` of any shape; of complex ones the real part counts."""
+        """What is looked up for real numbers ``x`` of any shape; of complex ones the real part
+        counts.
+        """
         x = np.real(x)
         if self.kind == "cell":
             return np.searchsorted(self.numbers[1:-1], x, side="right").astype(float)
         return self.numbers[np.asarray(x, int)]
 
     def parts(self, kind: npt.DTypeLike) -> tuple[Any, Any | None]:
-        """The functions of the entries rounded to numbers of a kind, and of what that leaves of them; None if it leaves nothing."""
+        """The functions of the entries rounded to numbers of a kind, and of what that leaves of
+        them; None if it leaves nothing.
+        """
         high = self.numbers.astype(kind).astype(float)
         low = self.numbers - high
         rest = _function("entry", tuple(low.tolist())) if low.any() else None
@@ -58,7 +65,9 @@ class Lookup:
 
 
 def cell(breaks: Sequence[float], x: Any, *, ends: bool) -> Any:
-    """The number of the cell in which an expression lies, as a scalar expression; of three breaks or more."""
+    """The number of the cell in which an expression lies, as a scalar expression; of three breaks
+    or more.
+    """
     return _function("cell", tuple(map(float, breaks)), ends)(x)
 
 
@@ -72,7 +81,8 @@ def entries(numbers: Sequence[float], number: Any) -> Any:
         return ca.SX(numbers[0])
     scale = math.ldexp(1.0, max(math.frexp(largest)[1] - _BITS, _LEAST))
     whole = _function("entry", tuple(float(round(entry / scale)) for entry in numbers))(number)
-    # Rounding changes no whole number, and has no derivative: CasADi would differentiate a call by calls of further functions.
+    # Rounding changes no whole number, and has no derivative: CasADi would differentiate a call by
+    # calls of further functions.
     return ca.ceil(whole) * scale
 
 
@@ -91,8 +101,15 @@ def lookup(function: Any) -> Lookup | None:
     if found is None or not function.is_a("MXFunction"):
         return None
     kind: Kind = "cell" if found[1] == "cell" else "entry"
-    constants = [k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CONST]
-    return Lookup(kind, function.instruction_MX(constants[0]).to_DM().full().ravel(), function, ends=bool(found[2]))
+    constants = [
+        k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CONST
+    ]
+    return Lookup(
+        kind,
+        function.instruction_MX(constants[0]).to_DM().full().ravel(),
+        function,
+        ends=bool(found[2]),
+    )
 
 
 @functools.lru_cache(maxsize=256)
@@ -100,4 +117,6 @@ def _function(kind: Kind, numbers: tuple[float, ...], ends: bool = False) -> Any
     digest = hashlib.sha256(" ".join(number.hex() for number in numbers).encode()).hexdigest()[:16]
     x, table = ca.MX.sym("x"), ca.DM(numbers)
     found = ca.low(table, x, {"lookup_mode": "binary"}) if kind == "cell" else ca.MX(table)[x]
-    return ca.Function(f"{_PREFIX}_{kind}{'_ends' if ends else ''}_{digest}", [x], [found], {"never_inline": True})
+    return ca.Function(
+        f"{_PREFIX}_{kind}{'_ends' if ends else ''}_{digest}", [x], [found], {"never_inline": True}
+    )

@@ -1,7 +1,8 @@
 """Sums, differences and products of numbers and expressions.
 
-CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long as to write the operation down.
-Here there are two kinds alone: numbers, and expressions of scalars (``casadi.SX``).
+CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long
+as to write the operation down. Here there are two kinds alone: numbers, and expressions of scalars
+(``casadi.SX``).
 """
 
 from __future__ import annotations
@@ -41,7 +42,9 @@ def products_less(a: Any, b: Any, c: Any, d: Any) -> Any:
 
 def applied(operation: int, *operands: Any) -> Any:
     """An operation, by CasADi's ``OP_`` code, of one or two expressions."""
-    return ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)
+    return (
+        ca.SX.unary(operation, *operands) if len(operands) == 1 else _binary(operation, *operands)
+    )
 
 
 def as_expression(value: Any) -> Any:

@@ -13,10 +13,13 @@ _FEW = 4
 
 
 class Brief:
-    """A dataclass that Python writes in a line: of an array its shape, and from where to where its numbers are."""
+    """A dataclass that Python writes in a line: of an array its shape, and from where to where its
+    numbers are.
+    """
 
     def __repr__(self) -> str:
-        each = ", ".join(f"{entry.name}={_brief(getattr(self, entry.name))}" for entry in fields(self))  # type: ignore[arg-type]
+        entries = fields(self)  # type: ignore[arg-type]
+        each = ", ".join(f"{entry.name}={_brief(getattr(self, entry.name))}" for entry in entries)
         return f"{type(self).__name__}({each})"
 
 

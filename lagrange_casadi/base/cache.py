@@ -1,9 +1,12 @@
-"""The user's cache folder: what was derived and built before, kept whole or not at all, and no more of it than fits a limit.
+"""The user's cache folder: what was derived and built before, kept whole or not at all, and no more
+of it than fits a limit.
 
-All files of one thing begin with the same hash. What was used longest ago goes first. Any number of processes may read, keep and
-remove at once: a thing of which a file is gone is not there, and is made again; one that is open, or loaded, stays so.
+All files of one thing begin with the same hash. What was used longest ago goes first. Any number of
+processes may read, keep and remove at once: a thing of which a file is gone is not there, and is
+made again; one that is open, or loaded, stays so.
 
-Code is loaded from it, so nobody else may be able to write it: where somebody may, a temporary folder serves this process.
+Code is loaded from it, so nobody else may be able to write it: where somebody may, a temporary
+folder serves this process.
 """
 
 from __future__ import annotations
@@ -34,13 +37,15 @@ LIMIT = 500_000_000
 _UNITS = {"": 1, "k": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 _OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)")
 _WORK, _DRAFT, _FORGOTTEN = "lagrange_casadi-", "build-", 86_400.0
-"""How names of temporary folders begin, and those of files that are being put here; and seconds after which whoever made one of
-these is gone."""
+"""How names of temporary folders begin, and those of files that are being put here; and seconds
+after which whoever made one of these is gone."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One thing that is kept: its files, their size in bytes, and when it was last used, in seconds of the system's clock."""
+    """One thing that is kept: its files, their size in bytes, and when it was last used, in seconds
+    of the system's clock.
+    """
 
     files: tuple[Path, ...]
     size: int
@@ -48,7 +53,10 @@ class Entry:
 
 
 def limit() -> int:
-    """Bytes that are kept at most. Raises :class:`DeclarationError` where the variable says no size."""
+    """Bytes that are kept at most.
+
+    Raises :class:`DeclarationError` where the variable says no size.
+    """
     text = os.environ.get(VARIABLE, "").strip()
     if not text:
         return LIMIT
@@ -56,7 +64,9 @@ def limit() -> int:
     with suppress(ValueError, OverflowError):
         if found:
             return int(real(found[1]) * _UNITS[found[2]])
-    raise DeclarationError(f"${VARIABLE} = '{text}': expected bytes, as in 200000000, 200M or 2G; 0 keeps nothing")
+    raise DeclarationError(
+        f"${VARIABLE} = '{text}': expected bytes, as in 200000000, 200M or 2G; 0 keeps nothing"
+    )
 
 
 def place() -> Path:
@@ -67,9 +77,11 @@ def place() -> Path:
 
 
 def folder() -> Path | None:
-    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot be written.
+    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot
+    be written.
 
-    It is a temporary folder of this process, with a warning once, if others may write into the user's.
+    It is a temporary folder of this process, with a warning once, if others may write into the
+    user's.
     """
     if limit() == 0:
         return None
@@ -82,7 +94,10 @@ def folder() -> Path | None:
 
 @functools.lru_cache
 def _usable(place: Path) -> Path | None:
-    """The folder, or one in its place; None if it cannot be written. Raises ``OSError`` where that may be otherwise soon."""
+    """The folder, or one in its place; None if it cannot be written.
+
+    Raises ``OSError`` where that may be otherwise soon.
+    """
     try:
         place.mkdir(0o700, parents=True, exist_ok=True)
         if why := distrusted(place):
@@ -100,25 +115,36 @@ def _usable(place: Path) -> Path | None:
 
 @contextmanager
 def working_folder() -> Iterator[Path]:
-    """A temporary folder into which nobody else can write. Raises :class:`PathError` where none can be made, ``OSError``."""
+    """A temporary folder into which nobody else can write.
+
+    Raises :class:`PathError` where none can be made, ``OSError``.
+    """
     with tempfile.TemporaryDirectory(prefix=_WORK, dir=_private()) as work:
         yield Path(work)
 
 
 def _private() -> str:
-    """Where temporary folders are made. Raises :class:`PathError` if others may put something else in their place."""
+    """Where temporary folders are made.
+
+    Raises :class:`PathError` if others may put something else in their place.
+    """
     there = tempfile.gettempdir()
     if why := distrusted(Path(there), shared=True):
-        raise PathError(f"nothing can be built in the temporary folder {there}, for {why}; set $TMPDIR to a folder of your own")
+        raise PathError(
+            f"nothing can be built in the temporary folder {there}, for {why}; set $TMPDIR to a"
+            " folder of your own"
+        )
     return there
 
 
 def distrusted(path: Path, *, shared: bool = False) -> str:
-    """Why somebody else may have put there what is at a path, in words; nothing if only this user and root can have.
+    """Why somebody else may have put there what is at a path, in words; nothing if only this user
+    and root can have.
 
-    As for ssh, the file or folder and all folders that lead to it must belong to them, and nobody else may write into them, but for
-    a group that is this user's alone. Folders that lead to it, and ``path`` itself if it is ``shared``, may be as ``/tmp`` is: in
-    these everybody removes and renames only what is his own. Raises ``OSError`` if nothing is there.
+    As for ssh, the file or folder and all folders that lead to it must belong to them, and nobody
+    else may write into them, but for a group that is this user's alone. Folders that lead to it,
+    and ``path`` itself if it is ``shared``, may be as ``/tmp`` is: in these everybody removes and
+    renames only what is his own. Raises ``OSError`` if nothing is there.
     """
     if not hasattr(os, "geteuid"):
         return ""
@@ -129,7 +155,9 @@ def distrusted(path: Path, *, shared: bool = False) -> str:
         status = os.lstat(part)
         if status.st_uid not in trusted:
             return f"{part} belongs to another user"
-        writers = status.st_mode & (stat.S_IWOTH | (0 if _is_own_group(status.st_gid) else stat.S_IWGRP))
+        writers = status.st_mode & (
+            stat.S_IWOTH | (0 if _is_own_group(status.st_gid) else stat.S_IWGRP)
+        )
         sticky = status.st_mode & stat.S_ISVTX and (shared or part != real)
         if writers and not sticky and not stat.S_ISLNK(status.st_mode):
             return f"others may write into {part}"
@@ -181,7 +209,10 @@ def write(name: str, text: str) -> None:
 
 
 def keep(files: Sequence[Path], place: Path) -> None:
-    """Copy files into the cache, each whole or not at all, and make room for them. Raises ``OSError``."""
+    """Copy files into the cache, each whole or not at all, and make room for them.
+
+    Raises ``OSError``.
+    """
     with _arriving(place) as near:
         for file in files:
             shutil.copyfile(file, near / file.name)
@@ -189,7 +220,9 @@ def keep(files: Sequence[Path], place: Path) -> None:
 
 @contextmanager
 def _arriving(place: Path) -> Iterator[Path]:
-    """A folder whose files are put into the cache, seals before libraries, and room is made for them. Raises ``OSError``."""
+    """A folder whose files are put into the cache, seals before libraries, and room is made for
+    them. Raises ``OSError``.
+    """
     with tempfile.TemporaryDirectory(dir=place, prefix=_DRAFT) as near:
         yield Path(near)
         names = sorted(os.listdir(near))
@@ -218,7 +251,11 @@ def entries(place: Path) -> dict[str, Entry]:
                 there = Path(file.path), file.stat()
                 found.setdefault(ours[1], []).append(there)
     listed = {
-        name: Entry(tuple(path for path, _ in files), sum(s.st_size for _, s in files), max(s.st_mtime for _, s in files))
+        name: Entry(
+            tuple(path for path, _ in files),
+            sum(s.st_size for _, s in files),
+            max(s.st_mtime for _, s in files),
+        )
         for name, files in found.items()
     }
     return dict(sorted(listed.items(), key=lambda item: item[1].used))
@@ -237,10 +274,12 @@ def remove(entries: Iterable[Entry]) -> int:
 
 
 def _make_room(place: Path, fresh: set[str]) -> None:
-    """Remove what was used longest ago, until the rest is within the limit, and what was left behind; what is ``fresh`` stays."""
+    """Remove what was used longest ago, until the rest is within the limit, and what was left
+    behind; what is ``fresh`` stays.
+    """
     with suppress(OSError):
-        # Sizes alone first: a folder holds thousands of files, is nearly always within its limit, and is looked at whenever
-        # something is kept.
+        # Sizes alone first: a folder holds thousands of files, is nearly always within its limit,
+        # and is looked at whenever something is kept.
         size, forgotten = 0, time.time() - _FORGOTTEN
         with os.scandir(place) as files:
             for file in files:

@@ -1,4 +1,6 @@
-"""Rows of tables as people and programs write them, CSV of one kind or another, each with the line on which it stands."""
+"""Rows of tables as people and programs write them, CSV of one kind or another, each with the line
+on which it stands.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,12 @@ _MARKS = {".": "decimal points", ",": "decimal commas"}
 
 @dataclass(frozen=True)
 class Row:
-    """The cells of a ``line`` by its number, without spaces round them. ``where`` names the file and the line, as errors do.
+    """The cells of a ``line`` by its number, without spaces round them.
 
-    ``marks`` are the decimal marks that numbers of the table have had so far, each with where; None if cells are parted by commas,
-    for then only a point can be one.
+    ``where`` names the file and the line, as errors do.
+
+    ``marks`` are the decimal marks that numbers of the table have had so far, each with where; None
+    if cells are parted by commas, for then only a point can be one.
     """
 
     where: str
@@ -37,7 +41,8 @@ class Row:
     def pointed(self, cell: str) -> str:
         """A cell; a number with a decimal comma gets a point.
 
-        Raises :class:`.DeclarationError` if the table has numbers of the other kind too: in one of them the mark parts thousands.
+        Raises :class:`.DeclarationError` if the table has numbers of the other kind too: in one of
+        them the mark parts thousands.
         """
         found = _DECIMAL.fullmatch(cell)
         if self.marks is None or not found:
@@ -50,7 +55,8 @@ class Row:
         return cell.replace(",", ".")
 
     def number(self, cell: str, per: int = 1) -> float:
-        """A cell's number over ``per``, rounded once, so that 35 over 1000 is 0.035; NaN for what is no finite number.
+        """A cell's number over ``per``, rounded once, so that 35 over 1000 is 0.035; NaN for what
+        is no finite number.
 
         Raises :class:`.DeclarationError` as :meth:`pointed` does.
         """
@@ -62,14 +68,16 @@ class Row:
 
 
 def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
-    """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin with ``#`` are passed over.
+    """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin
+    with ``#`` are passed over.
 
-    Cells are parted by semicolons, tabs or commas: the first of these that the first row has. Where they are not parted by commas,
-    the decimal mark may be one, in all numbers or in none. Cells may be quoted; a row is one line, and all rows have as many cells.
+    Cells are parted by semicolons, tabs or commas: the first of these that the first row has. Where
+    they are not parted by commas, the decimal mark may be one, in all numbers or in none. Cells may
+    be quoted; a row is one line, and all rows have as many cells.
 
-    Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and :class:`.DeclarationError` for a row that
-    is longer or shorter than the first, for a quote that does not end on its line, and for a file without rows, of which
-    ``expected`` says what was.
+    Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and
+    :class:`.DeclarationError` for a row that is longer or shorter than the first, for a quote that
+    does not end on its line, and for a file without rows, of which ``expected`` says what was.
     """
     check_kind("file", path, "a path", str, os.PathLike)
     check_regular(path)
@@ -93,7 +101,11 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
                 if len(cells) != length:
                     longer = line if len(cells) > length else first
                     comma = delimiter == "," and _TWO_NUMBERS.search(longer)
-                    why = ": decimal commas? expected points, or ';' between cells" if comma else ", as in the first row"
+                    why = (
+                        ": decimal commas? expected points, or ';' between cells"
+                        if comma
+                        else ", as in the first row"
+                    )
                     raise DeclarationError(f"{where}: {len(cells)} cells, expected {length}{why}")
                 yield Row(where, number, cells, marks)
     except (OSError, UnicodeDecodeError) as error:
@@ -106,6 +118,12 @@ def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:
     try:
         (cells,) = csv.reader([line], delimiter=delimiter, strict=True)
     except csv.Error as error:
-        why = "a quote is opened and never closed" if str(error) == "unexpected end of data" else one_line(error)
-        raise DeclarationError(f"{where}: no cells with {delimiter!r} between them: {why}") from None
+        why = (
+            "a quote is opened and never closed"
+            if str(error) == "unexpected end of data"
+            else one_line(error)
+        )
+        raise DeclarationError(
+            f"{where}: no cells with {delimiter!r} between them: {why}"
+        ) from None
     return tuple(cell.strip() for cell in cells)

@@ -1,4 +1,5 @@
-"""Which signals stop the program, and what they do before it can do better: while its modules are imported.
+"""Which signals stop the program, and what they do before it can do better: while its modules are
+imported.
 
 The package imports this first. In any other program than its own it changes nothing.
 """
@@ -21,17 +22,20 @@ _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 def interrupts() -> list[signal.Signals]:
-    """The signals that stop the program: Ctrl-C (SIGINT), a request to end (SIGTERM), and a terminal that closes (SIGHUP).
+    """The signals that stop the program: Ctrl-C (SIGINT), a request to end (SIGTERM), and a
+    terminal that closes (SIGHUP).
 
-    Those that the platform lacks are left out, and so are those that are ignored: ``nohup``, and a shell that runs something in
-    the background, start a program that ignores some, and it goes on ignoring them.
+    Those that the platform lacks are left out, and so are those that are ignored: ``nohup``, and a
+    shell that runs something in the background, start a program that ignores some, and it goes on
+    ignoring them.
     """
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
     return [number for number in numbers if signal.getsignal(number) not in (signal.SIG_IGN, None)]
 
 
 def is_program() -> bool:
-    """Whether this process is the command line: the installed script, or ``python -m`` while that looks for the package.
+    """Whether this process is the command line: the installed script, or ``python -m`` while that
+    looks for the package.
 
     A process that the program started has the same name.
     """
@@ -39,7 +43,9 @@ def is_program() -> bool:
     if helpers is not None and helpers.parent_process() is not None:
         return False
     name = sys.argv[0] if sys.argv else ""
-    return Path(name).stem == "lagrange-casadi" or (name == "-m" and __package__.partition(".")[0] in sys.orig_argv)
+    return Path(name).stem == "lagrange-casadi" or (
+        name == "-m" and __package__.partition(".")[0] in sys.orig_argv
+    )
 
 
 def _end(_number: int, _frame: FrameType | None) -> None:

@@ -1,4 +1,6 @@
-"""Numbers as people write and read them: Python's own readers also take 1_0 for 10, and digits of any script."""
+"""Numbers as people write and read them: Python's own readers also take 1_0 for 10, and digits of
+any script.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ def whole(text: str) -> int:
 
 
 def readable(value: float, *others: float) -> str:
-    """A number with as few digits as a reader needs: at least six, and so many that it differs from others that it differs from."""
+    """A number with as few digits as a reader needs: at least six, and so many that it differs from
+    others that it differs from.
+    """
     for digits in (6, 9, 12):
         text = f"{value + 0.0:.{digits}g}"
         if all(value == other or text != f"{other + 0.0:.{digits}g}" for other in others):
@@ -23,7 +27,10 @@ def readable(value: float, *others: float) -> str:
 
 
 def plain(text: str) -> str:
-    """A text that may be a number: without underscores and digits of other scripts. Raises ``ValueError`` for any other."""
+    """A text that may be a number: without underscores and digits of other scripts.
+
+    Raises ``ValueError`` for any other.
+    """
     if "_" in text or not text.isascii():
         raise ValueError(f"expected a number, got {text!r}")
     return text

@@ -1,4 +1,6 @@
-"""Files that appear whole or not at all: written under another name beside their place, then renamed."""
+"""Files that appear whole or not at all: written under another name beside their place, then
+renamed.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +31,11 @@ except ImportError:  # where there is none, drafts that a kill has left stay
 
 
 def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) -> None:
-    """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed.
+    """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before
+    anything is computed.
 
-    What is no ``hdf5`` file itself replaces none; and it may go to a device or a pipe, which one of HDF5 may not. Raises
-    :class:`BusyError` for an HDF5 file that another program writes.
+    What is no ``hdf5`` file itself replaces none; and it may go to a device or a pipe, which one of
+    HDF5 may not. Raises :class:`BusyError` for an HDF5 file that another program writes.
     """
     try:
         stream, place = stream_word(target), settled(target)
@@ -67,7 +70,10 @@ def settled(target: Path) -> Path:
 
 
 def is_hdf5(path: Path) -> bool:
-    """Whether there is a file of HDF5, with or without a user block. Raises :class:`PathError` where it cannot be read."""
+    """Whether there is a file of HDF5, with or without a user block.
+
+    Raises :class:`PathError` where it cannot be read.
+    """
     if not path.is_file():
         return False
     try:
@@ -80,11 +86,16 @@ def is_hdf5(path: Path) -> bool:
                 place = 2 * place or 512
             return False
     except OSError as error:
-        raise PathError(f"cannot write {path}: what is there cannot be read: {error.strerror}") from None
+        raise PathError(
+            f"cannot write {path}: what is there cannot be read: {error.strerror}"
+        ) from None
 
 
 def put(draft: Path, target: Path) -> None:
-    """Rename a file over ``target``, where nothing is or another file. Raises :class:`PathError` for anything else, ``OSError``."""
+    """Rename a file over ``target``, where nothing is or another file.
+
+    Raises :class:`PathError` for anything else, ``OSError``.
+    """
     _refuse_other(target)
     os.replace(draft, target)
 
@@ -103,10 +114,11 @@ def replacing(target: Path, *, hdf5: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def writing(*targets: Path) -> Iterator[list[BinaryIO]]:
-    """Files to write, which are put into their places together on success, and are none on any failure.
+    """Files to write, which are put into their places together on success, and are none on any
+    failure.
 
-    What is a device, a pipe, or standard output is written straight to. Raises as :func:`check_writable` does, and
-    :class:`StoreError`.
+    What is a device, a pipe, or standard output is written straight to. Raises as
+    :func:`check_writable` does, and :class:`StoreError`.
     """
     for target in targets:
         check_writable(target)
@@ -134,7 +146,8 @@ def writing(*targets: Path) -> Iterator[list[BinaryIO]]:
 def uninterrupted() -> Iterator[Callable[[], None]]:
     """Hold interrupts back, for HDF5 does not survive an exception in its midst.
 
-    What is yielded lets one through where it is called; one that nobody let through comes at the end.
+    What is yielded lets one through where it is called; one that nobody let through comes at the
+    end.
     """
     seen = threading.Event()
 
@@ -144,7 +157,14 @@ def uninterrupted() -> Iterator[Callable[[], None]]:
 
     repeated = [signal.SIGALRM] if hasattr(signal, "SIGALRM") else []
     able = threading.current_thread() is threading.main_thread()
-    before = [(number, signal.signal(number, lambda *_: seen.set())) for number in (*interrupts(), *repeated)] if able else []
+    before = (
+        [
+            (number, signal.signal(number, lambda *_: seen.set()))
+            for number in (*interrupts(), *repeated)
+        ]
+        if able
+        else []
+    )
     try:
         yield breathe
     finally:
@@ -156,7 +176,8 @@ def uninterrupted() -> Iterator[Callable[[], None]]:
 class PatientFile(io.FileIO):
     """A file to write that keeps its first failure to itself, until :meth:`close` raises it.
 
-    HDF5 does not survive a write that fails: it prints, and may crash when it closes. So it never hears of one.
+    HDF5 does not survive a write that fails: it prints, and may crash when it closes. So it never
+    hears of one.
     """
 
     failure: OSError | None = None
@@ -192,7 +213,8 @@ class PatientFile(io.FileIO):
 
 @contextmanager
 def filling(folder: Path, first: str = "") -> Iterator[Path]:
-    """A temporary folder to fill, which on success becomes ``folder``, or whose files move into it; on any failure it is removed.
+    """A temporary folder to fill, which on success becomes ``folder``, or whose files move into it;
+    on any failure it is removed.
 
     Into a folder that is there, the file of the name ``first`` moves before the others.
     """
@@ -213,21 +235,28 @@ def filling(folder: Path, first: str = "") -> Iterator[Path]:
 
 
 def check_free(work: Path, folder: Path) -> None:
-    """Raise :class:`PathError` where something in ``folder``, such as a folder, bears the name of a file in ``work``."""
+    """Raise :class:`PathError` where something in ``folder``, such as a folder, bears the name of a
+    file in ``work``.
+    """
     for name in sorted(draft.name for draft in work.iterdir()):
         _refuse_other(folder / name)
 
 
 def _refuse_other(target: Path) -> None:
-    """Raise :class:`PathError` for what is there and not a file: a folder, a link, a device, a pipe."""
+    """Raise :class:`PathError` for what is there and not a file: a folder, a link, a device, a
+    pipe.
+    """
     if os.path.lexists(target) and not stat.S_ISREG(os.lstat(target).st_mode):
         raise PathError(f"cannot write {target}: what is there is not a file")
 
 
 @contextmanager
 def _beside(target: Path) -> Iterator[Path]:
-    """A folder for drafts of ``target``, locked as long as its process lives; those that a kill has left are removed first."""
-    # Locks may not reach another host that shares the disk, so drafts of its own have another ending.
+    """A folder for drafts of ``target``, locked as long as its process lives; those that a kill has
+    left are removed first.
+    """
+    # Locks may not reach another host that shares the disk, so drafts of its own have another
+    # ending.
     prefix, suffix = f".{target.name}.", f".{zlib.crc32(platform.node().encode()):08x}"
     drafts = re.compile(rf"{re.escape(prefix)}[a-z0-9_]{{8}}{re.escape(suffix)}")
     for name in filter(drafts.fullmatch, os.listdir(target.parent)):
@@ -235,15 +264,23 @@ def _beside(target: Path) -> Iterator[Path]:
             if _lock(target.parent / name, locks, wait=False):
                 shutil.rmtree(target.parent / name, ignore_errors=True)
     while True:
-        with ExitStack() as locks, tempfile.TemporaryDirectory(dir=target.parent, prefix=prefix, suffix=suffix) as work:
+        with (
+            ExitStack() as locks,
+            tempfile.TemporaryDirectory(dir=target.parent, prefix=prefix, suffix=suffix) as work,
+        ):
             _lock(Path(work), locks, wait=True)
-            if os.path.isdir(work):  # else another process took it for one that was left, before it was locked
+            if os.path.isdir(
+                work
+            ):  # else another process took it for one that was left, before it was locked
                 yield Path(work)
                 return
 
 
 def _lock(folder: Path, locks: ExitStack, *, wait: bool) -> bool:
-    """Lock a folder until ``locks`` are closed; whether that was done. It is not where another process holds it, or nothing can."""
+    """Lock a folder until ``locks`` are closed; whether that was done.
+
+    It is not where another process holds it, or nothing can.
+    """
     if fcntl is None:
         return False
     try:

@@ -1,8 +1,9 @@
 """Every output by its name; :mod:`.base.tables` has its axes, unit, sign and meaning.
 
-An output is a :class:`Output` wherever it is worked with. Its full name is a text, ``group:part:member`` (``section:rod:bending``,
-``reaction:guide:fy``, ``effort:O``), which users write and read; the same name with slashes is its place in the file. Nothing else
-in the package takes a name apart.
+An output is a :class:`Output` wherever it is worked with. Its full name is a text,
+``group:part:member`` (``section:rod:bending``, ``reaction:guide:fy``, ``effort:O``), which users
+write and read; the same name with slashes is its place in the file. Nothing else in the package
+takes a name apart.
 """
 
 from __future__ import annotations
@@ -46,9 +47,11 @@ _LIKE = {"m": "rad", "m/s": "rad/s", "m/s^2": "rad/s^2", "N m": "N"}
 
 
 def compared(units: Sequence[str]) -> list[int]:
-    """Of each unit the number of those among which a size is large or small: lengths beside angles, moments beside forces.
+    """Of each unit the number of those among which a size is large or small: lengths beside angles,
+    moments beside forces.
 
-    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles tell.
+    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles
+    tell.
     """
     kinds = [_LIKE.get(unit, unit) for unit in units]
     numbers = {kind: k for k, kind in enumerate(dict.fromkeys(kinds))}
@@ -56,7 +59,9 @@ def compared(units: Sequence[str]) -> list[int]:
 
 
 _LAWS = {*PLANE.law, *SPACE.law}
-_SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))")
+_SPREAD = re.compile(
+    rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))"
+)
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 
@@ -65,8 +70,8 @@ _COORDINATE = ".coordinate"
 class Kinds:
     """What units of outputs depend on, by name.
 
-    ``coordinates`` and ``frictions`` are kinds, "angle" or "slide", of coordinates and of those along which joints rub; ``outputs``
-    are the units of the user's outputs.
+    ``coordinates`` and ``frictions`` are kinds, "angle" or "slide", of coordinates and of those
+    along which joints rub; ``outputs`` are the units of the user's outputs.
     """
 
     coordinates: Mapping[str, str]
@@ -78,8 +83,9 @@ class Kinds:
 class Output:
     """One output of a mechanism: what it is of its ``part``.
 
-    ``group`` and ``member`` are those of its :class:`Quantity`. The certificate is of no ``part``. ``station`` names what acts on a
-    link at a station, or along it; what acts along it has members for each ``power`` of the place.
+    ``group`` and ``member`` are those of its :class:`Quantity`. The certificate is of no ``part``.
+    ``station`` names what acts on a link at a station, or along it; what acts along it has members
+    for each ``power`` of the place.
     """
 
     group: str
@@ -97,7 +103,9 @@ class Output:
         group, _, text = name.partition(":")
         part, *rest = text.split(":")
         if group in ("motion", "effort"):
-            for member, ending in (("", _COORDINATE), *_ENDINGS.items()) if group == "motion" else ():
+            for member, ending in (
+                (("", _COORDINATE), *_ENDINGS.items()) if group == "motion" else ()
+            ):
                 if text.endswith(ending):
                     return cls(group, text.removesuffix(ending), member)
             return cls(group, text)
@@ -130,7 +138,8 @@ class Output:
 
     @property
     def quantity(self) -> Quantity:
-        """Its row of the table of planar mechanisms, or where these have none of spatial ones: axes and unit are the same in both.
+        """Its row of the table of planar mechanisms, or where these have none of spatial ones: axes
+        and unit are the same in both.
 
         What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
         """
@@ -143,7 +152,11 @@ class Output:
     def components(self, table: Table) -> tuple[Output, ...]:
         """Of what it is the size: the outputs of a resultant, else itself."""
         members = table.parts(self.group, self.member)
-        return (self,) if members == (self.member,) else tuple(Output(self.group, self.part, member) for member in members)
+        return (
+            (self,)
+            if members == (self.member,)
+            else tuple(Output(self.group, self.part, member) for member in members)
+        )
 
     @property
     def along(self) -> bool:
@@ -156,7 +169,11 @@ class Output:
             return kinds.outputs[self.part]
         if self.group == "friction":
             return self.quantity.unit_for(kinds.frictions[self.part])
-        found = kinds.coordinates.get(self.part) if self.group in ("motion", "effort", "holding") else None
+        found = (
+            kinds.coordinates.get(self.part)
+            if self.group in ("motion", "effort", "holding")
+            else None
+        )
         return self.quantity.unit_for(found or "angle")
 
 

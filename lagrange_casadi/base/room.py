@@ -1,4 +1,6 @@
-"""What this machine has room and time for, said before it is tried: the system ends without a word what takes more memory."""
+"""What this machine has room and time for, said before it is tried: the system ends without a word
+what takes more memory.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ _SPANS = ((1.0, "s"), (60.0, "min"), (3600.0, "h"), (86_400.0, "days"), (31_557_
 
 
 def require(what: str, shape: tuple[int, ...]) -> None:
-    """Raise :class:`SizeError` where this machine has less memory free than an array of doubles takes."""
+    """Raise :class:`SizeError` where this machine has less memory free than an array of doubles
+    takes.
+    """
     count = math.prod(shape)
     size = 8.0 * count if count < _LARGEST else math.inf
     if size > _SMALL and size > (there := memory()):
@@ -34,19 +38,25 @@ def cores() -> int:
 
 
 def memory() -> float:
-    """Bytes of memory that are free, with what the system can swap out, or what a container leaves of them; infinite if unknown."""
+    """Bytes of memory that are free, with what the system can swap out, or what a container leaves
+    of them; infinite if unknown.
+    """
     return min([_machine(), *_groups()])
 
 
 def in_words(seconds: float) -> str:
     """A time in one of the units that people say it in."""
     size, unit = next(((s, u) for s, u in reversed(_SPANS) if seconds >= 2.0 * s), _SPANS[0])
-    return f"{seconds / size:.2g} {unit}" if seconds < 100.0 * size else f"{seconds / size:.0f} {unit}"
+    return (
+        f"{seconds / size:.2g} {unit}" if seconds < 100.0 * size else f"{seconds / size:.0f} {unit}"
+    )
 
 
 def _machine() -> float:
     with suppress(OSError, ValueError):
-        words = dict(re.findall(r"^(\w+): +(\d+) kB", Path("/proc/meminfo").read_text(), re.MULTILINE))
+        words = dict(
+            re.findall(r"^(\w+): +(\d+) kB", Path("/proc/meminfo").read_text(), re.MULTILINE)
+        )
         if "MemAvailable" in words:
             return 1024.0 * (int(words["MemAvailable"]) + int(words.get("SwapFree", "0")))
     with suppress(OSError, ValueError, AttributeError):
@@ -55,7 +65,9 @@ def _machine() -> float:
 
 
 def _groups() -> Iterator[float]:
-    """What is left of the memory of each control group that this process is in: a container is one."""
+    """What is left of the memory of each control group that this process is
+    in: a container is one.
+    """
     root = Path("/sys/fs/cgroup")
     with suppress(OSError, ValueError):
         for line in Path("/proc/self/cgroup").read_text().splitlines():
@@ -63,11 +75,20 @@ def _groups() -> Iterator[float]:
             if kinds == "":
                 yield from _left(root, path, "memory.max", "memory.current", "inactive_file")
             elif "memory" in kinds.split(","):
-                yield from _left(root / "memory", path, "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+                yield from _left(
+                    root / "memory",
+                    path,
+                    "memory.limit_in_bytes",
+                    "memory.usage_in_bytes",
+                    "total_inactive_file",
+                )
 
 
 def _left(root: Path, path: str, limit: str, used: str, idle: str) -> Iterator[float]:
-    """Of a group and of those around it. Where the container sees itself as the root, its path is one outside."""
+    """Of a group and of those around it.
+
+    Where the container sees itself as the root, its path is one outside.
+    """
     parts = [part for part in path.split("/") if part]
     for folder in (root.joinpath(*parts[:count]) for count in range(len(parts) + 1)):
         with suppress(OSError, ValueError, KeyError):

@@ -1,8 +1,9 @@
-"""The seal of a file: what tells, before HDF5 sees a byte of it, that all of it is as it was written.
+"""The seal of a file: what tells, before HDF5 sees a byte of it, that all of it is as it was
+written.
 
-It is the last 256 bytes of a file, text after HDF5's own end, where no reader of HDF5 looks: what the file is of, how many bytes
-come before, and their digest, the SHA-256 of the SHA-256 of every MiB, so that all cores can share the work. It is written last, so
-a file that has one was finished.
+It is the last 256 bytes of a file, text after HDF5's own end, where no reader of HDF5 looks: what
+the file is of, how many bytes come before, and their digest, the SHA-256 of the SHA-256 of every
+MiB, so that all cores can share the work. It is written last, so a file that has one was finished.
 """
 
 from __future__ import annotations
@@ -41,7 +42,9 @@ _FEW, _MOST = 4, 8
 
 @dataclass(frozen=True)
 class Seal:
-    """What a seal says: the file is of a ``kind``, and so many bytes with this digest come before."""
+    """What a seal says: the file is of a ``kind``, and so many bytes
+    with this digest come before.
+    """
 
     kind: str
     length: int
@@ -56,10 +59,15 @@ class Seal:
 
     @classmethod
     def read(cls, text: bytes) -> Seal | None:
-        """The seal that the last bytes of a file are, None where they are none. Raises ``ValueError`` for one that is damaged."""
+        """The seal that the last bytes of a file are, None where they are none.
+
+        Raises ``ValueError`` for one that is damaged.
+        """
         if not text.startswith(_MAGIC):
             return None
-        kind, length, digest = (line.rpartition(" ")[2] for line in text.decode("ascii").split("\n")[1:4])
+        kind, length, digest = (
+            line.rpartition(" ")[2] for line in text.decode("ascii").split("\n")[1:4]
+        )
         found = cls(kind, int(length), digest)
         if found.text != text:
             raise ValueError("damaged")
@@ -68,7 +76,10 @@ class Seal:
     @property
     def text(self) -> bytes:
         """As it stands in the file."""
-        lines = f"of {self.kind}\nbytes {self.length}\nSHA-256 of the SHA-256 of every MiB {self.digest}\n"
+        lines = (
+            f"of {self.kind}\nbytes {self.length}\nSHA-256 of the SHA-256 of every MiB"
+            f" {self.digest}\n"
+        )
         return (_MAGIC + lines.encode()).ljust(SIZE - 1) + b"\n"
 
 
@@ -95,7 +106,9 @@ class Seen:
 
 
 def seal(path: Path, kind: str) -> Seen:
-    """Put the seal at the end of a file that is otherwise finished, which is as good as verified then. Raises ``OSError``."""
+    """Put the seal at the end of a file that is otherwise finished, which is as good as verified
+    then. Raises ``OSError``.
+    """
     with path.open("r+b", buffering=0) as file, ThreadPoolExecutor(1) as aside:
         written = aside.submit(os.fsync, file.fileno())  # the disk works meanwhile
         found = Seal.of(file, kind, file.seek(0, os.SEEK_END))
@@ -105,7 +118,9 @@ def seal(path: Path, kind: str) -> Seen:
 
 
 def kind_of(path: str | os.PathLike[str]) -> str | None:
-    """What a file is of, by its seal alone; None where there is no file, or none with a whole seal."""
+    """What a file is of, by its seal alone; None where there is no file,
+    or none with a whole seal.
+    """
     try:
         with _opened(path) as file:
             found = _at_the_end(path, file)
@@ -117,7 +132,8 @@ def kind_of(path: str | os.PathLike[str]) -> str | None:
 def verify(path: str | os.PathLike[str]) -> Seen:
     """Read all of a file, and hold it to its seal.
 
-    Raises :class:`PathError` for no file, :class:`StoreError` for one that is damaged, has no seal, or was never of this package.
+    Raises :class:`PathError` for no file, :class:`StoreError` for one that is damaged, has no seal,
+    or was never of this package.
     """
     with _opened(path) as file:
         if is_held(path):
@@ -126,7 +142,9 @@ def verify(path: str | os.PathLike[str]) -> Seen:
         if found is None:
             raise StoreError(f"{path}: {_unsealed(file)}")
         if there.st_size != found.length + SIZE:
-            raise StoreError(f"{path}: damaged: it has {there.st_size} bytes, and had {found.length + SIZE}")
+            raise StoreError(
+                f"{path}: damaged: it has {there.st_size} bytes, and had {found.length + SIZE}"
+            )
         if Seal.of(file, found.kind, found.length) != found:
             raise StoreError(f"{path}: damaged: its bytes are not those that were written")
     return Seen.of(there)
@@ -172,11 +190,17 @@ def _unsealed(file: FileIO) -> str:
     file.seek(0)
     if file.read(len(SIGNATURE)) != SIGNATURE:
         return "not a file of this program: it begins otherwise than HDF5"
-    return "it has no seal: cut short, changed by another program, or from before there were seals; run it again"
+    return (
+        "it has no seal: cut short, changed by another program, or from before there were seals;"
+        " run it again"
+    )
 
 
 def _digests(file: FileIO, length: int) -> list[bytes]:
-    """The digests of the pieces of a file from here on. Threads take turns to read, so that it is read in order."""
+    """The digests of the pieces of a file from here on.
+
+    Threads take turns to read, so that it is read in order.
+    """
     sizes = [min(_PIECE, length - start) for start in range(0, length, _PIECE)]
     found, numbers, turn = [b""] * len(sizes), iter(range(len(sizes))), threading.Lock()
 

@@ -1,6 +1,8 @@
-"""Standard streams that whoever started the program has closed: nothing goes there, and no file takes their place.
+"""Standard streams that whoever started the program has closed: nothing goes there, and no file
+takes their place.
 
-A file that is opened gets the lowest number that is free. Were it that of standard error, messages would be written into it.
+A file that is opened gets the lowest number that is free. Were it that of standard error, messages
+would be written into it.
 """
 
 from __future__ import annotations
@@ -26,7 +28,9 @@ def fill() -> None:
 
 
 def lead_nowhere() -> None:
-    """Let standard output lead nowhere from now on, once its reader has gone: what is left in it is not an error at the end."""
+    """Let standard output lead nowhere from now on, once its reader has gone: what is left in it is
+    not an error at the end.
+    """
     with suppress(OSError, ValueError):  # of a test, it may be no file
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

@@ -43,23 +43,41 @@ _MEANINGS = {
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
-    Status.DEAD_CENTRE: "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the "
-    "motion: forces are open",
-    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, a joint gimbal lock, a bar its beside, or drives "
-    "such a place",
+    Status.DEAD_CENTRE: (
+        "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives"
+        " cannot make the motion: forces are open"
+    ),
+    Status.PASSES_DEAD_CENTRE: (
+        "a loop passes a dead centre between two instants, a joint gimbal lock, a bar its beside,"
+        " or drives such a place"
+    ),
     Status.MISFIT: "loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
-    Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, a station is off its link, a move cannot be, "
-    "or gears do not fit",
+    Status.IMPOSSIBLE: (
+        "a length is not positive, a mass or density is negative, a station is off its link, a move"
+        " cannot be, or gears do not fit"
+    ),
     Status.INVALID: "a parameter is not finite",
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
-    Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
+    Status.UNCERTIFIED: (
+        "the design was checked in full, and fails its certificate: others may be wrong as well"
+    ),
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
-    Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
+    Status.PEAK_NOT_TOLD: (
+        "a peak cannot be told: too much may hide between the instants; more instants may help"
+    ),
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
     Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
-    Status.AT_REST: "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction",
-    Status.CORNER: "the slope of a motion, a constraint or a lift jumps, and forces there are without bound; or one is other at a "
-    "place than on both sides",
-    Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
+    Status.AT_REST: (
+        "a joint that rubs is at rest: its friction is open; take instants that move, or smooth"
+        " friction"
+    ),
+    Status.CORNER: (
+        "the slope of a motion, a constraint or a lift jumps, and forces there are without bound;"
+        " or one is other at a place than on both sides"
+    ),
+    Status.NO_INSTANTS: (
+        "its instants cannot be: the motion does not go where they are asked for, or they end"
+        " before they start"
+    ),
 }

@@ -1,5 +1,5 @@
-"""Devices, pipes, and what standard output goes to: they are written straight to, for no file may be put in their place, and are
-never read."""
+"""Devices, pipes, and what standard output goes to: they are written straight to, for no file may
+be put in their place, and are never read."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ _FLAGS = os.O_WRONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0)
 
 
 def stream_word(path: Path) -> str:
-    """What a path is that takes bytes and keeps no file, in words; nothing where it may be a file. Raises ``OSError``."""
+    """What a path is that takes bytes and keeps no file, in words; nothing where it may be a file.
+
+    Raises ``OSError``.
+    """
     try:
         mode = os.stat(path).st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -35,17 +38,24 @@ def stream_word(path: Path) -> str:
 
 
 def check_regular(path: str | os.PathLike[str]) -> None:
-    """Raise :class:`PathError` for what is no file to read: to open a pipe may take for ever, to open a device may do something."""
+    """Raise :class:`PathError` for what is no file to read: to open a pipe may take for ever, to
+    open a device may do something.
+    """
     try:
         mode = os.stat(path).st_mode
     except (OSError, ValueError):
         raise PathError(f"{path}: no such file") from None
     if not stat.S_ISREG(mode):
-        raise PathError(f"{path}: is {'a folder' if stat.S_ISDIR(mode) else 'a device or a pipe'}, not a file")
+        raise PathError(
+            f"{path}: is {'a folder' if stat.S_ISDIR(mode) else 'a device or a pipe'}, not a file"
+        )
 
 
 def open_stream(path: Path) -> BinaryIO:
-    """What a path leads to, to write. Raises ``OSError``, and :class:`StoreError` for a pipe that nobody begins to read."""
+    """What a path leads to, to write.
+
+    Raises ``OSError``, and :class:`StoreError` for a pipe that nobody begins to read.
+    """
     number = _standard(path)
     if number is not None:
         sys.stdout.flush()

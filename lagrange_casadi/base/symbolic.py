@@ -1,7 +1,8 @@
 """One thread at a time makes and drops expressions of CasADi.
 
-CasADi keeps each constant of its expressions once for the whole process. A thread that asks for one may be given it while another
-drops the last expression that has it, for no lock spans both, and the interpreter's own is released: the process then crashes.
+CasADi keeps each constant of its expressions once for the whole process. A thread that asks for one
+may be given it while another drops the last expression that has it, for no lock spans both, and the
+interpreter's own is released: the process then crashes.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ _dropped: deque[dict[str, Any]] = deque()
 
 
 class _Symbolic:
-    """A context in which expressions are made and dropped; and a decorator of functions, and of classes' methods, that do so."""
+    """A context in which expressions are made and dropped; and a decorator of functions, and of
+    classes' methods, that do so.
+    """
 
     def __enter__(self) -> None:
         _lock.acquire()
@@ -40,7 +43,9 @@ class _Symbolic:
         if not isinstance(thing, type):
             return cast(Thing, self._alone(thing))
         for name, method in list(vars(thing).items()):
-            if inspect.isfunction(method) and (not name.startswith("_") or name in ("__init__", "__post_init__")):
+            if inspect.isfunction(method) and (
+                not name.startswith("_") or name in ("__init__", "__post_init__")
+            ):
                 setattr(thing, name, self._alone(method))
         return thing
 
@@ -59,8 +64,8 @@ symbolic = _Symbolic()
 class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like cached_property
     """Property that makes expressions when it is first read, and is kept with its object.
 
-    Until Python 3.12 a ``cached_property`` has a lock of its own. Two threads that take it and that of expressions in turn would
-    wait for each other; here there is one lock.
+    Until Python 3.12 a ``cached_property`` has a lock of its own. Two threads that take it and that
+    of expressions in turn would wait for each other; here there is one lock.
     """
 
     @overload
@@ -81,7 +86,9 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
 
 
 class Graphs:
-    """What holds expressions, and may be dropped by any thread: they go when a thread makes others."""
+    """What holds expressions, and may be dropped by any thread: they go
+    when a thread makes others.
+    """
 
     def __del__(self, later: Callable[[dict[str, Any]], None] = _dropped.append) -> None:
         later(vars(self))

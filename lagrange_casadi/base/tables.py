@@ -1,6 +1,8 @@
-"""The tables of all quantities, one of planar mechanisms and one of spatial ones: axes, unit, sign and meaning.
+"""The tables of all quantities, one of planar mechanisms and one of spatial ones: axes, unit, sign
+and meaning.
 
-Nothing else in the package states a unit or a sign. :mod:`.base.quantities` has the outputs that they are of.
+Nothing else in the package states a unit or a sign. :mod:`.base.quantities` has the outputs that
+they are of.
 """
 
 from __future__ import annotations
@@ -10,24 +12,29 @@ from dataclasses import dataclass
 from functools import cached_property
 
 CONVENTIONS = (
-    "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip (xi = 1), "
-    "n is 90 deg counter-clockwise of e; section forces are the action of the part towards the tip on the part towards the "
-    "base, resolved on (e, n, z), so axial > 0 is tension and d(bending)/d(xi l) = -shear; a reaction is the action of the "
-    "joint's parent on its child, in ground axes, its moment about the joint's point on the child; an effort is positive "
-    "along its coordinate"
+    "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi"
+    " = 0) to its tip (xi = 1), n is 90 deg counter-clockwise of e; section forces are the action"
+    " of the part towards the tip on the part towards the base, resolved on (e, n, z), so axial > 0"
+    " is tension and d(bending)/d(xi l) = -shear; a reaction is the action of the joint's parent on"
+    " its child, in ground axes, its moment about the joint's point on the child; an effort is"
+    " positive along its coordinate"
 )
 
 SPATIAL_CONVENTIONS = (
-    "SI units; axes x, y, z, right-handed; angles in rad, by the right hand about their axis; a link's axis x runs from its base "
-    "(xi = 0) to its tip (xi = 1), y and z are its cross-section's axes; section forces are the action of the part towards the tip "
-    "on the part towards the base, resolved on the link's axes, so axial > 0 is tension, d(bending_z)/d(xi l) = -shear_y and "
-    "d(bending_y)/d(xi l) = shear_z; shear and bending are the resultants of both components; a reaction is the action of the "
-    "joint's parent on its child, in ground axes, its moment about the joint's point on the child, and again on the joint's own "
-    "axes u, v, w, which its parent carries; an effort is positive along its coordinate"
+    "SI units; axes x, y, z, right-handed; angles in rad, by the right hand about their axis; a"
+    " link's axis x runs from its base (xi = 0) to its tip (xi = 1), y and z are its"
+    " cross-section's axes; section forces are the action of the part towards the tip on the part"
+    " towards the base, resolved on the link's axes, so axial > 0 is tension, d(bending_z)/d(xi l)"
+    " = -shear_y and d(bending_y)/d(xi l) = shear_z; shear and bending are the resultants of both"
+    " components; a reaction is the action of the joint's parent on its child, in ground axes, its"
+    " moment about the joint's point on the child, and again on the joint's own axes u, v, w, which"
+    " its parent carries; an effort is positive along its coordinate"
 )
 
 CF = "CF-1.8"
-"""What programs may expect of units, names and scales in files: the climate and forecast metadata conventions."""
+"""What programs may expect of units, names and scales in files: the climate and forecast metadata
+conventions.
+"""
 
 FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
 
@@ -36,9 +43,10 @@ FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
 class Quantity:
     """One kind of output.
 
-    ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate
-    is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A multiplier's unit is
-    that of power over its own equation's: the file says ``1`` where the equation's unit is the user's affair. An output of the
+    ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether
+    the joint's coordinate is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the
+    effort that works on it (N m or N). A multiplier's unit is that of power over its own
+    equation's: the file says ``1`` where the equation's unit is the user's affair. An output of the
     user's own has the unit that it was declared with.
     """
 
@@ -80,47 +88,163 @@ _PLACE = (
 )
 _EFFORT = Quantity("effort", "", ("t",), "{Q}", "effort of the drive", _ALONG)
 _HOLDING = (
-    Quantity("holding", "least", ("t",), "{Q}", "least effort that the drive may need, where joints that rub are at rest", _ALONG),
-    Quantity("holding", "largest", ("t",), "{Q}", "largest effort that the drive may need there", _ALONG),
+    Quantity(
+        "holding",
+        "least",
+        ("t",),
+        "{Q}",
+        "least effort that the drive may need, where joints that rub are at rest",
+        _ALONG,
+    ),
+    Quantity(
+        "holding", "largest", ("t",), "{Q}", "largest effort that the drive may need there", _ALONG
+    ),
 )
 _REACTION = (
     Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
     Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
 )
-_MULTIPLIER = Quantity("multiplier", "", ("t",), "1", "multiplier of a constraint or a non-holonomic row")
+_MULTIPLIER = Quantity(
+    "multiplier", "", ("t",), "1", "multiplier of a constraint or a non-holonomic row"
+)
 _LOAD = (
     Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
     Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
 )
 _FRICTION = (
-    Quantity("friction", "along", ("t",), "{Q}", "friction along the joint's coordinate, on the child", _ALONG),
-    Quantity("friction", "loss", ("t",), "W", "power that friction takes from the mechanism", "positive where it brakes"),
+    Quantity(
+        "friction",
+        "along",
+        ("t",),
+        "{Q}",
+        "friction along the joint's coordinate, on the child",
+        _ALONG,
+    ),
+    Quantity(
+        "friction",
+        "loss",
+        ("t",),
+        "W",
+        "power that friction takes from the mechanism",
+        "positive where it brakes",
+    ),
 )
 _OTHERS = (
     *_FRICTION,
     Quantity("output", "", ("t",), "1", "output of the user's own"),
-    Quantity("stress", "von_mises", ("t",), "Pa", "von Mises' stress, the largest along the link", "never negative"),
-    Quantity("utilisation", "yield", ("t",), "1", "one over the factor of safety against yielding, by von Mises"),
-    Quantity("utilisation", "buckling", ("t",), "1", "one over the factor of safety against buckling"),
-    Quantity("deflection", "across", ("t",), LENGTH, "deflection across the link, the largest along it", "never negative"),
-    Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
-    Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
-    Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
-    Quantity("certificate", "friction", ("t",), "1", "frictions and their laws, over the largest friction of the cycle"),
-    Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
-    Quantity("certificate", "elasticity", ("t",), "1", "how far the strain energy is from its least, as a cosine"),
-    Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
-    Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {ON_INBOARD}, along the axis"),
+    Quantity(
+        "stress",
+        "von_mises",
+        ("t",),
+        "Pa",
+        "von Mises' stress, the largest along the link",
+        "never negative",
+    ),
+    Quantity(
+        "utilisation",
+        "yield",
+        ("t",),
+        "1",
+        "one over the factor of safety against yielding, by von Mises",
+    ),
+    Quantity(
+        "utilisation", "buckling", ("t",), "1", "one over the factor of safety against buckling"
+    ),
+    Quantity(
+        "deflection",
+        "across",
+        ("t",),
+        LENGTH,
+        "deflection across the link, the largest along it",
+        "never negative",
+    ),
+    Quantity(
+        "certificate",
+        "balance",
+        ("t",),
+        "1",
+        "Newton-Euler balance of all bodies, over the largest force of the cycle",
+    ),
+    Quantity(
+        "certificate",
+        "power",
+        ("t",),
+        "1",
+        "balance of power, over the largest force times speed of the cycle",
+    ),
+    Quantity(
+        "certificate",
+        "closure",
+        ("t",),
+        "1",
+        "gaps of joints, and what users' equations miss, over the length of all links",
+    ),
+    Quantity(
+        "certificate",
+        "friction",
+        ("t",),
+        "1",
+        "frictions and their laws, over the largest friction of the cycle",
+    ),
+    Quantity(
+        "certificate",
+        "ends",
+        ("t",),
+        "1",
+        "sections at the base and what acts there, over the largest force of the cycle",
+    ),
+    Quantity(
+        "certificate",
+        "elasticity",
+        ("t",),
+        "1",
+        "how far the strain energy is from its least, as a cosine",
+    ),
+    Quantity(
+        "certificate",
+        "condition",
+        ("t",),
+        "1",
+        "how much the loops magnify: 1/sin(transmission angle), or 2/volume",
+    ),
+    Quantity(
+        "section",
+        "axial",
+        ("t", "xi"),
+        FORCE,
+        "axial force",
+        f"tension is positive: {ON_INBOARD}, along the axis",
+    ),
 )
 _AXIAL_LAW = (
     Quantity("law", "n0", ("t",), FORCE, "axial force at the tip"),
-    Quantity("law", "n1", ("t",), "m/s^2", "axial force for a unit of the mass mu0 from the section to the tip"),
-    Quantity("law", "n2", ("t",), "1/s^2", "axial force for a unit of the first moment mu1 from the section to the tip"),
+    Quantity(
+        "law",
+        "n1",
+        ("t",),
+        "m/s^2",
+        "axial force for a unit of the mass mu0 from the section to the tip",
+    ),
+    Quantity(
+        "law",
+        "n2",
+        ("t",),
+        "1/s^2",
+        "axial force for a unit of the first moment mu1 from the section to the tip",
+    ),
 )
-_STATION_N = Quantity("station", "n", ("t",), FORCE, "force on the link at a station, along the axis")
+_STATION_N = Quantity(
+    "station", "n", ("t",), FORCE, "force on the link at a station, along the axis"
+)
 _STATION = Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l")
 _SPREAD = (
-    Quantity("spread", "width", ("t",), "1", "on how much of the link the load along it acts, as a ratio to l"),
+    Quantity(
+        "spread",
+        "width",
+        ("t",),
+        "1",
+        "on how much of the link the load along it acts, as a ratio to l",
+    ),
     Quantity("spread", "end", ("t",), "1", "where the load along the link ends, ratio xi/l"),
 )
 
@@ -138,8 +262,20 @@ _COUPLES = tuple(Quantity("spread", f"c{x}", ("t",), FORCE, _COUPLE.format(x)) f
 def _shear_law(prefix: str, force: str) -> tuple[Quantity, ...]:
     return (
         Quantity("law", f"{prefix}0", ("t",), FORCE, f"{force} at the tip"),
-        Quantity("law", f"{prefix}1", ("t",), "m/s^2", f"{force} for a unit of the mass mu0 from the section to the tip"),
-        Quantity("law", f"{prefix}2", ("t",), "1/s^2", f"{force} for a unit of the first moment mu1 from the section to the tip"),
+        Quantity(
+            "law",
+            f"{prefix}1",
+            ("t",),
+            "m/s^2",
+            f"{force} for a unit of the mass mu0 from the section to the tip",
+        ),
+        Quantity(
+            "law",
+            f"{prefix}2",
+            ("t",),
+            "1/s^2",
+            f"{force} for a unit of the first moment mu1 from the section to the tip",
+        ),
     )
 
 
@@ -147,7 +283,8 @@ QUANTITIES = (
     Quantity("motion", "", ("t",), "{q}", _COORDINATE_OF, "counter-clockwise, or along the axis"),
     *_RATES,
     *_PLACE,
-    Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time", "counter-clockwise from x"),
+    Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time",
+        "counter-clockwise from x"),
     _EFFORT,
     *_HOLDING,
     *_REACTION,
@@ -156,13 +293,16 @@ QUANTITIES = (
     *_LOAD,
     Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
     *_OTHERS,
-    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{ON_INBOARD}, 90 deg counter-clockwise of the axis"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{ON_INBOARD}, counter-clockwise"),
+    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force",
+        f"{ON_INBOARD}, 90 deg counter-clockwise of the axis"),
+    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment",
+        f"{ON_INBOARD}, counter-clockwise"),
     *_AXIAL_LAW,
     *_shear_law("f", "shear force"),
     Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
     _STATION_N,
-    Quantity("station", "f", ("t",), FORCE, "force on the link at a station, 90 deg counter-clockwise of the axis"),
+    Quantity("station", "f", ("t",), FORCE,
+        "force on the link at a station, 90 deg counter-clockwise of the axis"),
     Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
     _STATION,
     *_SPREAD,
@@ -171,30 +311,37 @@ QUANTITIES = (
 )  # fmt: skip
 
 SPATIAL_QUANTITIES = (
-    Quantity("motion", "", ("t",), "{q}", _COORDINATE_OF, "by the right hand about, or along, the axis"),
+    Quantity("motion", "", ("t",), "{q}", _COORDINATE_OF,
+        "by the right hand about, or along, the axis"),
     *_RATES,
     *_PLACE,
     Quantity("pose", "z", ("t",), LENGTH, "place of the base, z"),
-    *(Quantity("pose", f"{axis}{of}", ("t",), "1", f"direction of the body's axis {axis}, {of}") for axis in "xyz" for of in "xyz"),
+    *(Quantity("pose", f"{axis}{of}", ("t",), "1",
+        f"direction of the body's axis {axis}, {of}") for axis in "xyz" for of in "xyz"),
     _EFFORT,
     *_HOLDING,
     *_REACTION,
     Quantity("reaction", "fz", ("t",), FORCE, "reaction of the joint, z", _ON_CHILD),
     *(Quantity("reaction", f"m{x}", ("t",), MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),
-    *(Quantity("reaction", f"f{u}", ("t",), FORCE, f"reaction along the joint's own axis {u}", _ON_CHILD) for u in "uvw"),
-    *(Quantity("reaction", f"m{u}", ("t",), MOMENT, f"{_ABOUT}, about its own axis {u}", _ON_CHILD) for u in "uvw"),
+    *(Quantity("reaction", f"f{u}", ("t",), FORCE, f"reaction along the joint's own axis {u}",
+        _ON_CHILD) for u in "uvw"),
+    *(Quantity("reaction", f"m{u}", ("t",), MOMENT, f"{_ABOUT}, about its own axis {u}",
+        _ON_CHILD) for u in "uvw"),
     _MULTIPLIER,
     *_LOAD,
     Quantity("load", "fz", ("t",), FORCE, "applied force, z", _ON_FIRST),
     *(Quantity("load", f"m{x}", ("t",), MOMENT, f"applied torque, {x}", _ON_FIRST) for x in "xyz"),
     *_OTHERS,
-    Quantity("section", "shear_y", ("t", "xi"), FORCE, "shear force, y", f"{ON_INBOARD}, along the link's y"),
-    Quantity("section", "shear_z", ("t", "xi"), FORCE, "shear force, z", f"{ON_INBOARD}, along the link's z"),
+    Quantity("section", "shear_y", ("t", "xi"), FORCE, "shear force, y",
+        f"{ON_INBOARD}, along the link's y"),
+    Quantity("section", "shear_z", ("t", "xi"), FORCE, "shear force, z",
+        f"{ON_INBOARD}, along the link's z"),
     Quantity("section", "torsion", ("t", "xi"), MOMENT, "torsional moment", f"{_BY_HAND} the axis"),
     Quantity("section", "bending_y", ("t", "xi"), MOMENT, "bending moment, y", f"{_BY_HAND} its y"),
     Quantity("section", "bending_z", ("t", "xi"), MOMENT, "bending moment, z", f"{_BY_HAND} its z"),
     Quantity("section", "shear", ("t", "xi"), FORCE, "resultant shear force", "never negative"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "resultant bending moment", "never negative"),
+    Quantity("section", "bending", ("t", "xi"), MOMENT, "resultant bending moment",
+        "never negative"),
     *_AXIAL_LAW,
     *_shear_law("fy", "shear force, y,"),
     Quantity("law", "mz0", ("t",), MOMENT, "bending moment at the tip, z"),
@@ -205,8 +352,10 @@ SPATIAL_QUANTITIES = (
     Quantity("station", "fy", ("t",), FORCE, "force on the link at a station, along the link's y"),
     Quantity("station", "fz", ("t",), FORCE, "force on the link at a station, along the link's z"),
     Quantity("station", "mx", ("t",), MOMENT, "moment on the link at a station, about the axis"),
-    Quantity("station", "my", ("t",), MOMENT, "moment on the link at a station, about the link's y"),
-    Quantity("station", "mz", ("t",), MOMENT, "moment on the link at a station, about the link's z"),
+    Quantity("station", "my", ("t",), MOMENT,
+        "moment on the link at a station, about the link's y"),
+    Quantity("station", "mz", ("t",), MOMENT,
+        "moment on the link at a station, about the link's z"),
     _STATION,
     *_SPREAD,
     _SPREAD_N,
@@ -224,12 +373,14 @@ MOMENT_RESULTANT = Quantity("reaction", "moment", ("t",), MOMENT, "resultant of 
 
 @dataclass(frozen=True)
 class Terms:
-    """What a section force is made of: members of the law, and what of the loads at stations goes into it.
+    """What a section force is made of: members of the law, and what of the loads at stations goes
+    into it.
 
-    The ``coefficients`` are those of functions along the link: of 1, mu0 and mu1 for a force, of 1 alone for torsion. A bending
-    moment has a ``shear``, another section force, whose coefficients are those behind its first one:
-    d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1. ``spread`` is what a load along the link adds, beside powers along it,
-    and ``couple`` what the rotary inertia of slices does.
+    The ``coefficients`` are those of functions along the link: of 1, mu0 and mu1 for a force, of 1
+    alone for torsion. A bending moment has a ``shear``, another section force, whose coefficients
+    are those behind its first one: d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1.
+    ``spread`` is what a load along the link adds, beside powers along it, and ``couple`` what the
+    rotary inertia of slices does.
     """
 
     coefficients: tuple[str, ...]
@@ -244,8 +395,9 @@ class Terms:
 class Table:
     """All outputs of planar mechanisms, or of spatial ones.
 
-    ``rows`` are in the order in which a solution keeps them. ``sizes`` are resultants: their own row, and the members whose size
-    they are, of the same part. ``sections`` says what each section force is made of, resultants left out.
+    ``rows`` are in the order in which a solution keeps them. ``sizes`` are resultants: their own
+    row, and the members whose size they are, of the same part. ``sections`` says what each section
+    force is made of, resultants left out.
     """
 
     conventions: str
@@ -277,18 +429,24 @@ class Table:
 
     @cached_property
     def spread(self) -> tuple[str, ...]:
-        """The members of a load along a link that come once for each power of the place: its directions, that of the axis first."""
+        """The members of a load along a link that come once for each power of the place: its
+        directions, that of the axis first.
+        """
         others = {row.member for row in (*_SPREAD, *_COUPLES)}
         return tuple(member for member in self._members("spread") if member not in others)
 
     @cached_property
     def couples(self) -> tuple[str, ...]:
-        """The members of the rotary inertia of slices that come once for each power of the place, that about the axis first."""
+        """The members of the rotary inertia of slices that come once for each power of the place,
+        that about the axis first.
+        """
         return tuple(terms.couple for terms in self.sections.values() if terms.couple)
 
     @cached_property
     def place_first(self) -> tuple[str, ...]:
-        """The same as ``station``, in the order in which emitted C and the loads of a law take them."""
+        """The same as ``station``, in the order in which emitted C and the loads of a law take
+        them.
+        """
         return (_STATION.member, *(member for member in self.station if member != _STATION.member))
 
     @cached_property
@@ -303,7 +461,9 @@ class Table:
 
     @cached_property
     def _by_key(self) -> Mapping[tuple[str, str], Quantity]:
-        return {(row.group, row.member): row for row in (*self.rows, *(row for row, _ in self.sizes))}
+        return {
+            (row.group, row.member): row for row in (*self.rows, *(row for row, _ in self.sizes))
+        }
 
     @cached_property
     def _sizes(self) -> Mapping[tuple[str, str], tuple[str, ...]]:
@@ -320,7 +480,11 @@ PLANE = Table(
     CONVENTIONS,
     QUANTITIES,
     ((RESULTANT, ("fx", "fy")),),
-    {"axial": Terms(_N, "n", "qn"), "shear": Terms(_F, "f", "qf"), "bending": Terms(("m0", *_F), "m", "qf", "shear", 1)},
+    {
+        "axial": Terms(_N, "n", "qn"),
+        "shear": Terms(_F, "f", "qf"),
+        "bending": Terms(("m0", *_F), "m", "qf", "shear", 1),
+    },
 )
 SPACE = Table(
     SPATIAL_CONVENTIONS,

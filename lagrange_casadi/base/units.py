@@ -32,7 +32,9 @@ Number: TypeAlias = float | str
 
 
 class Within(NamedTuple):
-    """What an annotation says of a number beside its type: that it is finite, and from ``low`` to ``high``, or ``above`` low."""
+    """What an annotation says of a number beside its type: that it is finite, and from ``low`` to
+    ``high``, or ``above`` low.
+    """
 
     low: float = -math.inf
     high: float = math.inf
@@ -40,19 +42,35 @@ class Within(NamedTuple):
 
     def admits(self, value: float) -> bool:
         """Whether a number is in this range."""
-        return -math.inf < value < math.inf and (self.low < value if self.above else self.low <= value) and value <= self.high
+        return (
+            -math.inf < value < math.inf
+            and (self.low < value if self.above else self.low <= value)
+            and value <= self.high
+        )
 
     @property
     def words(self) -> str:
         """The range, to be said after what is in it."""
         if self.high < math.inf:
             return f" from {self.low:.17g} to {self.high:.17g}"
-        return f" above {self.low:g}" if self.above and self.low else f" of at least {self.low:g}" if self.low > -math.inf else ""
+        return (
+            f" above {self.low:g}"
+            if self.above and self.low
+            else f" of at least {self.low:g}"
+            if self.low > -math.inf
+            else ""
+        )
 
 
 def typed(value: object) -> tuple[Any, str]:
-    """A text with a unit as a number, and the unit that it is then in, as rad, m or m/s; anything else as it is, and no unit."""
-    if not isinstance(value, str) or not (found := _WRITTEN.fullmatch(value)) or found[2] not in _BASE:
+    """A text with a unit as a number, and the unit that it is then in, as rad, m or m/s; anything
+    else as it is, and no unit.
+    """
+    if (
+        not isinstance(value, str)
+        or not (found := _WRITTEN.fullmatch(value))
+        or found[2] not in _BASE
+    ):
         return value, ""
     digits, word, per = found[1], found[2], found[3] or ""
     with suppress(ValueError, OverflowError, DecimalException):
@@ -69,14 +87,18 @@ def typed(value: object) -> tuple[Any, str]:
 
 
 def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
-    """A number in a unit: a number is one, a text is one that tells a unit, as ``"350 deg"``, ``"100 mm"`` or ``"500 g"``.
+    """A number in a unit: a number is one, a text is one that tells a unit, as ``"350 deg"``,
+    ``"100 mm"`` or ``"500 g"``.
 
-    Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite`` for what is not.
+    Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite``
+    for what is not.
     """
     read, told = typed(value)
     found = double(read) if told in ("", unit) else None
     if found is None or not (math.isfinite(found) or not finite):
-        raise NumberError(f"expected {'a finite ' if finite else 'a '}{in_words(unit)}, got {shown(value)}")
+        raise NumberError(
+            f"expected {'a finite ' if finite else 'a '}{in_words(unit)}, got {shown(value)}"
+        )
     return found
 
 
@@ -91,21 +113,32 @@ def in_words(unit: str) -> str:
     example = _EXAMPLES.get(base, "")
     if per and example:
         example = f"'{example.split(chr(39))[1]}/{rest}'"
-    return f"number{'' if unit == '1' else f' [{unit}]'}{f', or a text such as {example}' if example else ''}"
+    text = f", or a text such as {example}" if example else ""
+    return f"number{'' if unit == '1' else f' [{unit}]'}{text}"
 
 
 def count(what: str, value: object, least: int = 1, most: float = math.inf) -> int:
-    """A whole number in a range. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
+    """A whole number in a range.
+
+    Raises :class:`DeclarationError`, naming ``what``, for anything else.
+    """
     if not is_whole(value) or abs(value) >= 2**63 or not least <= value <= most:
-        raise DeclarationError(f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}")
+        raise DeclarationError(
+            f"{what}: expected a whole number{Within(least, most).words}, got {shown(value)}"
+        )
     return int(value)
 
 
 def within(what: str, value: object, low: float, high: float) -> float:
-    """A number from ``low`` to ``high``. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
+    """A number from ``low`` to ``high``.
+
+    Raises :class:`DeclarationError`, naming ``what``, for anything else.
+    """
     found = double(value)
     if found is None or not low <= found <= high:
-        raise DeclarationError(f"{what}: expected a number from {low:g} to {high:g}, got {shown(value)}")
+        raise DeclarationError(
+            f"{what}: expected a number from {low:g} to {high:g}, got {shown(value)}"
+        )
     return found
 
 
@@ -115,11 +148,15 @@ def is_whole(value: object) -> TypeGuard[int]:
 
 
 def double(value: Any) -> float | None:
-    """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and symbols."""
+    """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and
+    symbols.
+    """
     if isinstance(value, ca.SX | ca.DM):
         return float(value) if value.is_scalar() and value.is_constant() else None
     value = value.item() if isinstance(value, np.ndarray) and not value.shape else value
-    strange = isinstance(value, bool | complex | np.ndarray) or not hasattr(type(value), "__float__")
+    strange = isinstance(value, bool | complex | np.ndarray) or not hasattr(
+        type(value), "__float__"
+    )
     if not strange and not (isinstance(value, np.generic) and value.dtype.kind not in "iuf"):
         with suppress(TypeError, ValueError, OverflowError, NotImplementedError, RuntimeError):
             return float(value)

@@ -1,4 +1,6 @@
-"""What may be chosen, and what is chosen where nothing is said: words and numbers that need no other module."""
+"""What may be chosen, and what is chosen where nothing is said: words and numbers that need no
+other module.
+"""
 
 from __future__ import annotations
 

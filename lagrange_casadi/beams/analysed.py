@@ -1,7 +1,9 @@
-"""Cross-sections of any outline, analysed by the package sectionproperties, which is not needed for anything else.
+"""Cross-sections of any outline, analysed by the package sectionproperties, which is not needed for
+anything else.
 
-It solves Saint-Venant's torsion and bending with shear by finite elements (van Leeuwen, *sectionproperties: A Python package for
-the analysis of arbitrary cross-sections using the finite element method*, J. Open Source Softw. 6105, 2024).
+It solves Saint-Venant's torsion and bending with shear by finite elements (van Leeuwen,
+*sectionproperties: A Python package for the analysis of arbitrary cross-sections using the finite
+element method*, J. Open Source Softw. 6105, 2024).
 """
 
 from __future__ import annotations
@@ -15,21 +17,28 @@ from .shape import Shape, given
 _PIECES = 400
 """Into how many triangles a cross-section is cut, about, where no size is said."""
 
-_NEEDS = "a cross-section of any outline needs sectionproperties; install it with: pip install 'lagrange_casadi[sections]'"
+_NEEDS = (
+    "a cross-section of any outline needs sectionproperties; install it with: pip install"
+    " 'lagrange_casadi[sections]'"
+)
 
 
 @public
 def analysed(section: Any, mesh: float | None = None) -> Shape:
-    """A cross-section by its properties, as sectionproperties tells them: torsion and the largest shear stresses too.
+    """A cross-section by its properties, as sectionproperties tells them: torsion and the largest
+    shear stresses too.
 
-    ``section`` is a polygon whose corners are numbers, or a ``Section`` of sectionproperties, in metres: its y is the beam's y,
-    its x the beam's z. ``mesh`` is the largest area of a triangle in a polygon [m^2]. Where an outline has a corner that points
-    inward, shear stress there has no end, and what is told is that of the triangles. Raises :class:`.LagrangeCasadiError` where
+    ``section`` is a polygon whose corners are numbers, or a ``Section`` of sectionproperties, in
+    metres: its y is the beam's y, its x the beam's z. ``mesh`` is the largest area of a triangle in
+    a polygon [m^2]. Where an outline has a corner that points inward, shear stress there has no
+    end, and what is told is that of the triangles. Raises :class:`.LagrangeCasadiError` where
     sectionproperties is not installed, and :class:`.DeclarationError` for what is none of these.
     """
     found = _meshed(section, mesh) if isinstance(section, Shape) else section
     if not hasattr(found, "calculate_warping_properties"):
-        raise DeclarationError(f"analysed: expected a polygon, or a Section of sectionproperties, got {section!r}")
+        raise DeclarationError(
+            f"analysed: expected a polygon, or a Section of sectionproperties, got {section!r}"
+        )
     found.calculate_geometric_properties()
     found.calculate_warping_properties()
     x, y = map(float, found.get_c())
@@ -37,7 +46,9 @@ def analysed(section: Any, mesh: float | None = None) -> Shape:
     iz, iy, iyz = map(float, found.get_ic())
 
     def largest(**load: float) -> float:
-        return max(float(stress["sig_zxy"].max()) for stress in found.calculate_stress(**load).get_stress())
+        return max(
+            float(stress["sig_zxy"].max()) for stress in found.calculate_stress(**load).get_stress()
+        )
 
     return given(
         float(found.get_area()),
@@ -58,7 +69,9 @@ def _meshed(shape: Shape, mesh: float | None) -> Any:
     """A polygon as a section of triangles."""
     numbers = list(shape.dimensions.values())
     if shape.kind != "polygon" or not all(isinstance(x, (int, float)) for x in numbers):
-        raise DeclarationError(f"analysed: expected a polygon whose corners are numbers, got a {shape.kind}")
+        raise DeclarationError(
+            f"analysed: expected a polygon whose corners are numbers, got a {shape.kind}"
+        )
     try:
         from sectionproperties.analysis.section import Section
         from sectionproperties.pre.geometry import Geometry

@@ -1,4 +1,6 @@
-"""What a link is made of: a cross-section along it, a material, and where stress concentrates; and as a file keeps it."""
+"""What a link is made of: a cross-section along it, a material, and where stress concentrates; and
+as a file keeps it.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +19,16 @@ from .shape import Course, Shape, course_of, dimensions_of, kinds
 Factor: TypeAlias = Annotated[float, Within(1.0)]
 
 SLIGHT = 1e-6
-"""Of a column's critical load: less compression buckles nothing, as what rounding leaves at a free end."""
+"""Of a column's critical load: less compression buckles nothing, as what rounding leaves at a free
+end.
+"""
 
 
 @public
 @dataclass(frozen=True)
 class Notch:
-    """A place where stress concentrates: the ratio ``at`` = xi/l, and the theoretical factors on nominal stress of axial force, of
-    bending, and of shear and torsion.
+    """A place where stress concentrates: the ratio ``at`` = xi/l, and the theoretical factors on
+    nominal stress of axial force, of bending, and of shear and torsion.
 
     ``sensitivity``, from 0 to 1, is how much of it fatigue feels: K_f = 1 + q (K_t - 1).
     """
@@ -39,10 +43,12 @@ class Notch:
 @public
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`; notches along the link.
+    """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`;
+    notches along the link.
 
-    ``columns`` are the effective lengths of the link as a column over its length: where it bends along y, in the plane of motion of
-    a planar mechanism, and where it bends along z. By default joints tell them (:mod:`..equations.buckling`).
+    ``columns`` are the effective lengths of the link as a column over its length: where it bends
+    along y, in the plane of motion of a planar mechanism, and where it bends along z. By default
+    joints tell them (:mod:`..equations.buckling`).
 
     Raises :class:`.DeclarationError` for what is none of these.
     """
@@ -55,16 +61,24 @@ class Beam:
     def __post_init__(self) -> None:
         course_of("beam", self.shape)
         if not isinstance(self.material, Material):
-            raise DeclarationError(f"beam: expected a material of lagrange_casadi.beams, got {self.material!r}")
+            raise DeclarationError(
+                f"beam: expected a material of lagrange_casadi.beams, got {self.material!r}"
+            )
         check_kind("beam", self.notches, "a list of notches", Sequence)
         object.__setattr__(self, "notches", tuple(self.notches))
         for notch in self.notches:
             if not isinstance(notch, Notch):
-                raise DeclarationError(f"beam: expected a notch of lagrange_casadi.beams, got {notch!r}")
+                raise DeclarationError(
+                    f"beam: expected a notch of lagrange_casadi.beams, got {notch!r}"
+                )
         if self.columns is not None:
             pair = tuple(self.columns) if isinstance(self.columns, Sequence) else ()
-            if len(pair) != 2 or not all(isinstance(k, (int, float)) and 0.0 < k < math.inf for k in pair):
-                raise DeclarationError(f"beam: expected two effective lengths, positive, got {self.columns!r}")
+            if len(pair) != 2 or not all(
+                isinstance(k, (int, float)) and 0.0 < k < math.inf for k in pair
+            ):
+                raise DeclarationError(
+                    f"beam: expected two effective lengths, positive, got {self.columns!r}"
+                )
             object.__setattr__(self, "columns", pair)
 
     @property
@@ -82,21 +96,31 @@ class Beam:
         return replace(self, shape=self.course.mapped(change))
 
     def masses(self) -> list[list[Any]]:
-        """The mass per length [kg/m] between two breaks, as coefficients of rising powers of the ratio xi/l.
+        """The mass per length [kg/m] between two breaks, as coefficients of rising powers of the
+        ratio xi/l.
 
         Dimensions are linear there, so areas are of degree two at most.
         """
         course, found = self.course, []
-        for a, b, (first, last) in zip(course.breaks, course.breaks[1:], course.cells, strict=False):
+        for a, b, (first, last) in zip(
+            course.breaks, course.breaks[1:], course.cells, strict=False
+        ):
             if first is last:
                 found.append([self.material.density * first.area])
                 continue
-            half = Shape(first.kind, {name: (x + last.dimensions[name]) / 2 for name, x in first.dimensions.items()})
+            half = Shape(
+                first.kind,
+                {name: (x + last.dimensions[name]) / 2 for name, x in first.dimensions.items()},
+            )
             start, stop = first.area, last.area
             bend = 2 * (start + stop - 2 * half.area)
             slope, width = stop - start - bend, b - a
             # In powers of the ratio, not of what is beyond the break.
-            powers = (start - slope * a / width + bend * a * a / width**2, slope / width - 2 * bend * a / width**2, bend / width**2)
+            powers = (
+                start - slope * a / width + bend * a * a / width**2,
+                slope / width - 2 * bend * a / width**2,
+                bend / width**2,
+            )
             found.append([self.material.density * power for power in powers])
         return found
 
@@ -104,8 +128,16 @@ class Beam:
 def told_beam(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
     """A beam, its expressions as numbers."""
     course, shapes = beam.course, list(beam.course.shapes())
-    known = [{"kind": s.kind, "dimensions": {name: number(value) for name, value in s.dimensions.items()}} for s in shapes]
-    places = [[next(k for k, s in enumerate(shapes) if s is end) for end in cell] for cell in course.cells]
+    known = [
+        {
+            "kind": s.kind,
+            "dimensions": {name: number(value) for name, value in s.dimensions.items()},
+        }
+        for s in shapes
+    ]
+    places = [
+        [next(k for k, s in enumerate(shapes) if s is end) for end in cell] for cell in course.cells
+    ]
     return {
         "breaks": list(course.breaks),
         "shapes": known,
@@ -119,7 +151,8 @@ def told_beam(beam: Beam, number: Callable[[Any], float]) -> dict[str, Any]:
 def beam_told(told: Mapping[str, Any]) -> Beam:
     """The beam of such numbers.
 
-    Raises ``ValueError``, ``TypeError``, ``LookupError`` or :class:`.DeclarationError` for what is none, as in a forged file.
+    Raises ``ValueError``, ``TypeError``, ``LookupError`` or :class:`.DeclarationError` for what is
+    none, as in a forged file.
     """
     for shape in told["shapes"]:
         kind, numbers = shape["kind"], shape["dimensions"]

@@ -15,12 +15,14 @@ from ..errors import DeclarationError, UnknownNameError
 class Material:
     """A material, in SI units; what is not known is None, and whatever needs it says so.
 
-    ``density`` [kg/m^3]; ``elasticity``, ``shear_modulus``, by default by Poisson's ratio of 0.3, and ``yield_strength``,
-    ``ultimate`` [Pa]. ``endurance`` is the amplitude of stress [Pa] that the part bears ``endurance_cycles`` times, and for ever
-    where ``endless``: that of the part, after what its surface, size and loading take off. Amplitudes between a thousand cycles
-    and these are on a line of the logarithms from ``fatigue_share`` times the ultimate strength (Shigley, *Mechanical Engineering
-    Design*, 9th edition, section 6-8). ``fatigue_strength`` is the coefficient of Morrow's mean stress, by default the ultimate
-    strength and 345 MPa (Dowling, *Mechanical Behavior of Materials*, for steels).
+    ``density`` [kg/m^3]; ``elasticity``, ``shear_modulus``, by default by Poisson's ratio of 0.3,
+    and ``yield_strength``, ``ultimate`` [Pa]. ``endurance`` is the amplitude of stress [Pa] that
+    the part bears ``endurance_cycles`` times, and for ever where ``endless``: that of the part,
+    after what its surface, size and loading take off. Amplitudes between a thousand cycles and
+    these are on a line of the logarithms from ``fatigue_share`` times the ultimate strength
+    (Shigley, *Mechanical Engineering Design*, 9th edition, section 6-8). ``fatigue_strength`` is
+    the coefficient of Morrow's mean stress, by default the ultimate strength and 345 MPa (Dowling,
+    *Mechanical Behavior of Materials*, for steels).
 
     Raises :class:`.DeclarationError` for numbers that are not positive, or do not go together.
     """
@@ -42,35 +44,65 @@ class Material:
             value = getattr(self, entry.name)
             if entry.name in ("name", "endless") or value is None:
                 continue
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not (0.0 < value < math.inf):
-                raise DeclarationError(f"material '{self.name}': {entry.name} must be a positive number, got {value!r}")
+            if (
+                isinstance(value, bool)
+                or not isinstance(value, (int, float))
+                or not (0.0 < value < math.inf)
+            ):
+                raise DeclarationError(
+                    f"material '{self.name}': {entry.name} must be a positive number, got {value!r}"
+                )
         if not self.endurance_cycles > 1e3:
-            raise DeclarationError(f"material '{self.name}': endurance_cycles must be above 1000, got {self.endurance_cycles:g}")
+            raise DeclarationError(
+                f"material '{self.name}': endurance_cycles must be above 1000, got"
+                f" {self.endurance_cycles:g}"
+            )
         for low, high in (("yield_strength", "ultimate"), ("endurance", "ultimate")):
             a, b = getattr(self, low), getattr(self, high)
             if a is not None and b is not None and a > b:
-                raise DeclarationError(f"material '{self.name}': {low} {a:g} Pa is above {high} {b:g} Pa")
-        if self.endurance is not None and self.ultimate is not None and self.endurance >= self.fatigue_share * self.ultimate:
-            share = f"{self.fatigue_share:g} of the ultimate strength, {self.fatigue_share * self.ultimate:g} Pa"
-            raise DeclarationError(f"material '{self.name}': endurance {self.endurance:g} Pa must be below {share}")
+                raise DeclarationError(
+                    f"material '{self.name}': {low} {a:g} Pa is above {high} {b:g} Pa"
+                )
+        if (
+            self.endurance is not None
+            and self.ultimate is not None
+            and self.endurance >= self.fatigue_share * self.ultimate
+        ):
+            share = (
+                f"{self.fatigue_share:g} of the ultimate strength,"
+                f" {self.fatigue_share * self.ultimate:g} Pa"
+            )
+            raise DeclarationError(
+                f"material '{self.name}': endurance {self.endurance:g} Pa must be below {share}"
+            )
         if self.shear_modulus is None and self.elasticity is not None:
             object.__setattr__(self, "shear_modulus", self.elasticity / 2.6)
 
     def needs(self, what: str, *names: str) -> tuple[float, ...]:
-        """The numbers of some names. Raises :class:`.DeclarationError` that names those which ``what`` lacks."""
+        """The numbers of some names.
+
+        Raises :class:`.DeclarationError` that names those which ``what`` lacks.
+        """
         missing = [name for name in names if getattr(self, name) is None]
         if missing:
-            raise DeclarationError(f"material '{self.name}' has no {' and no '.join(missing)}, which {what} needs")
+            raise DeclarationError(
+                f"material '{self.name}' has no {' and no '.join(missing)}, which {what} needs"
+            )
         return tuple(getattr(self, name) for name in names)
 
     def but(self, **numbers: Any) -> Material:
-        """The same with other numbers; where its endurance limit is a share of its ultimate strength, it does not follow."""
+        """The same with other numbers; where its endurance limit is a share of its ultimate
+        strength, it does not follow.
+        """
         return replace(self, **numbers)
 
 
 @public
 def material(name: str) -> Material:
-    """One of a small table: least values of standards for thin parts. Raises :class:`.UnknownNameError` for any other."""
+    """One of a small table: least values of standards for thin parts.
+
+    Raises :class:`.UnknownNameError` for any other.
+    """
     if name not in TABLE:
         raise UnknownNameError("material", name, TABLE)
     return TABLE[name]
@@ -80,7 +112,9 @@ _STEEL: dict[str, Any] = {"density": 7850.0, "elasticity": 210e9, "shear_modulus
 
 
 def _steel(name: str, strength: float, ultimate: float) -> Material:
-    return Material(name, **_STEEL, yield_strength=strength, ultimate=ultimate, endurance=ultimate / 2)
+    return Material(
+        name, **_STEEL, yield_strength=strength, ultimate=ultimate, endurance=ultimate / 2
+    )
 
 
 TABLE = {
@@ -95,6 +129,7 @@ TABLE = {
         Material("Ti-6Al-4V", 4430.0, 114e9, 44e9, 828e6, 895e6),
     )
 }
-"""Strengths: EN 10025-2 (S235, S355, up to 16 mm), EN ISO 683-1 and -2 (C45+QT, 42CrMo4+QT, up to 16 mm), EN 1563, EN 755-2
-(extruded rod of at most 20 mm), ASTM B348 grade 5. Moduli of steel: EN 1993-1-1, 3.2.6. The endurance limit of steels is half the
-ultimate strength, that of a polished rotating beam (Shigley, eq. 6-8): a part's own is lower. Of the others none is told."""
+"""Strengths: EN 10025-2 (S235, S355, up to 16 mm), EN ISO 683-1 and -2 (C45+QT, 42CrMo4+QT, up to
+16 mm), EN 1563, EN 755-2 (extruded rod of at most 20 mm), ASTM B348 grade 5. Moduli of steel: EN
+1993-1-1, 3.2.6. The endurance limit of steels is half the ultimate strength, that of a polished
+rotating beam (Shigley, eq. 6-8): a part's own is lower. Of the others none is told."""

@@ -25,35 +25,51 @@ class Profile:
     dimensions: dict[str, float]
 
     def shape(self, kind: str) -> Shape:
-        """The cross-section of a kind that has these dimensions. Raises :class:`.DeclarationError` where it has others."""
+        """The cross-section of a kind that has these dimensions.
+
+        Raises :class:`.DeclarationError` where it has others.
+        """
         names = dimensions_of(kind)
         if names is None or set(names) != set(self.dimensions):
             told = ", ".join(names or ("none by name",))
-            raise DeclarationError(f"profile '{self.name}': a {kind} has the dimensions {told}, got {', '.join(self.dimensions)}")
+            raise DeclarationError(
+                f"profile '{self.name}': a {kind} has the dimensions {told}, got"
+                f" {', '.join(self.dimensions)}"
+            )
         return Shape(kind, {name: self.dimensions[name] for name in names})
 
 
 @public
 def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
-    """Profiles of a CSV file: a column ``name``, and one for each dimension, in metres or with a unit as ``height [mm]``.
+    """Profiles of a CSV file: a column ``name``, and one for each dimension, in metres or with a
+    unit as ``height [mm]``.
 
     Cells are parted as :func:`.read_rows` says; lines that begin with ``#`` are passed over.
 
-    Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that names the line which is wrong.
+    Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that
+    names the line which is wrong.
     """
     rows = read_rows(path, "a head and a line for every profile")
     head = next(rows)
     heads = [_head(head.where, cell) for cell in head.cells]
     names = [name for name, _ in heads]
     if names.count("name") != 1 or len(set(names)) < len(names) or len(names) < 2:
-        raise DeclarationError(f"{head.where}: expected a column 'name' and one for each dimension, got {', '.join(names)}")
+        raise DeclarationError(
+            f"{head.where}: expected a column 'name' and one for each dimension, got"
+            f" {', '.join(names)}"
+        )
     found: dict[str, Profile] = {}
     for row in rows:
         cells = dict(zip(names, row.cells, strict=True))
         name = cells.pop("name")
         if not name.isprintable() or not name or name in found:
-            raise DeclarationError(f"{row.where}: " + (f"profile '{name}' comes twice" if name in found else "it has no name"))
-        found[name] = Profile(name, {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()})
+            raise DeclarationError(
+                f"{row.where}: "
+                + (f"profile '{name}' comes twice" if name in found else "it has no name")
+            )
+        found[name] = Profile(
+            name, {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()}
+        )
     if not found:
         raise DeclarationError(f"{head.where}: expected a line for every profile below this head")
     return tuple(found.values())
@@ -64,7 +80,10 @@ def _head(place: str, text: str) -> tuple[str, int]:
     match = _HEAD.fullmatch(text)
     name, unit = (match.group(1), match.group(2) or "") if match else ("", "")
     if not name or unit not in _UNITS:
-        raise DeclarationError(f"{place}: column '{text}': expected a name, and m, cm or mm as its unit, as in height [mm]")
+        raise DeclarationError(
+            f"{place}: column '{text}': expected a name, and m, cm or mm as its unit, as in height"
+            " [mm]"
+        )
     return name, _UNITS[unit]
 
 

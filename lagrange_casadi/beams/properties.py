@@ -1,4 +1,6 @@
-"""What a cross-section is in numbers or expressions: area, second moments, torsion, shear, and the fibres that are looked at."""
+"""What a cross-section is in numbers or expressions: area, second moments, torsion, shear, and the
+fibres that are looked at.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,9 @@ POISSON = 0.3
 class Fibre:
     """A place of a cross-section whose stress is looked at: ``y`` and ``z`` from the centroid [m].
 
-    ``along_y`` and ``along_z`` are the shear stresses there, along y and along z, for a unit each of the shear force along y, the
-    shear force along z [1/m^2], and the torsional moment about the shear centre [1/m^3].
+    ``along_y`` and ``along_z`` are the shear stresses there, along y and along z, for a unit each
+    of the shear force along y, the shear force along z [1/m^2], and the torsional moment about the
+    shear centre [1/m^3].
     """
 
     name: str
@@ -31,9 +34,10 @@ class Fibre:
 class Properties:
     """A cross-section about its centroid, on the link's axes y and z, in SI units.
 
-    ``iz`` is the integral of y^2, which bending in the plane of a planar mechanism sees, ``iy`` that of z^2, ``iyz`` that of y z.
-    ``torsion`` is Saint-Venant's constant, None where it is not known. ``shear_y`` and ``shear_z`` are the areas of Timoshenko's
-    beam. The shear centre is at (``centre_y``, ``centre_z``).
+    ``iz`` is the integral of y^2, which bending in the plane of a planar mechanism sees, ``iy``
+    that of z^2, ``iyz`` that of y z. ``torsion`` is Saint-Venant's constant, None where it is not
+    known. ``shear_y`` and ``shear_z`` are the areas of Timoshenko's beam. The shear centre is at
+    (``centre_y``, ``centre_z``).
     """
 
     area: Any
@@ -48,7 +52,8 @@ class Properties:
     centre_z: Any = 0.0
 
     def rows(self, fibre: Fibre) -> tuple[tuple[Any, ...], ...]:
-        """What a fibre's stresses, normal, along y and along z, take of axial force, two shears, torsion and two bendings.
+        """What a fibre's stresses, normal, along y and along z, take of axial force, two shears,
+        torsion and two bendings.
 
         Section forces act at the centroid, torsion counts from the shear centre.
         """
@@ -89,7 +94,11 @@ def smaller(a: Any, b: Any) -> Any:
 
 def chosen(a: Any, b: Any, first: Any, second: Any) -> Any:
     """``first`` where a is b or more, else ``second``."""
-    return ca.if_else(a >= b, first, second) if symbolic(a, b, first, second) else np.where(a >= b, first, second)
+    return (
+        ca.if_else(a >= b, first, second)
+        if symbolic(a, b, first, second)
+        else np.where(a >= b, first, second)
+    )
 
 
 def exponential(x: Any) -> Any:

@@ -32,7 +32,10 @@ class Shape:
 
     def __post_init__(self) -> None:
         if any(isinstance(value, str) for value in self.dimensions.values()):
-            read = {name: _length(f"{self.kind}: {name}", value) for name, value in self.dimensions.items()}
+            read = {
+                name: _length(f"{self.kind}: {name}", value)
+                for name, value in self.dimensions.items()
+            }
             object.__setattr__(self, "dimensions", read)
 
     def properties(self, *, space: bool = True) -> Properties:
@@ -55,12 +58,16 @@ class Shape:
 
     def mapped(self, change: Callable[[str, Any], Any]) -> Shape:
         """The same with other dimensions, by name and value."""
-        return Shape(self.kind, {name: change(name, value) for name, value in self.dimensions.items()})
+        return Shape(
+            self.kind, {name: change(name, value) for name, value in self.dimensions.items()}
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a cross-section goes along a link: between two ``breaks``, ratios xi/l, linear from one shape to another of its kind."""
+    """How a cross-section goes along a link: between two ``breaks``, ratios xi/l, linear from one
+    shape to another of its kind.
+    """
 
     breaks: tuple[float, ...]
     cells: tuple[tuple[Shape, Shape], ...]
@@ -68,7 +75,9 @@ class Course:
     def mapped(self, change: Callable[[str, Any], Any]) -> Course:
         """The same with other dimensions."""
         made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
-        return Course(self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells))
+        return Course(
+            self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells)
+        )
 
     def shapes(self) -> Iterator[Shape]:
         """Its shapes, each once."""
@@ -76,7 +85,10 @@ class Course:
 
 
 def _length(what: str, value: Any) -> Any:
-    """A text as a length [m], anything else as it is. Raises :class:`.DeclarationError` for a text of none."""
+    """A text as a length [m], anything else as it is.
+
+    Raises :class:`.DeclarationError` for a text of none.
+    """
     try:
         return number(value, "m") if isinstance(value, str) else value
     except NumberError as error:
@@ -109,7 +121,9 @@ def ellipse(height: Symbolic, width: Symbolic) -> Shape:
 
 @public
 def i_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """An I, by its height, the width of its flanges, and the thickness of its web and of its flanges."""
+    """An I, by its height, the width of its flanges, and the thickness of its web and of its
+    flanges.
+    """
     return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
@@ -127,13 +141,16 @@ def c_section(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic
 
 @public
 def box(height: Symbolic, width: Symbolic, web: Symbolic, flange: Symbolic) -> Shape:
-    """A box, by its outer height and width, and the thickness of its two webs and of its two flanges."""
+    """A box, by its outer height and width, and the thickness of its two webs and of its two
+    flanges.
+    """
     return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
 
 
 @public
 def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
-    """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on the link's axis.
+    """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on
+    the link's axis.
 
     Raises :class:`.DeclarationError` for less than three corners.
     """
@@ -143,7 +160,14 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
         raise DeclarationError(f"polygon: expected corners (y, z), got {places!r}") from None
     if len(corners) < 3:
         raise DeclarationError(f"polygon: expected three corners or more, got {len(corners)}")
-    return Shape("polygon", {f"{axis}{k}": x for k, corner in enumerate(corners, 1) for axis, x in zip("yz", corner, strict=True)})
+    return Shape(
+        "polygon",
+        {
+            f"{axis}{k}": x
+            for k, corner in enumerate(corners, 1)
+            for axis, x in zip("yz", corner, strict=True)
+        },
+    )
 
 
 @public
@@ -163,25 +187,39 @@ def given(
 ) -> Shape:
     """A cross-section by its properties, as tables of standards have them.
 
-    ``iz`` is the integral of y^2 [m^4], ``top`` and ``bottom`` the distances of the outermost fibres from the centroid along +y and
-    -y [m], ``side`` that along z. ``torsion`` is Saint-Venant's constant, ``torsion_modulus`` [m^3] what a torsional moment is
-    divided by for its largest shear stress; ``shear_y`` and ``shear_z`` [m^2] what shear forces are divided by for theirs, by
-    default two thirds of the area.
+    ``iz`` is the integral of y^2 [m^4], ``top`` and ``bottom`` the distances of the outermost
+    fibres from the centroid along +y and -y [m], ``side`` that along z. ``torsion`` is
+    Saint-Venant's constant, ``torsion_modulus`` [m^3] what a torsional moment is divided by for its
+    largest shear stress; ``shear_y`` and ``shear_z`` [m^2] what shear forces are divided by for
+    theirs, by default two thirds of the area.
     """
-    words = {"area": area, "iz": iz, "iy": iy, "iyz": iyz, "top": top, "bottom": top if bottom is None else bottom, "side": side}
+    words = {
+        "area": area,
+        "iz": iz,
+        "iy": iy,
+        "iyz": iyz,
+        "top": top,
+        "bottom": top if bottom is None else bottom,
+        "side": side,
+    }
     if (torsion is None) != (torsion_modulus is None):
         raise DeclarationError("given: torsion and torsion_modulus go together")
     if torsion is not None:
         words |= {"torsion": torsion, "torsion_modulus": torsion_modulus}
     shears = {"shear_y": shear_y, "shear_z": shear_z}
-    return Shape("given", words | {name: 2 / 3 * area if value is None else value for name, value in shears.items()})
+    return Shape(
+        "given",
+        words | {name: 2 / 3 * area if value is None else value for name, value in shears.items()},
+    )
 
 
 @public
 def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes twice there is a step.
+    """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes
+    twice there is a step.
 
-    Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
+    Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for
+    shapes that do not fit together.
     """
     for given in (ratios, shapes):
         check_kind("along", given, "ratios, and as many cross-sections", Sequence)
@@ -190,17 +228,29 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
     except (TypeError, ValueError):
         raise DeclarationError(f"along: expected numbers for ratios, got {ratios!r}") from None
     if len(places) != len(shapes) or len(places) < 2:
-        raise DeclarationError(f"along: expected as many shapes as ratios, two or more, got {len(places)} and {len(shapes)}")
+        raise DeclarationError(
+            f"along: expected as many shapes as ratios, two or more, got {len(places)} and"
+            f" {len(shapes)}"
+        )
     if any(not isinstance(shape, Shape) for shape in shapes):
-        raise DeclarationError(f"along: expected cross-sections, got {next(s for s in shapes if not isinstance(s, Shape))!r}")
+        raise DeclarationError(
+            "along: expected cross-sections, got"
+            f" {next(s for s in shapes if not isinstance(s, Shape))!r}"
+        )
     if (places[0], places[-1]) != (0.0, 1.0) or any(b < a for a, b in itertools.pairwise(places)):
-        raise DeclarationError(f"along: ratios must rise from 0 to 1, got {', '.join(f'{place:g}' for place in places)}")
+        raise DeclarationError(
+            "along: ratios must rise from 0 to 1, got"
+            f" {', '.join(f'{place:g}' for place in places)}"
+        )
     breaks, cells = [0.0], []
     for (a, first), (b, last) in itertools.pairwise(zip(places, shapes, strict=True)):
         if a == b:
             continue
         if (first.kind, list(first.dimensions)) != (last.kind, list(last.dimensions)):
-            raise DeclarationError(f"along: between xi/l = {a:g} and {b:g} a {first.kind} cannot become a {last.kind}; put a step")
+            raise DeclarationError(
+                f"along: between xi/l = {a:g} and {b:g} a {first.kind} cannot become a {last.kind};"
+                " put a step"
+            )
         breaks.append(b)
         cells.append((first, last))
     return Course(tuple(breaks), tuple(cells))
@@ -214,21 +264,34 @@ def tapered(base: Shape, tip: Shape) -> Course:
 
 @public
 def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
-    """Constant cross-sections with steps between them, at ratios xi/l: one step fewer than shapes."""
+    """Constant cross-sections with steps between them, at ratios xi/l: one
+    step fewer than shapes.
+    """
     for given in (steps, shapes):
         check_kind("stepped", given, "a row of steps, and one cross-section more", Sequence)
     if len(shapes) != len(steps) + 1:
-        raise DeclarationError(f"stepped: expected one step fewer than shapes, got {len(steps)} steps and {len(shapes)} shapes")
+        raise DeclarationError(
+            f"stepped: expected one step fewer than shapes, got {len(steps)} steps and"
+            f" {len(shapes)} shapes"
+        )
     ends = [0.0, *steps, 1.0]
-    return along([x for pair in itertools.pairwise(ends) for x in pair], [shape for shape in shapes for _ in range(2)])
+    return along(
+        [x for pair in itertools.pairwise(ends) for x in pair],
+        [shape for shape in shapes for _ in range(2)],
+    )
 
 
 def course_of(what: str, shape: object) -> Course:
-    """A shape as one that is constant along the link. Raises :class:`.DeclarationError` for what is none."""
+    """A shape as one that is constant along the link.
+
+    Raises :class:`.DeclarationError` for what is none.
+    """
     if isinstance(shape, Shape):
         return Course((0.0, 1.0), ((shape, shape),))
     if not isinstance(shape, Course):
-        raise DeclarationError(f"{what}: expected a cross-section of lagrange_casadi.beams, got {shape!r}")
+        raise DeclarationError(
+            f"{what}: expected a cross-section of lagrange_casadi.beams, got {shape!r}"
+        )
     return shape
 
 
@@ -236,7 +299,10 @@ def between(first: Shape, last: Shape, share: Any) -> Shape:
     """The shape at a ``share`` of the way from one to another, a number or an array."""
     if first is last:
         return first
-    dimensions = {name: value + share * (last.dimensions[name] - value) for name, value in first.dimensions.items()}
+    dimensions = {
+        name: value + share * (last.dimensions[name] - value)
+        for name, value in first.dimensions.items()
+    }
     return Shape(first.kind, dimensions)
 
 
@@ -276,8 +342,12 @@ def _given(d: Mapping[str, Any], _space: bool) -> Properties:
     ]
     twist = 1 / d["torsion_modulus"] if "torsion" in d else 0.0
     for sign in (1, -1) if "torsion" in d else (1,):
-        fibres.append(Fibre("inside, along y", 0.0, 0.0, along_y=(1 / d["shear_y"], 0.0, sign * twist)))
-        fibres.append(Fibre("inside, along z", 0.0, 0.0, along_z=(0.0, 1 / d["shear_z"], sign * twist)))
+        fibres.append(
+            Fibre("inside, along y", 0.0, 0.0, along_y=(1 / d["shear_y"], 0.0, sign * twist))
+        )
+        fibres.append(
+            Fibre("inside, along z", 0.0, 0.0, along_z=(0.0, 1 / d["shear_z"], sign * twist))
+        )
     stiff = 5 / 6 * d["area"]
     numbers = (d["area"], d["iy"], d["iz"], tuple(fibres), d["iyz"], d.get("torsion"))
     return Properties(*numbers, shear_y=stiff, shear_z=stiff)
@@ -302,9 +372,13 @@ _AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
     "round_bar": lambda d: _QUARTER_PI * d["diameter"] ** 2,
     "tube": lambda d: 4 * _QUARTER_PI * d["wall"] * (d["diameter"] - d["wall"]),
     "ellipse": lambda d: _QUARTER_PI * d["height"] * d["width"],
-    "i_section": lambda d: 2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"],
+    "i_section": lambda d: (
+        2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]
+    ),
     "t_section": lambda d: d["width"] * d["flange"] + (d["height"] - d["flange"]) * d["web"],
-    "c_section": lambda d: 2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"],
+    "c_section": lambda d: (
+        2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]
+    ),
     "box": lambda d: 2 * (d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]),
     "polygon": lambda d: solid.polygon_area(_corners(d)),
     "given": lambda d: d["area"],
@@ -324,7 +398,10 @@ def _demands(kind: str, d: dict[str, Any]) -> Iterator[Demand]:
         yield d["diameter"] - 2 * d["wall"], "inner diameter"
     elif kind in ("i_section", "c_section", "box"):
         yield d["height"] - 2 * d["flange"], "height between the flanges"
-        yield d["width"] - (2 if kind == "box" else 1) * d["web"], "width beside the web" + ("s" if kind == "box" else "")
+        yield (
+            d["width"] - (2 if kind == "box" else 1) * d["web"],
+            "width beside the web" + ("s" if kind == "box" else ""),
+        )
     elif kind == "t_section":
         yield d["height"] - d["flange"], "height of the web"
         yield d["width"] - d["web"], "width beside the web"

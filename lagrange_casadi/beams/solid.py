@@ -1,8 +1,10 @@
-"""Full and round cross-sections: closed forms of rectangle, ellipse, round bar and tube, and of any polygon.
+"""Full and round cross-sections: closed forms of rectangle, ellipse, round bar and tube, and of any
+polygon.
 
-Sources: torsion of the rectangle is the whole series of Timoshenko and Goodier, *Theory of Elasticity*, art. 109, summed so that a
-few terms give all digits; that of the ellipse art. 107. Shear stresses are Jourawski's, V Q / (I b); on the edge of an oval they
-lie along it. Shear areas are Cowper's (*The shear coefficient in Timoshenko's beam theory*, J. Appl. Mech. 33, 1966).
+Sources: torsion of the rectangle is the whole series of Timoshenko and Goodier, *Theory of
+Elasticity*, art. 109, summed so that a few terms give all digits; that of the ellipse art. 107.
+Shear stresses are Jourawski's, V Q / (I b); on the edge of an oval they lie along it. Shear areas
+are Cowper's (*The shear coefficient in Timoshenko's beam theory*, J. Appl. Mech. 33, 1966).
 """
 
 from __future__ import annotations
@@ -25,13 +27,19 @@ _ODD = range(1, 25, 2)
 def rectangle(height: Any, width: Any) -> Properties:
     """A rectangle: nine fibres, at its corners, the middles of its sides and its centre."""
     area, torsion = height * width, rectangle_torsion(height, width)
-    # The twist of a unit moment, 1/torsion, and the stress it makes in the middles of the long and of the short sides.
+    # The twist of a unit moment, 1/torsion, and the stress it makes in the middles of the long and
+    # of the short sides.
     long, short = (share / torsion for share in _twisted(height, width))
     beside, above = chosen(height, width, long, short), chosen(height, width, short, long)
     shear = 1.5 / area
-    fibres = [Fibre(_at(i, j), i * height / 2, j * width / 2) for i, j in itertools.product((1, -1), repeat=2)]
+    fibres = [
+        Fibre(_at(i, j), i * height / 2, j * width / 2)
+        for i, j in itertools.product((1, -1), repeat=2)
+    ]
     fibres += [Fibre(_at(0, j), 0.0, j * width / 2, (shear, 0.0, -j * beside)) for j in (1, -1)]
-    fibres += [Fibre(_at(i, 0), i * height / 2, 0.0, along_z=(0.0, shear, i * above)) for i in (1, -1)]
+    fibres += [
+        Fibre(_at(i, 0), i * height / 2, 0.0, along_z=(0.0, shear, i * above)) for i in (1, -1)
+    ]
     fibres.append(Fibre("centre", 0.0, 0.0, (shear, 0.0, 0.0), (0.0, shear, 0.0)))
     stiff = 10 * (1 + POISSON) / (12 + 11 * POISSON) * area
     iy, iz = height * width**3 / 12, width * height**3 / 12
@@ -47,16 +55,23 @@ def rectangle_torsion(a: Any, b: Any) -> Any:
 
 
 def _twisted(a: Any, b: Any) -> tuple[Any, Any]:
-    """The shear stress in the middle of a long and of a short side, over G times the twist per length [m]."""
+    """The shear stress in the middle of a long and of a short side, over G times the twist per
+    length [m].
+    """
     long, short = larger(a, b), smaller(a, b)
     waves = [exponential(-n * pi * long / (2 * short)) for n in _ODD]
     deep = sum(2 * w / (1.0 + w * w) / n**2 for n, w in zip(_ODD, waves, strict=True))
-    rest = sum((-1) ** k * 2 * w * w / (1.0 + w * w) / n**2 for k, (n, w) in enumerate(zip(_ODD, waves, strict=True)))
+    rest = sum(
+        (-1) ** k * 2 * w * w / (1.0 + w * w) / n**2
+        for k, (n, w) in enumerate(zip(_ODD, waves, strict=True))
+    )
     return short * (1.0 - 8 / pi**2 * deep), short * 8 / pi**2 * (_CATALAN - rest)
 
 
 def ellipse(height: Any, width: Any, *, space: bool) -> Properties:
-    """An ellipse, by its two diameters; in space fibres are every 15 degrees around it, in the plane at the ends of its axes."""
+    """An ellipse, by its two diameters; in space fibres are every 15 degrees around it, in the
+    plane at the ends of its axes.
+    """
     a, c = height / 2, width / 2
     area = pi * a * c
     fibres = [Fibre("centre", 0.0, 0.0, (4 / 3 / area, 0.0, 0.0), (0.0, 4 / 3 / area, 0.0))]
@@ -66,7 +81,9 @@ def ellipse(height: Any, width: Any, *, space: bool) -> Properties:
     constant = pi * a**3 * c**3 / (a * a + c * c)
     iy, iz = pi * a * c**3 / 4, pi * c * a**3 / 4
     stiff = (_elliptic(a / c) * area, _elliptic(c / a) * area)
-    return Properties(area, iy, iz, tuple(fibres), torsion=constant, shear_y=stiff[0], shear_z=stiff[1])
+    return Properties(
+        area, iy, iz, tuple(fibres), torsion=constant, shear_y=stiff[0], shear_z=stiff[1]
+    )
 
 
 def _elliptic(n: Any) -> Any:
@@ -86,25 +103,46 @@ def tube(diameter: Any, wall: Any, *, space: bool) -> Properties:
         torsion = -outer * z / (2 * moment), outer * y / (2 * moment)
         fibres.append(_edge(angle, outer * y, outer * z, y, z, most, 1.0, torsion))
     v, m = POISSON, inner / outer
-    stiff = 6 * (1 + v) * (1 + m**2) ** 2 / ((7 + 6 * v) * (1 + m**2) ** 2 + (20 + 12 * v) * m**2) * area
-    return Properties(area, moment, moment, tuple(fibres), torsion=2 * moment, shear_y=stiff, shear_z=stiff)
+    stiff = (
+        6
+        * (1 + v)
+        * (1 + m**2) ** 2
+        / ((7 + 6 * v) * (1 + m**2) ** 2 + (20 + 12 * v) * m**2)
+        * area
+    )
+    return Properties(
+        area, moment, moment, tuple(fibres), torsion=2 * moment, shear_y=stiff, shear_z=stiff
+    )
 
 
 def _around(space: bool) -> list[tuple[int, float, float]]:
     """Angles from y towards z [degrees], with cosine and sine."""
-    return [(k, round(cos(k * pi / 180), 15), round(sin(k * pi / 180), 15)) for k in range(0, 360, 15 if space else 90)]
+    return [
+        (k, round(cos(k * pi / 180), 15), round(sin(k * pi / 180), 15))
+        for k in range(0, 360, 15 if space else 90)
+    ]
 
 
-def _edge(angle: int, y: Any, z: Any, c: float, s: float, most: Any, slope: Any, torsion: tuple[Any, Any]) -> Fibre:
+def _edge(
+    angle: int, y: Any, z: Any, c: float, s: float, most: Any, slope: Any, torsion: tuple[Any, Any]
+) -> Fibre:
     """A fibre on the edge of an oval, where shear stresses lie along the edge."""
     aside = -most * s * c
-    return Fibre(f"{angle} deg", y, z, (most * s * s, aside / slope, torsion[0]), (aside * slope, most * c * c, torsion[1]))
+    return Fibre(
+        f"{angle} deg",
+        y,
+        z,
+        (most * s * s, aside / slope, torsion[0]),
+        (aside * slope, most * c * c, torsion[1]),
+    )
 
 
 def polygon(places: Sequence[tuple[Any, Any]]) -> Properties:
-    """Any polygon without holes, by its corners counter-clockwise, y to the right and z up; about its own centroid.
+    """Any polygon without holes, by its corners counter-clockwise, y to the right and z up; about
+    its own centroid.
 
-    Fibres are its corners, and the centroid, where shear is V Q / (I b) with the whole width there. Torsion is not known.
+    Fibres are its corners, and the centroid, where shear is V Q / (I b) with the whole width there.
+    Torsion is not known.
     """
     pairs = list(zip(places, [*places[1:], places[0]], strict=True))
     area, first_y, first_z = _moments(pairs)
@@ -112,14 +150,31 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Properties:
     moved = [(y - y0, z - z0) for y, z in places]
     pairs = list(zip(moved, [*moved[1:], moved[0]], strict=True))
     crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
-    iz = sum(w * (a[0] ** 2 + a[0] * b[0] + b[0] ** 2) for w, (a, b) in zip(crosses, pairs, strict=True)) / 12
-    iy = sum(w * (a[1] ** 2 + a[1] * b[1] + b[1] ** 2) for w, (a, b) in zip(crosses, pairs, strict=True)) / 12
+    iz = (
+        sum(
+            w * (a[0] ** 2 + a[0] * b[0] + b[0] ** 2)
+            for w, (a, b) in zip(crosses, pairs, strict=True)
+        )
+        / 12
+    )
+    iy = (
+        sum(
+            w * (a[1] ** 2 + a[1] * b[1] + b[1] ** 2)
+            for w, (a, b) in zip(crosses, pairs, strict=True)
+        )
+        / 12
+    )
     iyz = (
-        sum(w * (a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1]) for w, (a, b) in zip(crosses, pairs, strict=True))
+        sum(
+            w * (a[0] * b[1] + 2 * a[0] * a[1] + 2 * b[0] * b[1] + b[0] * a[1])
+            for w, (a, b) in zip(crosses, pairs, strict=True)
+        )
         / 24
     )
     fibres = [Fibre(f"corner {k + 1}", y, z) for k, (y, z) in enumerate(moved)]
-    shear = [_shear_at_centroid([(p[k], p[1 - k]) for p in moved], i) for k, i in ((0, iz), (1, iy))]
+    shear = [
+        _shear_at_centroid([(p[k], p[1 - k]) for p in moved], i) for k, i in ((0, iz), (1, iy))
+    ]
     fibres.append(Fibre("centroid", 0.0, 0.0, (shear[0], 0.0, 0.0), (0.0, shear[1], 0.0)))
     stiff = 5 / 6 * area
     return Properties(area, iy, iz, tuple(fibres), iyz=iyz, shear_y=stiff, shear_z=stiff)
@@ -133,17 +188,23 @@ def polygon_area(places: Sequence[tuple[Any, Any]]) -> Any:
 def _moments(pairs: Sequence[tuple[tuple[Any, Any], tuple[Any, Any]]]) -> tuple[Any, Any, Any]:
     """Area and first moments of a polygon by its sides."""
     crosses = [a[0] * b[1] - b[0] * a[1] for a, b in pairs]
-    first = [sum(w * (a[k] + b[k]) for w, (a, b) in zip(crosses, pairs, strict=True)) / 6 for k in (0, 1)]
+    first = [
+        sum(w * (a[k] + b[k]) for w, (a, b) in zip(crosses, pairs, strict=True)) / 6 for k in (0, 1)
+    ]
     return sum(crosses) / 2, first[0], first[1]
 
 
 def _shear_at_centroid(places: Sequence[tuple[Any, Any]], moment: Any) -> Any:
-    """Q / (I b) at the line x = 0 of a polygon whose corners are (x, across); of numbers or arrays."""
+    """Q / (I b) at the line x = 0 of a polygon whose corners are
+    (x, across); of numbers or arrays.
+    """
     first: Any = 0.0
     width: Any = 0.0
     for (x1, w1), (x2, w2) in zip(places, [*places[1:], places[0]], strict=True):
         with np.errstate(divide="ignore", invalid="ignore"):
-            crossing = np.where(x1 != x2, w1 + (w2 - w1) * (0.0 - x1) / np.where(x1 != x2, x2 - x1, 1.0), 0.0)
+            crossing = np.where(
+                x1 != x2, w1 + (w2 - w1) * (0.0 - x1) / np.where(x1 != x2, x2 - x1, 1.0), 0.0
+            )
         up, down = (x1 <= 0.0) & (x2 > 0.0), (x1 > 0.0) & (x2 <= 0.0)
         width = width + np.where(up, crossing, 0.0) - np.where(down, crossing, 0.0)
         # The first moment of the part with x > 0, by the integral of x^2/2 along its sides.

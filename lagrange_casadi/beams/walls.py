@@ -1,9 +1,10 @@
 """Cross-sections of thin walls: I, T, C and box.
 
-Second moments are exact for their rectangles, without fillets. Torsion of open ones is the sum of their rectangles', of a box
-Bredt's; shear stresses are the flows of thin walls, V Q / (I t), and of torsion T t / It in open walls, T / (2 A_m t) in closed
-ones (Young and Budynas, *Roark's Formulas for Stress and Strain*, chapters 8 to 10). Warping that is held adds nothing. Shear areas
-are those of the walls along the force.
+Second moments are exact for their rectangles, without fillets. Torsion of open ones is the sum of
+their rectangles', of a box Bredt's; shear stresses are the flows of thin walls, V Q / (I t), and of
+torsion T t / It in open walls, T / (2 A_m t) in closed ones (Young and Budynas, *Roark's Formulas
+for Stress and Strain*, chapters 8 to 10). Warping that is held adds nothing. Shear areas are those
+of the walls along the force.
 """
 
 from __future__ import annotations
@@ -29,15 +30,36 @@ def i_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     fibres = _corners(h / 2, b / 2)
     for i, j in itertools.product(_SIGNS, repeat=2):
         along = (i * j * b * (h - flange) / (4 * iz), b**2 / (8 * iy), i * flange / torsion)
-        fibres.append(Fibre(f"flange {_side(i, 'y')} at the web {_side(j, 'z')}", i * h / 2, j * web / 2, along_z=along))
+        fibres.append(
+            Fibre(
+                f"flange {_side(i, 'y')} at the web {_side(j, 'z')}",
+                i * h / 2,
+                j * web / 2,
+                along_z=along,
+            )
+        )
         twist = -j * web / torsion
-        fibres.append(Fibre(f"web {_side(i, 'y')} {_side(j, 'z')}", i * hw / 2, j * web / 2, (at_flange / (iz * web), 0.0, twist)))
+        fibres.append(
+            Fibre(
+                f"web {_side(i, 'y')} {_side(j, 'z')}",
+                i * hw / 2,
+                j * web / 2,
+                (at_flange / (iz * web), 0.0, twist),
+            )
+        )
     for j in _SIGNS:
         fibres.append(
-            Fibre(f"middle of the web {_side(j, 'z')}", 0.0, j * web / 2, (in_middle / (iz * web), 0.0, -j * web / torsion))
+            Fibre(
+                f"middle of the web {_side(j, 'z')}",
+                0.0,
+                j * web / 2,
+                (in_middle / (iz * web), 0.0, -j * web / torsion),
+            )
         )
     shear = (h - flange) * web, 5 / 3 * b * flange
-    return Properties(area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1])
+    return Properties(
+        area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
+    )
 
 
 def t_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
@@ -46,7 +68,12 @@ def t_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     area = b * flange + hw * web
     low = (web * hw**2 / 2 + b * flange * (hw + flange / 2)) / area
     top, middle = height - low, height - low - flange / 2
-    iz = web * hw**3 / 12 + web * hw * (low - hw / 2) ** 2 + b * flange**3 / 12 + b * flange * middle**2
+    iz = (
+        web * hw**3 / 12
+        + web * hw * (low - hw / 2) ** 2
+        + b * flange**3 / 12
+        + b * flange * middle**2
+    )
     iy = (flange * b**3 + hw * web**3) / 12
     torsion = rectangle_torsion(b, flange) + rectangle_torsion(hw, web)
     at_flange, neutral = b * flange * middle, smaller(0.0, hw - low)
@@ -59,20 +86,42 @@ def t_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
         along = (j * b * middle / (2 * iz), b**2 / (8 * iy), flange / torsion)
         fibres.append(Fibre(f"flange at the web {side}", top, j * web / 2, along_z=along))
         twist = -j * web / torsion
-        fibres.append(Fibre(f"web at the flange {side}", hw - low, j * web / 2, (at_flange / (iz * web), 0.0, twist)))
+        fibres.append(
+            Fibre(
+                f"web at the flange {side}",
+                hw - low,
+                j * web / 2,
+                (at_flange / (iz * web), 0.0, twist),
+            )
+        )
         fibres.append(Fibre(f"web {side}", neutral, j * web / 2, (inside / (iz * web), 0.0, twist)))
     shear = height * web, 5 / 6 * b * flange
-    return Properties(area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1], centre_y=middle)
+    return Properties(
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=shear[0],
+        shear_z=shear[1],
+        centre_y=middle,
+    )
 
 
 def c_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
-    """A C: its web along y on the side of -z, its flanges towards +z; the shear centre is beyond the web."""
+    """A C: its web along y on the side of -z, its flanges towards +z; the shear centre is beyond
+    the web.
+    """
     h, b, hw = height, width, height - 2 * flange
     area = 2 * b * flange + hw * web
     back = (flange * b**2 + hw * web**2 / 2) / area
     tip = b - back
     iz = 2 * b * flange * ((h - flange) ** 2 / 4 + flange**2 / 12) + web * hw**3 / 12
-    iy = 2 * (flange * b**3 / 12 + b * flange * (b / 2 - back) ** 2) + hw * web**3 / 12 + hw * web * (back - web / 2) ** 2
+    iy = (
+        2 * (flange * b**3 / 12 + b * flange * (b / 2 - back) ** 2)
+        + hw * web**3 / 12
+        + hw * web * (back - web / 2) ** 2
+    )
     torsion = 2 * rectangle_torsion(b, flange) + rectangle_torsion(hw, web)
     wide, high = b - web / 2, h - flange
     centre = -(back - web / 2) - wide**2 * high**2 * flange / (4 * iz)
@@ -91,9 +140,20 @@ def c_section(height: Any, width: Any, web: Any, flange: Any) -> Properties:
         for i in _SIGNS:
             flow = (at_flange / (iz * web), 0.0, twist)
             fibres.append(Fibre(f"{face} of the web {_side(i, 'y')}", i * hw / 2, z, flow))
-        fibres.append(Fibre(f"{face} of the web, middle", 0.0, z, (in_middle / (iz * web), 0.0, twist)))
+        fibres.append(
+            Fibre(f"{face} of the web, middle", 0.0, z, (in_middle / (iz * web), 0.0, twist))
+        )
     shear = high * web, 5 / 3 * b * flange
-    return Properties(area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1], centre_z=centre)
+    return Properties(
+        area,
+        iy,
+        iz,
+        tuple(fibres),
+        torsion=torsion,
+        shear_y=shear[0],
+        shear_z=shear[1],
+        centre_z=centre,
+    )
 
 
 def box(height: Any, width: Any, web: Any, flange: Any) -> Properties:
@@ -110,20 +170,38 @@ def box(height: Any, width: Any, web: Any, flange: Any) -> Properties:
     for i, j in itertools.product(_SIGNS, repeat=2):
         where, twist = f"{_side(i, 'y')} {_side(j, 'z')}", 1 / (2 * inside)
         in_web = (flange_first / (2 * iz * web), -i * j * h * wide / (4 * iy), -j * twist / web)
-        in_flange = (-i * j * b * high / (4 * iz), web_first / (2 * iy * flange), i * twist / flange)
+        in_flange = (
+            -i * j * b * high / (4 * iz),
+            web_first / (2 * iy * flange),
+            i * twist / flange,
+        )
         fibres.append(Fibre(f"corner {where}, web", i * h / 2, j * b / 2, in_web))
         fibres.append(Fibre(f"corner {where}, flange", i * h / 2, j * b / 2, along_z=in_flange))
     for s in _SIGNS:
         deep = (flange_first + web * hi**2 / 4) / (2 * iz * web)
-        fibres.append(Fibre(f"web {_side(s, 'z')}", 0.0, s * b / 2, (deep, 0.0, -s / (2 * inside * web))))
+        fibres.append(
+            Fibre(f"web {_side(s, 'z')}", 0.0, s * b / 2, (deep, 0.0, -s / (2 * inside * web)))
+        )
         deep = (web_first + flange * bi**2 / 4) / (2 * iy * flange)
-        fibres.append(Fibre(f"flange {_side(s, 'y')}", s * h / 2, 0.0, along_z=(0.0, deep, s / (2 * inside * flange))))
+        fibres.append(
+            Fibre(
+                f"flange {_side(s, 'y')}",
+                s * h / 2,
+                0.0,
+                along_z=(0.0, deep, s / (2 * inside * flange)),
+            )
+        )
     shear = 2 * high * web, 2 * wide * flange
-    return Properties(area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1])
+    return Properties(
+        area, iy, iz, tuple(fibres), torsion=torsion, shear_y=shear[0], shear_z=shear[1]
+    )
 
 
 def _corners(y: Any, z: Any) -> list[Fibre]:
-    return [Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * y, j * z) for i, j in itertools.product(_SIGNS, repeat=2)]
+    return [
+        Fibre(f"corner {_side(i, 'y')} {_side(j, 'z')}", i * y, j * z)
+        for i, j in itertools.product(_SIGNS, repeat=2)
+    ]
 
 
 def _side(sign: int, axis: str) -> str:

@@ -1,4 +1,6 @@
-"""The command line: one thin file a command, and one place where errors become a line and an exit status."""
+"""The command line: one thin file a command, and one place where errors become a line and an exit
+status.
+"""
 
 from __future__ import annotations
 
@@ -33,11 +35,15 @@ _OPTIONS = {
 """What errors call in Python's words, in the command line's."""
 
 _NUMPY = r"\s*casadi: a numpy function was called"
-"""How a note of CasADi begins that fills the screen: what NumPy makes of symbols is what it should be."""
+"""How a note of CasADi begins that fills the screen: what NumPy makes of symbols is what it should
+be.
+"""
 
 
 _MOMENT, _WAITS = 0.01, 50
-"""Seconds that an interrupt waits for CasADi at a time, and how often: some of its calls are long."""
+"""Seconds that an interrupt waits for CasADi at a time, and how often: some
+of its calls are long.
+"""
 
 
 class _Interrupted(Exception):  # noqa: N818 - it is no error
@@ -63,14 +69,18 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=_Commands, commands=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=_Commands, commands=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(__version__, prog_name="lagrange-casadi")
 def program() -> None:
     """Efforts, reactions and section forces of a mechanism that must make a given motion."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a computation that failed."""
+    """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a
+    computation that failed.
+    """
     # Nothing is shown in windows, and what a notebook set is no backend elsewhere.
     os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
@@ -114,7 +124,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _read() -> Iterator[None]:
-    """Tell a reader that is gone before click ends the program: of standard output, for files fail with an error of ours."""
+    """Tell a reader that is gone before click ends the program: of standard output, for files fail
+    with an error of ours.
+    """
     try:
         yield
     except BrokenPipeError:
@@ -123,11 +135,12 @@ def _read() -> Iterator[None]:
 
 @contextmanager
 def _insistent() -> Iterator[None]:
-    """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of it.
+    """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of
+    it.
 
-    CasADi clears exceptions while it tries which of its overloads fits, so an interrupt at that moment is lost, or comes back as
-    another error. So it waits a little for CasADi to come back, is repeated every second until it arrives, and what fails after it
-    is taken for it.
+    CasADi clears exceptions while it tries which of its overloads fits, so an interrupt at that
+    moment is lost, or comes back as another error. So it waits a little for CasADi to come back, is
+    repeated every second until it arrives, and what fails after it is taken for it.
     """
     seen = threading.Event()
     waits, own = itertools.count(1), os.getpid()
@@ -145,9 +158,14 @@ def _insistent() -> Iterator[None]:
         raise KeyboardInterrupt
 
     able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
-    # What Python ignores, as in a callback of a weak reference, arrives a second later, and is no one's concern.
+    # What Python ignores, as in a callback of a weak reference, arrives a second later, and is no
+    # one's concern.
     ignored, sys.unraisablehook = sys.unraisablehook, _unless_interrupted(sys.unraisablehook)
-    before = [(number, signal.signal(number, interrupt)) for number in (*interrupts(), signal.SIGALRM)] if able else []
+    before = (
+        [(number, signal.signal(number, interrupt)) for number in (*interrupts(), signal.SIGALRM)]
+        if able
+        else []
+    )
     try:
         yield
     except KeyboardInterrupt:
@@ -166,7 +184,9 @@ def _insistent() -> Iterator[None]:
 
 def _unless_interrupted(told: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """What tells of exceptions that Python ignores, but not of interrupts."""
-    return lambda ignored: None if issubclass(ignored.exc_type, KeyboardInterrupt) else told(ignored)
+    return lambda ignored: (
+        None if issubclass(ignored.exc_type, KeyboardInterrupt) else told(ignored)
+    )
 
 
 def _in_casadi(frame: FrameType | None) -> bool:

@@ -1,4 +1,6 @@
-"""``lagrange-casadi animate``: the mechanism in motion, as a GIF, an MP4, an animated SVG or glTF."""
+"""``lagrange-casadi animate``: the mechanism in motion, as a GIF, an MP4, an
+animated SVG or glTF.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,9 @@ def animate(
         out = out or Path(f"{case.name}.gif")
         check_writable(out)
         scene = case.scene
-        solution = evaluate(scene, parameters=parameters(settings), t=t, over=over, wanted=_wanted(scene, film))
+        solution = evaluate(
+            scene, parameters=parameters(settings), t=t, over=over, wanted=_wanted(scene, film)
+        )
         write_animation(solution, out, film)
     echo(f"wrote {out}")
     if solution.failed:

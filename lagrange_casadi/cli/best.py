@@ -29,16 +29,20 @@ def best(
     if csv:
         check_writable(csv)
     sweep = Sweep.open(file)
-    found = find(sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns)
+    found = find(
+        sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns
+    )
     if not found:
         met, with_result = (grouped(count) for count in tally(sweep, where))
         raise NoDesignError(
-            f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)}, {met} meet them, {with_result} of "
-            f"these with a result{missed(sweep, where)}"
+            f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)},"
+            f" {met} meet them, {with_result} of these with a result{missed(sweep, where)}"
         )
     names, piped = list(found[0].values), csv is not None and is_standard_output(csv)
     if not piped:
         show(sweep, names, [(design.number, list(design.values.values())) for design in found])
     if csv:
-        write_csv([DESIGN, *names], ([design.number, *design.values.values()] for design in found), csv)
+        write_csv(
+            [DESIGN, *names], ([design.number, *design.values.values()] for design in found), csv
+        )
         echo(f"wrote {csv}: {counted(len(found))}", err=piped)

@@ -24,9 +24,14 @@ def cache(clear: bool) -> None:
     what = f"{counted(names.count('.graph'), 'graph')}, {libraries}, {size / 1e6:.3g} MB"
     if not clear:
         echo(f"{place}: {what} in {counted(len(names), 'file')}")
-        echo(f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first; ${kept.VARIABLE} sets another")
+        echo(
+            f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first;"
+            f" ${kept.VARIABLE} sets another"
+        )
         return
     removed = kept.remove(entries)
     if removed < size:
-        raise StoreError(f"cannot remove all that is kept in {place}: {(size - removed) / 1e6:.3g} MB are left")
+        raise StoreError(
+            f"cannot remove all that is kept in {place}: {(size - removed) / 1e6:.3g} MB are left"
+        )
     echo(f"{place}: removed {what}")

@@ -31,7 +31,10 @@ def cases(copy: Path | None) -> None:
                     place = draft / name / file.relative_to(folder)
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
-    echo(f"copied {len(found)} cases: begin with lagrange-casadi run {shlex.quote(str(copy / next(iter(found))))}")
+    echo(
+        f"copied {len(found)} cases: begin with lagrange-casadi run"
+        f" {shlex.quote(str(copy / next(iter(found))))}"
+    )
 
 
 def _sentence(file: Path) -> str:

@@ -30,7 +30,10 @@ sys.path = [place for place in sys.path if place] + sys.argv[2:]
 from {__name__} import answer
 answer(sys.argv[1])
 """
-"""The process that reads a file of unknown origin. Modules in the current folder, where files arrive, are not for it."""
+"""The process that reads a file of unknown origin.
+
+Modules in the current folder, where files arrive, are not for it.
+"""
 
 _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
 """How HDF5 is told to load no filters from outside."""
@@ -47,7 +50,9 @@ def check(file: Path, untrusted: bool, time_limit: float | None) -> int:
         raise click.UsageError("--time-limit goes with --untrusted")
     seconds = TIME_LIMIT if time_limit is None else time_limit
     if not 0.0 < seconds <= _LONGEST:
-        raise click.UsageError(f"--time-limit: expected seconds above 0, up to {_LONGEST:g}, got {seconds:g}")
+        raise click.UsageError(
+            f"--time-limit: expected seconds above 0, up to {_LONGEST:g}, got {seconds:g}"
+        )
     findings = _findings_apart(file, seconds) if untrusted else _findings(file)
     for finding in findings:
         echo(f"{file}: {finding}", err=True)
@@ -66,30 +71,42 @@ def _findings(file: Path) -> list[str]:
 
 
 def _findings_apart(file: Path, seconds: float) -> list[str]:
-    """What another process finds. Raises :class:`StoreError` where it does not end in time, or ends without an answer."""
+    """What another process finds.
+
+    Raises :class:`StoreError` where it does not end in time, or ends without an answer.
+    """
     command = [sys.executable, "-c", _PROGRAM, str(file), str(_PLACE)]
     try:
         done = programs.run(command, seconds, variables=_VARIABLES)
     except subprocess.TimeoutExpired:
         raise StoreError(
-            f"{file}: was not read within {seconds:g} s, so it is large or forged; --time-limit sets another limit"
+            f"{file}: was not read within {seconds:g} s, so it is large or forged; --time-limit"
+            " sets another limit"
         ) from None
     if done.returncode < 0:
-        raise StoreError(f"{file}: reading it crashed ({signal.strsignal(-done.returncode)}): it is damaged or forged")
+        raise StoreError(
+            f"{file}: reading it crashed ({signal.strsignal(-done.returncode)}): it is damaged or"
+            " forged"
+        )
     try:
         told = parsed(done.stdout, _ANSWER)
     except (ValueError, RecursionError):
         last = done.stderr.strip().rpartition("\n")[2][:_LENGTH]
         raise StoreError(
-            f"{file}: the process that reads it gave no answer (status {done.returncode}){last and ': '}{last}"
+            f"{file}: the process that reads it gave no answer (status"
+            f" {done.returncode}){last and ': '}{last}"
         ) from None
     if told["refused"]:
-        raise (PathError if told["status"] == PathError.exit_status else StoreError)(told["refused"])
+        raise (PathError if told["status"] == PathError.exit_status else StoreError)(
+            told["refused"]
+        )
     return list(told["findings"])
 
 
 def answer(file: str) -> None:
-    """Check a file within limits and print what is found as JSON, and nothing else, whatever libraries print."""
+    """Check a file within limits and print what is found as JSON, and nothing else, whatever
+    libraries print.
+    """
     found, refused, status = list[str](), "", 1
     with os.fdopen(os.dup(1), "w") as out:
         nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -106,11 +123,15 @@ def answer(file: str) -> None:
             refused = f"{file}: cannot be read: {type(error).__name__}: {one_line(error)}"
         more = [f"and {len(found) - _LINES} more"] if len(found) > _LINES else []
         findings = [line[:_LENGTH] for line in found[:_LINES]] + more
-        out.write(json.dumps({"findings": findings, "refused": refused[:_LENGTH], "status": status}))
+        out.write(
+            json.dumps({"findings": findings, "refused": refused[:_LENGTH], "status": status})
+        )
 
 
 def _limit() -> None:
-    """Let this process take half of the memory that is free, and leave no image of it behind, where the system can see to that."""
+    """Let this process take half of the memory that is free, and leave no image of it behind, where
+    the system can see to that.
+    """
     with suppress(ImportError, OSError, ValueError):
         import resource  # there is none on Windows
 

@@ -1,4 +1,6 @@
-"""Drawing with a progress bar, for the commands that draw; and the ways in which a mechanism can be assembled."""
+"""Drawing with a progress bar, for the commands that draw; and the ways in which a mechanism can be
+assembled.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +21,23 @@ from ..shapes.specs import Spec
 from .echo import echo
 
 
-def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> None:
-    """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar shows on a terminal only."""
+def draw_with_progress(
+    solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False
+) -> None:
+    """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar
+    shows on a terminal only.
+    """
     default_figures, draw = method("figures.default_figures"), method("figures.draw")
     chosen = specs or default_figures(solution)
     skipped: list[str] = []
     drawn: list[str] = []
-    for spec, path in tqdm(draw(solution, chosen, folder, si), total=len(chosen), desc="figures", leave=False, disable=None):
+    for spec, path in tqdm(
+        draw(solution, chosen, folder, si),
+        total=len(chosen),
+        desc="figures",
+        leave=False,
+        disable=None,
+    ):
         (drawn if path else skipped).append(spec.name)
     write_index(solution.case, drawn, folder)
     if skipped:
@@ -33,7 +45,9 @@ def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, 
 
 
 def drawn_ways(error: PostureError) -> str:
-    """Draw the ways in which a loop that is open can be assembled into a file here, and say so; nothing where it cannot be."""
+    """Draw the ways in which a loop that is open can be assembled into a file here, and say so;
+    nothing where it cannot be.
+    """
     scene = error.scene
     if not isinstance(scene, Scene) or error.lacking:
         return ""
@@ -43,5 +57,7 @@ def drawn_ways(error: PostureError) -> str:
         if many := method("PostureError.drawn")(scene, picture):
             with writing(path) as (file,):
                 file.write(picture.getvalue())
-            return f"; {path} draws {many} that close{'' if many > 1 else 's'}, each with its posture"
+            return (
+                f"; {path} draws {many} that close{'' if many > 1 else 's'}, each with its posture"
+            )
     return ""

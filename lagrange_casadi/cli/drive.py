@@ -1,4 +1,6 @@
-"""``lagrange-casadi drive``: what a cycle asks of the motors of drives, and which of a catalogue serve."""
+"""``lagrange-casadi drive``: what a cycle asks of the motors of drives, and which of a catalogue
+serve.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,9 @@ def drive_command(
     if lead is not None and not 0.0 < lead < math.inf:
         raise click.UsageError(f"--lead: expected a positive length [m], got {lead:g}")
     if not 0.0 <= inertia < math.inf:
-        raise click.UsageError(f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}")
+        raise click.UsageError(
+            f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}"
+        )
     loaded = load_case(case)
     scene = loaded.scene
     beside = loaded.path.parent / "motors.csv"
@@ -57,12 +61,19 @@ def drive_command(
     chosen = tuple(dict.fromkeys(drives)) or valid
     if plot is not None:
         if len(chosen) > 1:
-            raise click.UsageError(f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}")
+            raise click.UsageError(
+                f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}"
+            )
         check_picture(plot)
     given = parameters(settings)
     wanted = ["effort", "motion", *(kind for kind in kinds(scene.outputs) if kind in _FORCES)]
     solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
-    lines = [f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"]
+    lines = [
+        (
+            f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to"
+            f" {solution.t[-1]:.5g} s"
+        )
+    ]
     failed: LagrangeCasadiError | None = None
     for name in chosen:
         carried = inertia_at(scene, name, parameters=given, t=t, over=over)
@@ -71,7 +82,9 @@ def drive_command(
         found: Duty | Choice = load
         if catalogue:
             try:
-                found = _choose(solution, name, catalogue, ratios, lead, efficiency, inertia, carried)
+                found = _choose(
+                    solution, name, catalogue, ratios, lead, efficiency, inertia, carried
+                )
             except LagrangeCasadiError as error:
                 if error.exit_status == 2:
                     raise
@@ -80,7 +93,9 @@ def drive_command(
                 continue
             lines += _choice_lines(found, len(catalogue))
         if plot is not None:
-            plot_duty(*((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot)))
+            plot_duty(
+                *((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot))
+            )
             lines.append(f"wrote {plot}")
     lines += (f"note: {note}" for note in solution.notes)
     for line in (*lines, summary(solution.certificate)):
@@ -101,13 +116,19 @@ def _choose(
     inertia: float,
     carried: Array,
 ) -> Choice:
-    """The motor of a drive. Raises ``click.UsageError`` where its ratio is left open, and :class:`.NoDesignError`."""
+    """The motor of a drive.
+
+    Raises ``click.UsageError`` where its ratio is left open, and :class:`.NoDesignError`.
+    """
     linear, slide = catalogue[0].linear, slides(solution, name)
     if lead is not None and (linear or not slide):
         why = "linear motors have no lead" if linear else f"drive '{name}' turns; expected --ratio"
         raise click.UsageError(f"--lead: {why}")
     if slide and not linear and lead is None and not ratios:
-        raise click.UsageError(f"drive '{name}' slides: expected --lead, its way in a turn of the motor, or linear motors")
+        raise click.UsageError(
+            f"drive '{name}' slides: expected --lead, its way in a turn of the motor, or linear"
+            " motors"
+        )
     turns = 1.0 if lead is None else math.tau / lead
 
     def asked(ratio: float, rotor: float) -> Duty:
@@ -122,41 +143,63 @@ def _load_lines(load: Duty) -> Iterator[str]:
     """What is asked at the drive itself."""
     force = "N" if load.linear else "N m"
     yield (
-        f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force}, {_speed(load)}, "
-        f"peak power {load.peak_power:.5g} W"
+        f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force},"
+        f" {_speed(load)}, peak power {load.peak_power:.5g} W"
     )
     yield f"  {_energy(load)}"
     if load.carried is not None:
         unit = "kg" if load.linear else "kg m^2"
-        yield f"  it feels an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
+        yield (
+            f"  it feels an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
+        )
     if load.coarse:
-        yield "  note: every second instant alone tells a mean or a peak more than 1 % off; take more instants"
+        yield (
+            "  note: every second instant alone tells a mean or a peak more than 1 % off; take more"
+            " instants"
+        )
 
 
 def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     """The motor, what it is used to, and why nothing smaller will do."""
     duty, motor = choice.duty, choice.motor
     force = "N" if duty.linear else "N m"
-    yield f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.5g} W, with a ratio of {duty.ratio:.6g}"
+    yield (
+        f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.5g} W, with"
+        f" a ratio of {duty.ratio:.6g}"
+    )
     for name, share in choice.shares.items():
         governs = " governs" if name == choice.governs else ""
-        yield f"    {name:<12} {share:>8.4g} |{'#' * min(_BAR, math.ceil(share * _BAR)):<{_BAR}}|{governs}"
+        yield (
+            f"    {name:<12} {share:>8.4g}"
+            f" |{'#' * min(_BAR, math.ceil(share * _BAR)):<{_BAR}}|{governs}"
+        )
     yield (
-        f"    rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force}, {_speed(duty)}, "
-        f"peak power {duty.peak_power:.5g} W"
+        f"    rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force},"
+        f" {_speed(duty)}, peak power {duty.peak_power:.5g} W"
     )
     yield f"    {_energy(duty)}"
     if duty.inertia > 0.0:
         ratio = duty.inertia_ratio
-        yield f"    inertia of the load over the motor's: {ratio.least:.5g} to {ratio.largest:.5g}, in the mean {ratio.mean:.5g}"
+        yield (
+            f"    inertia of the load over the motor's: {ratio.least:.5g} to {ratio.largest:.5g},"
+            f" in the mean {ratio.mean:.5g}"
+        )
     yield from (f"    smaller: {why}" for why in choice.refused)
 
 
 def _speed(duty: Duty) -> str:
-    told = f"{duty.peak_speed:.5g} m/s" if duty.linear else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
+    told = (
+        f"{duty.peak_speed:.5g} m/s"
+        if duty.linear
+        else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
+    )
     return f"peak speed {told}"
 
 
 def _energy(duty: Duty) -> str:
-    back = f", {duty.regenerated:.5g} J come back, {duty.peak_return:.5g} W at most" if duty.peak_return > 0.0 else ""
+    back = (
+        f", {duty.regenerated:.5g} J come back, {duty.peak_return:.5g} W at most"
+        if duty.peak_return > 0.0
+        else ""
+    )
     return f"{duty.energy:.5g} J a cycle{back}"

@@ -1,4 +1,7 @@
-"""Lines on the terminal. Whatever they quote, names of files and what is in them, moves no cursor and fakes no other line."""
+"""Lines on the terminal.
+
+Whatever they quote, names of files and what is in them, moves no cursor and fakes no other line.
+"""
 
 from __future__ import annotations
 
@@ -8,5 +11,7 @@ from ..errors import escaped
 
 
 def echo(line: str, err: bool = False) -> None:
-    """Print a line on standard output, or on standard error; control characters in it are escaped."""
+    """Print a line on standard output, or on standard error; control characters
+    in it are escaped.
+    """
     click.echo(escaped(line), err=err)

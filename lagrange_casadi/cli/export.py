@@ -46,9 +46,15 @@ def export(
     for own, called in made.mapped.items():
         echo(f"{own} is called {called} in C")
     p = made.prefix
-    echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
+    echo(
+        f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs,"
+        f" {len(made.outputs)} outputs"
+    )
     if fmu:
         echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
     if wasm:
         echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
-    echo(f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest --test-dir build")
+    echo(
+        f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest"
+        " --test-dir build"
+    )

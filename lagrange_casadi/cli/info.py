@@ -53,9 +53,14 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     outputs = scene.outputs
     whole = kinds(outputs)
-    echo(f"outputs: {', '.join(outputs)}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
+    echo(
+        f"outputs: {', '.join(outputs)}" + (f"; all of a kind: {', '.join(whole)}" if whole else "")
+    )
     echo(f"wanted: {', '.join(want or scene.wanted)}")
-    loops = [f"{name} ({'iterated' if program.iterates(name) else 'closed form'})" for name in program.checks("closure")]
+    loops = [
+        f"{name} ({'iterated' if program.iterates(name) else 'closed form'})"
+        for name in program.checks("closure")
+    ]
     echo(f"loops closed by: {', '.join(loops) or 'none'}")
     counts = ", ".join(f"{name} {count}" for name, count in program.instructions.items())
     echo(f"instructions an instant: {sum(program.instructions.values())} ({counts})")
@@ -69,9 +74,15 @@ def _describe_file(solution: Solution) -> None:
         first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
         echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
     echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
-    echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
+    echo(
+        f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler}"
+        f" {provenance.flags}".rstrip()
+    )
     echo(f"method: {provenance.rung}")
-    echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
+    echo(
+        "versions:"
+        f" {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}"
+    )
     for note in solution.notes:
         echo(f"note: {note}")
     for line in untold_lines(solution):
@@ -89,12 +100,22 @@ def _describe_sweep(identity: Mapping[str, Any]) -> None:
     for name, words in identity["grid"].items():
         echo(f"swept {name}: {words}")
     asked, xi = identity["t"][:4], identity["xi"]
-    echo(asked_line(asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"))
+    echo(
+        asked_line(
+            asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"
+        )
+    )
     if xi:
         echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
-    echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
+    echo(
+        f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']}"
+        f" {identity['flags']}".rstrip()
+    )
     echo(f"method: {identity['rung']}")
-    echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
+    echo(
+        "versions:"
+        f" {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}"
+    )
 
 
 def _describe_whole(sweep: Sweep) -> None:
@@ -111,7 +132,11 @@ def _describe_whole(sweep: Sweep) -> None:
 def _describe_mechanism(description: Description) -> None:
     echo(f"mechanism: {description['name']}")
     for name, p in description["parameters"].items():
-        limits = "" if math.isinf(p["low"]) and math.isinf(p["high"]) else f" (range {p['low']:g} to {p['high']:g})"
+        limits = (
+            ""
+            if math.isinf(p["low"]) and math.isinf(p["high"])
+            else f" (range {p['low']:g} to {p['high']:g})"
+        )
         echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
     for name, body in description["bodies"].items():
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
@@ -119,7 +144,10 @@ def _describe_mechanism(description: Description) -> None:
         echo(f"  {size} {name}: {body['mass']:g} kg{thick}")
     for name, joint in description["joints"].items():
         points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
-        ends = " - ".join(f"{p['body']} {_vector(at)}" for p, at in zip((joint["parent"], joint["child"]), points, strict=True))
+        ends = " - ".join(
+            f"{p['body']} {_vector(at)}"
+            for p, at in zip((joint["parent"], joint["child"]), points, strict=True)
+        )
         moves = _in_space(joint, description) if "coordinates" in joint else _in_plane(joint)
         echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
     echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
@@ -129,26 +157,45 @@ def _describe_mechanism(description: Description) -> None:
 
 def _in_plane(joint: Description) -> str:
     """How a joint of a plane moves."""
-    along = f", along {_vector(joint['axis'])} of {joint['parent']['body']}" if joint["kind"] in ("prismatic", "slot") else ""
-    turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
+    along = (
+        f", along {_vector(joint['axis'])} of {joint['parent']['body']}"
+        if joint["kind"] in ("prismatic", "slot")
+        else ""
+    )
+    turned = (
+        f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)"
+        if joint["angle"]
+        else ""
+    )
     return f"{along}{turned}{', driven' if joint['driven'] else ''}"
 
 
 def _in_space(joint: Description, description: Description) -> str:
-    """How a joint in space moves: about or along which axis by each of its coordinates that are told, and what drives it."""
+    """How a joint in space moves: about or along which axis by each of its coordinates that are
+    told, and what drives it.
+    """
     told, unmeasured = "", set(description["unmeasured"])
     for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
         if name not in unmeasured:
             own = name.partition(":")[2]
             lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
-            word = f"{'along' if kind == 'slide' else 'about'} {_vector(axis)}{'' if told else ' of ' + joint['parent']['body']}"
+            word = (
+                f"{'along' if kind == 'slide' else 'about'}"
+                f" {_vector(axis)}{'' if told else ' of ' + joint['parent']['body']}"
+            )
             told += f", {own + ' ' if own else ''}{word}{lead}{_driven(name, joint, description)}"
     barred = {joint["parent"]["body"], joint["child"]["body"]} & set(description["bars"])
-    return told if barred or not unmeasured & set(joint["coordinates"]) else f"{told}, closes a loop: its angles are not measured"
+    return (
+        told
+        if barred or not unmeasured & set(joint["coordinates"])
+        else f"{told}, closes a loop: its angles are not measured"
+    )
 
 
 def _driven(coordinate: str, joint: Description, description: Description) -> str:
-    """Whether an effort drives a coordinate, and whether its motion is given, where the two are not the same."""
+    """Whether an effort drives a coordinate, and whether its motion is given, where the two are not
+    the same.
+    """
     given, drives = coordinate in joint["driven"], description.get("drives")
     if drives is None:
         return ", driven" if given else ""

@@ -26,11 +26,18 @@ def new(folder: Path, like: str) -> None:
             if file.is_file() and file.name != "README.md":  # which says what the other one is
                 shutil.copyfile(file, draft / file.name)
         case = draft / "case.py"
-        case.write_text(_renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n")
-    echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {shlex.quote(str(folder))}")
+        case.write_text(
+            _renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n"
+        )
+    echo(
+        f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run"
+        f" {shlex.quote(str(folder))}"
+    )
 
 
 def _renamed(text: str, like: str, folder: Path) -> str:
     """A case's text, its mechanism under the folder's name, as far as that is a name."""
     name = re.sub(r"[^A-Za-z0-9_]", "_", Path(os.path.abspath(folder)).name)
-    return text.replace(f'Mechanism("{like}")', f'Mechanism("{name}")') if name[:1].isalpha() else text
+    return (
+        text.replace(f'Mechanism("{like}")', f'Mechanism("{name}")') if name[:1].isalpha() else text
+    )

@@ -48,17 +48,25 @@ def optimise(
     if len(over) < len(bounds):
         raise DeclarationError("over: a parameter has bounds twice")
     loaded = load_case(case)
-    out, figure = out or Path(f"{loaded.name}_optimum.h5"), figure or Path(f"{loaded.name}_optimum.png")
+    out, figure = (
+        out or Path(f"{loaded.name}_optimum.h5"),
+        figure or Path(f"{loaded.name}_optimum.png"),
+    )
     if out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     check_writable(out, hdf5=True)
     if figure.suffix not in PICTURES:
-        raise click.UsageError(f"--figure {figure}: expected a name that ends in {' or '.join(PICTURES)}")
+        raise click.UsageError(
+            f"--figure {figure}: expected a name that ends in {' or '.join(PICTURES)}"
+        )
     check_writable(figure)
     with tqdm(desc="programs", leave=False, disable=None) as bar:
 
         def progress(start: int, objective: float, excess: float) -> None:
-            bar.set_postfix_str(f"start {start + 1}: {objective:.5g}{'' if excess <= 0.0 else f', beyond a limit by {excess:.1g}'}")
+            bar.set_postfix_str(
+                f"start {start + 1}:"
+                f" {objective:.5g}{'' if excess <= 0.0 else f', beyond a limit by {excess:.1g}'}"
+            )
             bar.update()
 
         options: dict[str, Any] = {
@@ -82,7 +90,9 @@ def optimise(
         else:
             found = search(loaded, minimise=list(minimise), over=over, **options)
     if found.stopped and hasattr(signal, "setitimer"):
-        signal.setitimer(signal.ITIMER_REAL, 0.0)  # the interrupt has arrived, and is repeated no more
+        signal.setitimer(
+            signal.ITIMER_REAL, 0.0
+        )  # the interrupt has arrived, and is repeated no more
     scene = loaded.scene
     with writing(figure) as (picture,):
         if isinstance(found, Optimum):

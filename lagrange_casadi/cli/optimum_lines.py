@@ -10,20 +10,34 @@ from ..studies.optimise import Front, Optimum
 
 def optimum_lines(found: Optimum) -> Iterator[str]:
     """What a search found, a line each."""
-    yield f"{found.case}: {found.minimised} = {found.objective:.8g} {found.unit} at {_design(found.values, 8)}"
+    yield (
+        f"{found.case}: {found.minimised} = {found.objective:.8g} {found.unit} at"
+        f" {_design(found.values, 8)}"
+    )
     if found.stopped:
         yield "stopped: the best design so far; --resume goes on"
     for limit in found.limits:
         excess = limit.constraint.excess(limit.value)
-        kept = "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
-        relaxed = f", a unit more gains {limit.multiplier:.4g}" if limit.active and found.feasible else ""
+        kept = (
+            "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
+        )
+        relaxed = (
+            f", a unit more gains {limit.multiplier:.4g}" if limit.active and found.feasible else ""
+        )
         yield f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}"
     for name, multiplier in found.bounds.items():
         if multiplier and found.feasible:
             end = "least" if multiplier < 0.0 else "largest"
             yield f"  {name} is at its {end} value, a unit more gains {abs(multiplier):.4g}"
-    angle = "" if math.isnan(found.transmission) else f", least sine of transmission angles {found.transmission:.4g}"
-    ends = f"{sum(one.ending == 'converged' for one in found.starts)} of {len(found.starts)} starts converged"
+    angle = (
+        ""
+        if math.isnan(found.transmission)
+        else f", least sine of transmission angles {found.transmission:.4g}"
+    )
+    ends = (
+        f"{sum(one.ending == 'converged' for one in found.starts)} of {len(found.starts)} starts"
+        " converged"
+    )
     yield f"  {ends}, {found.evaluations} designs{angle}"
     if found.feasible:
         yield f"  first-order conditions to {found.residual:.1e}{_second(found)}"
@@ -43,25 +57,41 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
 def front_lines(front: Front) -> Iterator[str]:
     """The points of a front, a line each."""
     first, *others = front.minimised
-    yield f"{front.case}: {len(front.points)} designs, none of which is better in all of {', '.join(map(str, front.minimised))}"
+    yield (
+        f"{front.case}: {len(front.points)} designs, none of which is better in all of"
+        f" {', '.join(map(str, front.minimised))}"
+    )
     if front.stopped:
         yield "stopped: the front so far; --resume goes on"
     heads = [f"{term} [{unit}]" for term, unit in zip(front.minimised, front.units, strict=True)]
     widths = [max(12, len(head)) for head in heads]
     gains = [f"gain by {term.name}" for term in others]
-    yield "  " + "  ".join([f"{head:>{width}}" for head, width in zip(heads, widths, strict=True)] + gains + ["at"])
+    yield "  " + "  ".join(
+        [f"{head:>{width}}" for head, width in zip(heads, widths, strict=True)] + gains + ["at"]
+    )
     for point in front.points:
-        cells = [f"{value:>{width}.6g}" for value, width in zip(point.objectives, widths, strict=True)]
-        cells += [f"{trade:>{len(gain)}.4g}" for trade, gain in zip(point.trades, gains, strict=True)]
+        cells = [
+            f"{value:>{width}.6g}" for value, width in zip(point.objectives, widths, strict=True)
+        ]
+        cells += [
+            f"{trade:>{len(gain)}.4g}" for trade, gain in zip(point.trades, gains, strict=True)
+        ]
         optimum = point.optimum
-        marks = "" if optimum.converged else f"  {optimum.start.ending if optimum.feasible else 'beyond a limit'}"
+        marks = (
+            ""
+            if optimum.converged
+            else f"  {optimum.start.ending if optimum.feasible else 'beyond a limit'}"
+        )
         yield f"  {'  '.join(cells)}  {_design(optimum.values, 6)}{marks}"
     for point in front.points:
         for limit in point.optimum.limits:
             excess = limit.constraint.excess(limit.value)
             if not point.optimum.feasible and excess > 0.0:
                 yield f"  {limit.constraint}: {limit.value:.8g}, VIOLATED by {excess:.4g}"
-    yield f"  a gain is what {first} falls by for a unit of the other; {front.evaluations} designs were looked at"
+    yield (
+        f"  a gain is what {first} falls by for a unit of the other; {front.evaluations} designs"
+        " were looked at"
+    )
     for note in front.notes:
         yield f"  note: {note}"
 

@@ -29,9 +29,13 @@ Number = TypeVar("Number")
 
 
 class _Path(click.Path):
-    """A path, which an empty text is not: that of a variable of the shell which is not set would be the folder where one is."""
+    """A path, which an empty text is not: that of a variable of the shell which is not set would be
+    the folder where one is.
+    """
 
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
+    ) -> Any:
         """The path that is told."""
         if value == "":
             self.fail("expected a path, got ''", parameter, context)
@@ -47,7 +51,9 @@ def even_points(text: str) -> EvenPoints:
         start, stop, count = text.split(":")
         return _value(start), _value(stop), whole(count)
     except ValueError:
-        raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
+        raise click.BadParameter(
+            f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'"
+        ) from None
 
 
 def steps_over(text: str) -> Over:
@@ -61,23 +67,33 @@ def steps_over(text: str) -> Over:
 
 
 def axis(text: str) -> tuple[str, Axis]:
-    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; numbers may have a unit, as 30deg."""
+    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; numbers may have a
+    unit, as 30deg.
+    """
     from ..studies.sweep import Range, Values
 
     name, words = (word.strip() for word in text.partition("=")[::2])
     parts = words.split(":")
     if not (name and words) or len(parts) not in (1, 3, 4):
         raise click.BadParameter(
-            f"expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in l=0.1:0.4:31, got '{text}'"
+            "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as"
+            f" in l=0.1:0.4:31, got '{text}'"
         )
     try:
         if len(parts) == 1:
-            return name, Values(tuple(_read(_value, "a number for each value", word, words) for word in words.split(",")))
+            return name, Values(
+                tuple(
+                    _read(_value, "a number for each value", word, words)
+                    for word in words.split(",")
+                )
+            )
         ends = zip(("START", "STOP"), parts, strict=False)
         start, stop = (_read(_value, f"a number for {end}", word, words) for end, word in ends)
         count = _read(whole, "a whole number for COUNT", parts[2], words)
         if parts[3:] not in ([], ["log"]):
-            raise DeclarationError(f"expected log or nothing after COUNT, got '{parts[3]}' in {words}")
+            raise DeclarationError(
+                f"expected log or nothing after COUNT, got '{parts[3]}' in {words}"
+            )
         return name, Range(start, stop, count, len(parts) == 4)
     except DeclarationError as error:
         raise click.BadParameter(f"{name}: {error}") from None
@@ -90,7 +106,9 @@ def length(text: str) -> float:
     try:
         return number(_value(text), "m", finite=False)
     except ValueError:
-        raise click.BadParameter(f"expected a length [m], as in 0.005 or 5mm, got '{text}'") from None
+        raise click.BadParameter(
+            f"expected a length [m], as in 0.005 or 5mm, got '{text}'"
+        ) from None
 
 
 def setting(text: str) -> tuple[str, float | str]:
@@ -99,7 +117,9 @@ def setting(text: str) -> tuple[str, float | str]:
     with suppress(ValueError):
         if equals:
             return name, _value(value)
-    raise click.BadParameter(f"expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got '{text}'")
+    raise click.BadParameter(
+        f"expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got '{text}'"
+    )
 
 
 def place(text: str) -> tuple[str, float | str]:
@@ -120,8 +140,12 @@ def parameters(settings: Sequence[tuple[str, float | str]]) -> dict[str, Any]:
     return found
 
 
-def separated(_context: click.Context, _parameter: click.Parameter, words: Sequence[str]) -> tuple[str, ...]:
-    """Names of an option that is repeatable, and of which one may hold several, with commas between."""
+def separated(
+    _context: click.Context, _parameter: click.Parameter, words: Sequence[str]
+) -> tuple[str, ...]:
+    """Names of an option that is repeatable, and of which one may hold several, with commas
+    between.
+    """
     return tuple(name.strip() for word in words for name in word.split(","))
 
 
@@ -130,7 +154,9 @@ def table(text: str) -> float:
     try:
         return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
     except ValueError:
-        raise click.BadParameter(f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'") from None
+        raise click.BadParameter(
+            f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'"
+        ) from None
 
 
 def bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
@@ -163,7 +189,9 @@ def share(text: str) -> float:
     return found
 
 
-def ratios(context: click.Context, option: click.Parameter, words: Sequence[str]) -> tuple[float, ...]:
+def ratios(
+    context: click.Context, option: click.Parameter, words: Sequence[str]
+) -> tuple[float, ...]:
     """Numbers other than 0, of an option that is repeatable, with commas between several."""
     found = []
     for word in separated(context, option, words):
@@ -172,7 +200,9 @@ def ratios(context: click.Context, option: click.Parameter, words: Sequence[str]
         except ValueError:
             found.append(math.nan)
         if not math.isfinite(found[-1]) or found[-1] == 0.0:
-            raise click.BadParameter(f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'")
+            raise click.BadParameter(
+                f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'"
+            )
     return tuple(found)
 
 
@@ -188,7 +218,9 @@ def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Nu
     try:
         return read(word)
     except ValueError:
-        raise DeclarationError(f"expected {what}, got {repr(word) if word.strip() else 'nothing'} in {words}") from None
+        raise DeclarationError(
+            f"expected {what}, got {repr(word) if word.strip() else 'nothing'} in {words}"
+        ) from None
 
 
 def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -203,23 +235,40 @@ def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Ca
 
 
 _BACKEND = click.option(
-    "--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="SIMD in C++ (lanes), C, or CasADi's VM."
+    "--backend",
+    type=click.Choice(BACKENDS),
+    default="auto",
+    show_default=True,
+    help="SIMD in C++ (lanes), C, or CasADi's VM.",
 )
 _PRECISION = click.option(
-    "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Precision of all arithmetic."
+    "--precision",
+    type=click.Choice(PRECISIONS),
+    default="double",
+    show_default=True,
+    help="Precision of all arithmetic.",
 )
 _NEWTON = click.option(
-    "--newton", type=int, metavar="STEPS", help="Close iterated loops by so many Newton steps from the instant before."
+    "--newton",
+    type=int,
+    metavar="STEPS",
+    help="Close iterated loops by so many Newton steps from the instant before.",
 )
-_TABLE = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
-_FLAGS = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")
+_TABLE = click.option(
+    "--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn."
+)
+_FLAGS = click.option(
+    "--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word."
+)
 
 Option = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 def settings_by(says: str = "Give a parameter another value; repeatable.") -> Option:
     """Values of parameters: ``settings``, to be read by :func:`parameters`."""
-    return click.option("--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help=says)
+    return click.option(
+        "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help=says
+    )
 
 
 def instants(says: str = "Instants [s]; default: the case's.") -> Option:
@@ -227,7 +276,10 @@ def instants(says: str = "Instants [s]; default: the case's.") -> Option:
     return click.option("--t", type=even_points, metavar=EVEN_POINTS, help=says)
 
 
-def wanted(says: str = "effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.") -> Option:
+def wanted(
+    says: str = "effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; "
+    "repeatable.",
+) -> Option:
     """Names of outputs: ``want``."""
     return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
 
@@ -236,7 +288,10 @@ over = click.option(
     "--over",
     type=steps_over,
     metavar=OVER,
-    help="Instants in equal steps of a driven joint's coordinate [rad, or as 720deg; m], in place of --t.",
+    help=(
+        "Instants in equal steps of a driven joint's coordinate [rad, or as 720deg; m], in place of"
+        " --t."
+    ),
 )
 """Instants by a drive."""
 

@@ -26,7 +26,12 @@ _UNDRAWN = "cannot be drawn"
 
 
 def plot(
-    file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]], si: bool
+    file: Path,
+    out: Path,
+    over: Sequence[str],
+    at: Sequence[tuple[str, float | str]],
+    against: Sequence[tuple[str, str]],
+    si: bool,
 ) -> None:
     """See :func:`.commands.plot`."""
     check_writable(out, folder=True)
@@ -36,7 +41,9 @@ def plot(
             raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
         stays = dict(at)
         if len(stays) < len(at):
-            raise click.UsageError("--at: a parameter stays at one value, got two for " + _twice(at))
+            raise click.UsageError(
+                "--at: a parameter stays at one value, got two for " + _twice(at)
+            )
         sweep = Sweep.open(file)
         there = {name: _number(sweep, name, value) for name, value in stays.items()}
         _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out)
@@ -53,10 +60,19 @@ def plot(
 
 
 def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
-    """Draw a sweep; what shows nothing is said. Raises :class:`NoDesignError` where no figure shows anything."""
+    """Draw a sweep; what shows nothing is said.
+
+    Raises :class:`NoDesignError` where no figure shows anything.
+    """
     skipped, drawn = [], []
     with told_as(_UNDRAWN, sweep.path), MANIFEST.filling(out) as draft:
-        for path, why in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
+        for path, why in tqdm(
+            draw_sweep(sweep, specs, draft),
+            total=len(specs),
+            desc="figures",
+            leave=False,
+            disable=None,
+        ):
             if why:
                 skipped.append(f"{path.name}: {why}")
             else:

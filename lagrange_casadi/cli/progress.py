@@ -18,7 +18,10 @@ _SECONDS = 10.0
 
 @dataclass
 class Silent:
-    """Shows nothing, and knows whether there was anything to do. Where others show it, a terminal that is gone stops nothing."""
+    """Shows nothing, and knows whether there was anything to do.
+
+    Where others show it, a terminal that is gone stops nothing.
+    """
 
     begun: bool = field(default=False, init=False)
 
@@ -57,7 +60,8 @@ class Lines(Silent):
             rate = (done - self._first) / (now - self._began)
             left = tqdm.format_interval((total - done) / rate) if rate else "?"
             echo(
-                f"{grouped(int(done))} of {counted(int(total))}, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
+                f"{grouped(int(done))} of {counted(int(total))}, {100 * done / total:.3g} %,"
+                f" {rate:.4g} a second, {left} left",
                 err=True,
             )
 
@@ -77,9 +81,21 @@ class Bar(Silent):
         if what != self._what:
             self.close()
             unit = {"designs": " designs"}.get(what, "")
-            bars = "{l_bar}{bar}| {n_fmt}/{total_fmt} [{elapsed}<{remaining}, {rate_fmt}]" if unit else "{l_bar}{bar}| [{elapsed}]"
+            bars = (
+                "{l_bar}{bar}| {n_fmt}/{total_fmt} [{elapsed}<{remaining}, {rate_fmt}]"
+                if unit
+                else "{l_bar}{bar}| [{elapsed}]"
+            )
             sys.stderr.flush()  # fails where a bar would, half made
-            self._bar = tqdm(total=total, initial=done, desc=what, unit=unit, unit_scale=bool(unit), leave=False, bar_format=bars)
+            self._bar = tqdm(
+                total=total,
+                initial=done,
+                desc=what,
+                unit=unit,
+                unit_scale=bool(unit),
+                leave=False,
+                bar_format=bars,
+            )
             self._what = what
         self._bar.update(done - self._bar.n)
 
@@ -91,7 +107,9 @@ class Bar(Silent):
 
 
 def shown(quiet: bool) -> Silent:
-    """What shows progress: a bar on a terminal, lines elsewhere, nothing where it is to be quiet."""
+    """What shows progress: a bar on a terminal, lines elsewhere, nothing where
+    it is to be quiet.
+    """
     if quiet:
         return Silent()
     return Bar() if sys.stderr.isatty() else Lines()

@@ -10,16 +10,22 @@ _LISTED = 6
 
 
 def figures_in(folder: Path | None) -> set[str]:
-    """The names of the pictures in a folder; none where there is no folder, or none that can be read."""
+    """The names of the pictures in a folder; none where there is no folder, or none that can be
+    read.
+    """
     with suppress(OSError):
-        return {path.name for path in folder.iterdir() if path.suffix == ".png"} if folder else set()
+        return (
+            {path.name for path in folder.iterdir() if path.suffix == ".png"} if folder else set()
+        )
     return set()
 
 
 def replaced_lines(
     file: Path, replaced: bool, folder: Path | None, before: Collection[str], drawn: Collection[str]
 ) -> Iterator[str]:
-    """Say whether the file was replaced, how many figures were, and which ones ``before`` in the folder are older than the file."""
+    """Say whether the file was replaced, how many figures were, and which ones ``before`` in the
+    folder are older than the file.
+    """
     over = [name for name in before if name in drawn]
     what = [str(file)] if replaced else []
     if over:
@@ -30,4 +36,7 @@ def replaced_lines(
     if older:
         more = f" and {len(older) - _LISTED} more" if len(older) > _LISTED else ""
         redraw = "" if drawn else f"; lagrange-casadi plot {file} --out {folder} draws them anew"
-        yield f"note: figures in {folder}/ that are older than {file}: {', '.join(older[:_LISTED])}{more}{redraw}"
+        yield (
+            f"note: figures in {folder}/ that are older than {file}:"
+            f" {', '.join(older[:_LISTED])}{more}{redraw}"
+        )

@@ -44,7 +44,9 @@ def report(
     """See :func:`.commands.report`."""
     file = target.suffix in _FILES
     if file and (settings or t or over or want or live):
-        raise click.UsageError("--set, --t, --over, --want and --live go with a case, not with a file")
+        raise click.UsageError(
+            "--set, --t, --over, --want and --live go with a case, not with a file"
+        )
     if out and out.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
     if case and not (file and is_sweep(target)):
@@ -74,7 +76,9 @@ def report(
 
 
 def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
-    """Write the page of a sweep: with its mechanism in motion where its case is known, and what evaluates it is there."""
+    """Write the page of a sweep: with its mechanism in motion where its case is known, and what
+    evaluates it is there.
+    """
     sweep = Sweep.open(target)
     found = None
     try:
@@ -86,7 +90,11 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     except LagrangeCasadiError as error:
         if case is not None:
             raise
-        echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
+        echo(
+            f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names"
+            " another case",
+            err=True,
+        )
         found = scene = None
     with told_as(_UNSHOWN, target):
         write_sweep_report(sweep, out, scene, run_of(found.name if found else sweep.case))
@@ -94,10 +102,17 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
 
 
 def _tell(solution: Solution, out: Path) -> None:
-    """Say what was written. Raises :class:`CertificateError` where the certificate fails: the page is there, and says so."""
+    """Say what was written.
+
+    Raises :class:`CertificateError` where the certificate fails: the page is there, and says so.
+    """
     shown, total = shown_instants(solution).size, solution.t.size
     if shown < total:
-        echo(f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True)
+        echo(
+            f"note: pictures and charts show {shown} of {total} instants, which is as many as fit;"
+            " tables are of all",
+            err=True,
+        )
     for line in untold_lines(solution):
         echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")

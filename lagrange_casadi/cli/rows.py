@@ -21,13 +21,18 @@ _BLOCK = 1024
 
 
 def show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[float]]]) -> int:
-    """Print rows below a head of names and units, each with its design's number; how many there were."""
+    """Print rows below a head of names and units, each with its design's number; how many there
+    were.
+    """
     heads = ["design", *(_head(sweep, name) for name in names)]
     widths = [max(len(head), _WIDTH) for head in heads]
     echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
     count = 0
     for number, values in rows:
-        cells = [str(number), *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True))]
+        cells = [
+            str(number),
+            *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True)),
+        ]
         echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
         count += 1
     return count
@@ -41,7 +46,9 @@ def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path)
 
 @contextmanager
 def csv_written(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path) -> Iterator[int]:
-    """Rows with every digit they have, which are put into their place at the end, unless something fails; how many there are."""
+    """Rows with every digit they have, which are put into their place at the end, unless something
+    fails; how many there are.
+    """
     count = 0
     with writing(path) as (file,):
         text = TextIOWrapper(file, encoding="utf-8", newline="")

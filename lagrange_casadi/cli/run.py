@@ -92,7 +92,11 @@ def run(
     place = folder or usual
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
-    told = csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv) if csv else nullcontext()
+    told = (
+        csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv)
+        if csv
+        else nullcontext()
+    )
     with told, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
@@ -110,13 +114,19 @@ def run(
         say(summary(solution.certificate))
     for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
         say(line)
-    say(f"wrote {out}" + (f" and the figures in {folder}/" if folder else "") + (f", and {csv}" if csv else ""))
+    say(
+        f"wrote {out}"
+        + (f" and the figures in {folder}/" if folder else "")
+        + (f", and {csv}" if csv else "")
+    )
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
 
 
 def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
-    """Raise ``click.UsageError`` for places that are the same, and what says that one cannot be written."""
+    """Raise ``click.UsageError`` for places that are the same, and what says that one cannot be
+    written.
+    """
     check_target(out)
     if folder:
         if os.path.realpath(folder) == os.path.realpath(out):
@@ -125,17 +135,27 @@ def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
         MANIFEST.check(folder)
     if csv:
         if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
-            raise click.UsageError(f"--csv {csv}: expected another place than the file's and the figures'")
+            raise click.UsageError(
+                f"--csv {csv}: expected another place than the file's and the figures'"
+            )
         check_writable(csv)
 
 
 def _report(
-    scene: Scene, solution: Solution, want: Sequence[str], timing: Timing, backend: Backend, refined: bool
+    scene: Scene,
+    solution: Solution,
+    want: Sequence[str],
+    timing: Timing,
+    backend: Backend,
+    refined: bool,
 ) -> Iterator[str]:
     """Peaks, slopes, strength and what elasticity tells, in lines; and notes."""
     what = "peaks, refined between the instants" if refined else "peaks"
     used = solution.provenance.backend
-    yield f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {used}; {what}:"
+    yield (
+        f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend"
+        f" {used}; {what}:"
+    )
     names = [*forces(solution), *resultants(solution)]
     yield from report_lines(solution, refine(scene, solution, names) if refined else ())
     yield from slope_lines(solution, scene, backend)

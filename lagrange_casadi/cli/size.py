@@ -33,7 +33,9 @@ def size_command(
     loaded = load_case(case)
     beside = loaded.path.parent / "profiles.csv"
     if profiles is None and not beside.is_file():
-        raise click.UsageError(f"--profiles: expected a table of profiles; there is none beside the case, {beside}")
+        raise click.UsageError(
+            f"--profiles: expected a table of profiles; there is none beside the case, {beside}"
+        )
     table = read_profiles(profiles or beside)
     found = size(
         loaded.scene,
@@ -47,26 +49,42 @@ def size_command(
         yielding=yielding,
         deflection=deflection,
     )
-    stiff = "" if deflection is None else f", and a deflection of {deflection:g} of its length, or less"
-    echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more{stiff}:")
+    stiff = (
+        "" if deflection is None else f", and a deflection of {deflection:g} of its length, or less"
+    )
+    echo(
+        f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of"
+        f" {safety:g}, or more{stiff}:"
+    )
     for sized in found.links:
         for line in _lines(sized):
             echo(line)
     for name, why in found.left.items():
         echo(f"{name}: left as it is, for {why}")
         for line in told(
-            name, lambda link: list(safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding)))
+            name,
+            lambda link: list(
+                safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding))
+            ),
         ):
             echo(line)
     loads = f"loads were evaluated {found.evaluations} times"
-    echo(f"together {found.mass:.6g} kg; {loads}; certificate: {'holds' if found.solution.certified else 'fails'}")
+    echo(
+        f"together {found.mass:.6g} kg; {loads}; certificate:"
+        f" {'holds' if found.solution.certified else 'fails'}"
+    )
     echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
 
 
 def _lines(sized: Sized) -> list[str]:
     """A link with what was chosen for it, what governs, and why nothing lighter will do."""
-    lines = [f"{sized.link}: '{sized.profile.name}', {sized.mass:.6g} kg", *safety_lines(sized.safety)]
+    lines = [
+        f"{sized.link}: '{sized.profile.name}', {sized.mass:.6g} kg",
+        *safety_lines(sized.safety),
+    ]
     if sized.lighter is not None:
         profile, found = sized.lighter
-        lines.append(f"    lighter: '{profile.name}' has {found.factor:.4g} against {found.governs.against}")
+        lines.append(
+            f"    lighter: '{profile.name}' has {found.factor:.4g} against {found.governs.against}"
+        )
     return lines

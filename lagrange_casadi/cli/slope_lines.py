@@ -24,7 +24,9 @@ _WORDS = {
 
 
 def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[str]:
-    """The derivatives of the peaks and means that a run tells, where sensitivities were wanted: a column for each parameter."""
+    """The derivatives of the peaks and means that a run tells, where sensitivities were wanted: a
+    column for each parameter.
+    """
     by = solution.sensitivities.parameters
     names = [str(output) for output in told(solution) if solution.determined(output)]
     if not by or not names:
@@ -49,8 +51,15 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
 
 
 def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
-    cells = [f"{slope + 0.0:.6g}" if math.isfinite(slope) else "none" for slope in (change.slopes[parameter] for parameter in by)]
+    cells = [
+        f"{slope + 0.0:.6g}" if math.isfinite(slope) else "none"
+        for slope in (change.slopes[parameter] for parameter in by)
+    ]
     where = _WORDS.get(change.kind) if change.kind is not None else None
     if change.tied:
         where = f"{where + ', ' if where else ''}as large elsewhere, where it changes otherwise"
-    return f"  {name:<28}" + " ".join(f"{cell:>{_WIDTH}}" for cell in cells) + (f"  {where}" if where else "")
+    return (
+        f"  {name:<28}"
+        + " ".join(f"{cell:>{_WIDTH}}" for cell in cells)
+        + (f"  {where}" if where else "")
+    )

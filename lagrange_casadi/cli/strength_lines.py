@@ -21,8 +21,11 @@ _GUESS = 1e3
 """Cycles below which a life is a guess."""
 
 
-def strength_lines(solution: Solution, wanted: Sequence[str], scene: Scene | None = None) -> Iterator[str]:
-    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be told.
+def strength_lines(
+    solution: Solution, wanted: Sequence[str], scene: Scene | None = None
+) -> Iterator[str]:
+    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be
+    told.
 
     With its ``scene`` it is that of all times, else that of the instants.
     """
@@ -42,7 +45,9 @@ def strength_lines(solution: Solution, wanted: Sequence[str], scene: Scene | Non
 
 
 def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
-    """Which links and joints are left out of figures and tables of strength, and why, but for those that were told of."""
+    """Which links and joints are left out of figures and tables of strength, and why, but for those
+    that were told of.
+    """
     for part, why in untold(solution).items():
         if part not in besides:
             yield f"note: no factor of safety of '{part}' is told: {why}"
@@ -76,7 +81,9 @@ def _safety(solution: Solution, part: str, scene: Scene | None) -> Safety:
 
 def _stresses(solution: Solution, link: str, scene: Scene | None) -> Iterator[str]:
     stress = solution.stress(link)
-    asked = [(kind, False) for kind in KINDS] + [("von_mises", True)] * bool(stress.member.beam.notches)
+    asked = [(kind, False) for kind in KINDS] + [("von_mises", True)] * bool(
+        stress.member.beam.notches
+    )
     for kind, notches in asked:
         if scene is None:
             yield _peak(link, stress.peak(kind, notches=notches))
@@ -85,16 +92,26 @@ def _stresses(solution: Solution, link: str, scene: Scene | None) -> Iterator[st
 
 
 def _peak(link: str, peak: StressPeak) -> str:
-    where = f"t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}{', with the factors of its notch' if peak.notch else ''}"
+    where = (
+        f"t = {peak.t:.5g} s, xi/l = {peak.xi:.4f},"
+        f" {peak.fibre}{', with the factors of its notch' if peak.notch else ''}"
+    )
     if peak.least is not None:
-        return f"  {f'stress:{link}:{peak.kind}':<28}{'not told':>13} at least {peak.least / 1e6:.6g} MPa at {where}"
+        return (
+            f"  {f'stress:{link}:{peak.kind}':<28}{'not told':>13} at least {peak.least / 1e6:.6g}"
+            f" MPa at {where}"
+        )
     return f"  {f'stress:{link}:{peak.kind}':<28}{peak.value / 1e6 + 0.0:>13.6g} MPa at {where}"
 
 
 def _life(found: Life) -> str:
     if math.isinf(found.cycles):
         return (
-            f"  {found.link:<20}  endless: no swing is above the endurance limit; nearest at xi/l = {found.xi:.4f}, {found.fibre}"
+            f"  {found.link:<20}  endless: no swing is above the endurance limit; nearest at xi/l ="
+            f" {found.xi:.4f}, {found.fibre}"
         )
     guess = ", a guess: the S-N line begins at 1000 cycles" if found.cycles < _GUESS else ""
-    return f"  {found.link:<20} {found.cycles:>8.4g} cycles, {found.hours:.4g} h, at xi/l = {found.xi:.4f}, {found.fibre}{guess}"
+    return (
+        f"  {found.link:<20} {found.cycles:>8.4g} cycles, {found.hours:.4g} h, at xi/l ="
+        f" {found.xi:.4f}, {found.fibre}{guess}"
+    )

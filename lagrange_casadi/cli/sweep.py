@@ -48,7 +48,9 @@ def sweep(
 ) -> None:
     """See :func:`.commands.sweep`."""
     if bool(axes) == bool(designs):
-        raise click.UsageError("expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv")
+        raise click.UsageError(
+            "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"
+        )
     if len({name for name, _ in axes}) < len(axes):
         twice = next(name for k, (name, _) in enumerate(axes) if name in dict(axes[:k]))
         raise click.UsageError(f"--grid: parameter '{twice}' is swept twice")
@@ -82,13 +84,20 @@ def sweep(
     _report(found)
     turns = turning_note(scene, scene.timing(t, over), swept, parameters(settings))
     rests = resting_note(scene, found, parameters(settings), t=t, over=over, wanted=want or None)
-    for note in filter(None, (*drawing_notes(found.description), rests, turns, *fatigue_notes(found))):
+    for note in filter(
+        None, (*drawing_notes(found.description), rests, turns, *fatigue_notes(found))
+    ):
         echo(f"note: {note}")
-    echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
+    echo(
+        f"wrote {found.path}"
+        if progress.begun
+        else f"{found.path} was complete already: nothing was done"
+    )
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(
-            f"{counted(wrong)} of those that were checked in full, one of each block, "
-            f"{'fails its' if wrong == 1 else 'fail their'} certificate: others may be wrong as well"
+            f"{counted(wrong)} of those that were checked in full, one of each block,"
+            f" {'fails its' if wrong == 1 else 'fail their'} certificate: others may be wrong as"
+            " well"
         )
 
 

@@ -22,7 +22,9 @@ _WIDE = 6
 _TOLD = 6
 
 
-def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: Path | None) -> None:
+def table(
+    file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: Path | None
+) -> None:
     """See :func:`.commands.table`."""
     if csv:
         check_writable(csv)
@@ -30,8 +32,13 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     along = sweep.axes_of([*columns, *(condition.name for condition in conditions_in(where))])
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
     peaks = [name for name in single if name.startswith("peak:")]
-    main = [STATUS, *sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section"))]
-    names = list(dict.fromkeys([*sweep.parameters, *along, *(columns or (single if csv else main[:_WIDE]))]))
+    main = [
+        STATUS,
+        *sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section")),
+    ]
+    names = list(
+        dict.fromkeys([*sweep.parameters, *along, *(columns or (single if csv else main[:_WIDE]))])
+    )
     found, what = _rows(sweep, names, where, along), "row" if along else "design"
     first = next(found, None)
     if first is None:
@@ -44,16 +51,25 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
         met, with_result = tally(sweep, where, along)
         if met > rows:
             what = counted(met, what) + (" that meet the conditions" if where else "")
-            echo(f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes all")
+            echo(
+                f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv"
+                " OUT.csv writes all"
+            )
     if not columns:
         _tell_of_others(sweep, names)
 
 
-def _rows(sweep: Sweep, names: Sequence[str], where: Sequence[str], along: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
+def _rows(
+    sweep: Sweep, names: Sequence[str], where: Sequence[str], along: Sequence[str]
+) -> Iterator[tuple[int, list[float]]]:
     return (
         row
         for numbers, values in chosen(sweep, names, where, along)
-        for row in zip(numbers.tolist(), map(list, zip(*(values[name].tolist() for name in names), strict=True)), strict=True)
+        for row in zip(
+            numbers.tolist(),
+            map(list, zip(*(values[name].tolist() for name in names), strict=True)),
+            strict=True,
+        )
     )
 
 
@@ -64,6 +80,18 @@ def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
         if kept.name not in shown:
             others.setdefault(kept.axes, []).append(kept.name)
     for axes, names in others.items():
-        more = f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)" if len(names) > _TOLD else ""
-        over, rows = (f" over {in_words(axes)}", f", a row for every {' and '.join(axes)}") if axes else ("", "")
-        echo(f"note: --column NAME shows other columns{over}{rows}: {', '.join(names[:_TOLD])}{more}", err=True)
+        more = (
+            f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)"
+            if len(names) > _TOLD
+            else ""
+        )
+        over, rows = (
+            (f" over {in_words(axes)}", f", a row for every {' and '.join(axes)}")
+            if axes
+            else ("", "")
+        )
+        echo(
+            f"note: --column NAME shows other columns{over}{rows}:"
+            f" {', '.join(names[:_TOLD])}{more}",
+            err=True,
+        )

@@ -1,4 +1,6 @@
-"""``lagrange-casadi tolerances``: how far peaks spread for tolerances of the parameters, and which of them is to blame."""
+"""``lagrange-casadi tolerances``: how far peaks spread for tolerances of the parameters, and which
+of them is to blame.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,14 @@ def tolerances(
         check_writable(out)
     loaded = load_case(case)
     found = spreads_of(
-        loaded.scene, told, parameters=parameters(settings), wanted=want or None, t=t, over=over, samples=samples, backend=backend
+        loaded.scene,
+        told,
+        parameters=parameters(settings),
+        wanted=want or None,
+        t=t,
+        over=over,
+        samples=samples,
+        backend=backend,
     )
     _print(found)
     if out is not None:
@@ -54,22 +63,40 @@ def tolerances(
 def _print(found: Spreads) -> None:
     width = max(len(name) for name in found.peaks)
     failed = f", {found.failed} of them without a result" if found.failed else ""
-    echo(f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the rest of what was drawn")
+    echo(
+        f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the"
+        " rest of what was drawn"
+    )
     heads = {"nominal": 11, "+- worst": 10, "sigma": 10, "drawn": 10, "least": 11, "largest": 11}
-    echo(f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())}  due to")
+    echo(
+        f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())} "
+        " due to"
+    )
     for spread in found.peaks.values():
-        due = ", ".join(f"{name} {100 * share:.0f}%" for name, share in list(spread.shares.items())[:_FEW] if share >= 0.005)
+        due = ", ".join(
+            f"{name} {100 * share:.0f}%"
+            for name, share in list(spread.shares.items())[:_FEW]
+            if share >= 0.005
+        )
         echo(
-            f"  {spread.quantity:<{width}} {spread.nominal:>11.5g} {spread.worst:>10.3g} {spread.sigma:>10.3g} "
-            f"{spread.deviation:>10.3g} {spread.low:>11.5g} {spread.high:>11.5g}  {due}"
+            f"  {spread.quantity:<{width}} {spread.nominal:>11.5g} {spread.worst:>10.3g}"
+            f" {spread.sigma:>10.3g} {spread.deviation:>10.3g} {spread.low:>11.5g}"
+            f" {spread.high:>11.5g}  {due}"
         )
 
 
 def _rows(found: Spreads) -> str:
-    names = [entry.name for entry in fields(next(iter(found.peaks.values()))) if entry.name != "shares"]
+    names = [
+        entry.name for entry in fields(next(iter(found.peaks.values()))) if entry.name != "shares"
+    ]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*names, *(f"share of {name}" for name in found.tolerances)])
     for spread in found.peaks.values():
-        writer.writerow([*(getattr(spread, name) for name in names), *(spread.shares[name] for name in found.tolerances)])
+        writer.writerow(
+            [
+                *(getattr(spread, name) for name in names),
+                *(spread.shares[name] for name in found.tolerances),
+            ]
+        )
     return text.getvalue()

@@ -38,10 +38,15 @@ def trade(
     if accuracy is not None and not 0.0 < accuracy < math.inf:
         raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
-    out, figure = out or Path(f"{loaded.name}_trade.json"), figure or Path(f"{loaded.name}_trade.png")
+    out, figure = (
+        out or Path(f"{loaded.name}_trade.json"),
+        figure or Path(f"{loaded.name}_trade.png"),
+    )
     for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):
         if target.suffix not in endings:
-            raise click.UsageError(f"{option} {target}: expected a name that ends in {' or '.join(endings)}")
+            raise click.UsageError(
+                f"{option} {target}: expected a name that ends in {' or '.join(endings)}"
+            )
         check_writable(target)
     with tqdm(total=len(RUNGS), desc="methods", leave=False, disable=None) as bar:
 
@@ -49,7 +54,14 @@ def trade(
             bar.set_postfix_str(rung.options)
             bar.update()
 
-        found = measure(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=want or None, progress=progress)
+        found = measure(
+            loaded.scene,
+            parameters=parameters(settings),
+            t=t,
+            over=over,
+            wanted=want or None,
+            progress=progress,
+        )
     with writing(out, figure) as (numbers, picture):
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         draw_trade(found, picture, figure.suffix)
@@ -65,24 +77,38 @@ def trade(
 
 def _print(found: Trade) -> None:
     width = max(len(one.rung.options) for one in found.measurements)
-    default = next((one.seconds for one in found.measurements if one.rung == Rung("lanes")), found.measurements[0].seconds)
-    echo(
-        f"{found.case}: every output at {found.instants} instants, one thread; errors at {found.compared} instants, relative to "
-        "each quantity's peak; * nothing is faster and more accurate"
+    default = next(
+        (one.seconds for one in found.measurements if one.rung == Rung("lanes")),
+        found.measurements[0].seconds,
     )
-    echo(f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
+    echo(
+        f"{found.case}: every output at {found.instants} instants, one thread; errors at"
+        f" {found.compared} instants, relative to each quantity's peak; * nothing is faster and"
+        " more accurate"
+    )
+    echo(
+        f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}  "
+        " worst quantity"
+    )
     for one in found.measurements:
         mark = "*" if one in found.front else " "
         note = f"; {one.note}" if one.note else ""
         echo(
-            f"{mark} {one.rung.options:<{width}} {1e9 * one.seconds:>11.4g} {one.seconds / default:>8.2f} {one.largest:>9.1e} "
-            f"{one.median:>9.1e}   {one.worst}{note}"
+            f"{mark} {one.rung.options:<{width}} {1e9 * one.seconds:>11.4g}"
+            f" {one.seconds / default:>8.2f} {one.largest:>9.1e} {one.median:>9.1e}  "
+            f" {one.worst}{note}"
         )
     for options, reason in found.refused.items():
         echo(f"  {options}: {reason}")
     if found.peaks:
-        echo("how far peaks of forces fall short, by instants of the cycle; refined: between them, as by run --refine-peaks")
-        echo(f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14} {'refined median':>15}")
+        echo(
+            "how far peaks of forces fall short, by instants of the cycle; refined: between them,"
+            " as by run --refine-peaks"
+        )
+        echo(
+            f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14}"
+            f" {'refined median':>15}"
+        )
     for row in found.peaks:
         sampled, refined = (
             f"{row.sampled_worst:>9.1e} {row.sampled_median:>9.1e}",

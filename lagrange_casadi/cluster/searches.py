@@ -1,4 +1,7 @@
-"""Ways that the workers of a Dask cluster go. They are sent what is derived and a question, and send back ways in plain numbers."""
+"""Ways that the workers of a Dask cluster go.
+
+They are sent what is derived and a question, and send back ways in plain numbers.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,9 @@ class Workers:
 
     cluster: Cluster
 
-    def go(self, finder: Finder, errands: Sequence[Errand], told: Told) -> Iterator[tuple[int, Trail]]:
+    def go(
+        self, finder: Finder, errands: Sequence[Errand], told: Told
+    ) -> Iterator[tuple[int, Trail]]:
         """The ways of errands, as they are done. What was not done after an interrupt is not told.
 
         Raises :class:`ClusterError` where the cluster cannot serve.
@@ -48,7 +53,10 @@ class Workers:
 
 
 def searching(address: str) -> Workers:
-    """The workers of the Dask scheduler at an address, for searches. Raises :class:`.DeclarationError` for what is no address."""
+    """The workers of the Dask scheduler at an address, for searches.
+
+    Raises :class:`.DeclarationError` for what is no address.
+    """
     return Workers(Cluster(address))
 
 

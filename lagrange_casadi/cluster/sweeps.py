@@ -1,4 +1,7 @@
-"""Who evaluates blocks: the workers of a Dask cluster. They are sent what is derived and designs, and send back columns."""
+"""Who evaluates blocks: the workers of a Dask cluster.
+
+They are sent what is derived and designs, and send back columns.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +33,8 @@ _PATIENCE = 10.0
 
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
 _GLANCE, _ROLL, _PROBED, _GOODBYE = 2e-3, 1.0, 3.0, 0.3
-"""Seconds between looks for a block, and between questions who the workers are; in which these must say what they have; and in
-which the scheduler is told that all is over."""
+"""Seconds between looks for a block, and between questions who the workers are; in which these must
+say what they have; and in which the scheduler is told that all is over."""
 
 _PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not None"
 """What a worker is asked, in words that need nothing of this package."""
@@ -44,18 +47,22 @@ _building = threading.Lock()
 
 @dataclass(frozen=True)
 class Cluster:
-    """The workers of the Dask scheduler at ``address``, which are sent what is derived, and compile it themselves.
+    """The workers of the Dask scheduler at ``address``, which are sent what is derived, and compile
+    it themselves.
 
-    A block whose worker dies is sent to another one. Nobody waits for what does not answer, a scheduler or a worker that is frozen,
-    after an interrupt. Raises :class:`ClusterError` where Dask is not installed, the scheduler cannot be reached or is lost, or
-    workers fail, have not this package, or other versions.
+    A block whose worker dies is sent to another one. Nobody waits for what does not answer, a
+    scheduler or a worker that is frozen, after an interrupt. Raises :class:`ClusterError` where
+    Dask is not installed, the scheduler cannot be reached or is lost, or workers fail, have not
+    this package, or other versions.
     """
 
     address: str
 
     def __post_init__(self) -> None:
         if not _ADDRESS.fullmatch(self.address):
-            raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{self.address}'")
+            raise DeclarationError(
+                f"dask: expected an address like tcp://HOST:8786, got '{self.address}'"
+            )
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
@@ -67,8 +74,12 @@ class Cluster:
 
         yield from self.done(asked, queue)
 
-    def done(self, asked: Callable[[int, int], Asked], queue: Queue) -> Iterator[tuple[int, int, Any] | None]:
-        """What is ``asked`` for each block of a queue, in the order in which workers are done; None where nothing came for long."""
+    def done(
+        self, asked: Callable[[int, int], Asked], queue: Queue
+    ) -> Iterator[tuple[int, int, Any] | None]:
+        """What is ``asked`` for each block of a queue, in the order in which workers are done; None
+        where nothing came for long.
+        """
         _dask()
         with _silenced():
             connecting = _connecting(self.address)
@@ -98,7 +109,10 @@ class Cluster:
                 waiting.add(future)
 
         def pause() -> bool:
-            """Whether nothing more is waited for, after an interrupt. Raises for what cannot go on."""
+            """Whether nothing more is waited for, after an interrupt.
+
+            Raises for what cannot go on.
+            """
             nonlocal end
             if client.status != "running" or roll.lost:
                 raise self._lost()
@@ -150,33 +164,43 @@ class Cluster:
         except ClusterError:
             raise
         except dask.KilledWorker:
-            raise ClusterError(f"every worker that was sent designs {start} to {stop - 1} has died") from None
+            raise ClusterError(
+                f"every worker that was sent designs {start} to {stop - 1} has died"
+            ) from None
         except (dask.CancelledError, OSError):
             raise self._lost() from None
         except Exception as error:
             roll.settle()
             self._refuse(roll)
-            raise ClusterError(f"a worker failed: {type(error).__name__}: {one_line(error)}") from None
+            raise ClusterError(
+                f"a worker failed: {type(error).__name__}: {one_line(error)}"
+            ) from None
         return found
 
     def _refuse(self, roll: _Roll) -> None:
         """Raise :class:`ClusterError` for workers without this package."""
         if roll.without:
             names = ", ".join(sorted(roll.without))
-            raise ClusterError(f"no lagrange_casadi on worker{'s' if len(roll.without) > 1 else ''} {names}: install it there too")
+            raise ClusterError(
+                f"no lagrange_casadi on worker{'s' if len(roll.without) > 1 else ''} {names}:"
+                " install it there too"
+            )
 
     def _lost(self) -> ClusterError:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
 
 
 def _connecting(address: str) -> Future[Any]:
-    """A client, made in a thread of its own: what takes its time to answer, or never does, holds nobody up."""
+    """A client, made in a thread of its own: what takes its time to answer, or never does, holds
+    nobody up.
+    """
     client: Future[Any] = Future()
 
     def connect() -> None:
         try:
-            # A client of Dask's waits without end for what accepts a connection and then says nothing of Dask's. It gives up by
-            # itself, and says why, where nothing accepts one: that comes first.
+            # A client of Dask's waits without end for what accepts a connection and then says
+            # nothing of Dask's. It gives up by itself, and says why, where nothing accepts one:
+            # that comes first.
             asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE + 1.0))
             client.set_result(_dask().Client(address, timeout=_PATIENCE, set_as_default=False))
         except Exception as error:
@@ -189,7 +213,9 @@ def _connecting(address: str) -> Future[Any]:
 async def _greet(address: str) -> None:
     """Ask what is at an address who it is. Raises ``OSError`` where that is no scheduler."""
     security = _dask().Security().get_connection_args("client")
-    line = await importlib.import_module("distributed.comm").connect(address, timeout=_PATIENCE, **security)
+    line = await importlib.import_module("distributed.comm").connect(
+        address, timeout=_PATIENCE, **security
+    )
     try:
         await line.write({"op": "identity", "reply": True})
         kind = (await line.read())["type"]
@@ -200,22 +226,30 @@ async def _greet(address: str) -> None:
 
 
 class _Roll:
-    """Who the workers are, asked again and again by a thread of its own: one that does not answer holds nobody up.
+    """Who the workers are, asked again and again by a thread of its own: one that does not answer
+    holds nobody up.
 
-    ``threads`` is how many they have, which come and go; ``without`` are those that have not this package.
+    ``threads`` is how many they have, which come and go; ``without`` are those that have not this
+    package.
     """
 
     def __init__(self, client: Any) -> None:
         self.threads, self.lost = 0, False
         self.without: set[str] = set()
         self._client, self._asked = client, dict[str, Future[Any]]()
-        self._known, self._again, self._until = threading.Event(), threading.Event(), time.monotonic() + _PROBED
+        self._known, self._again, self._until = (
+            threading.Event(),
+            threading.Event(),
+            time.monotonic() + _PROBED,
+        )
         Crew.alone(self._ask)
 
     @property
     def ready(self) -> bool:
         """Whether it is known who there is, and what they have; or would be, if all answered."""
-        return (self._known.is_set() and all(map(Future.done, list(self._asked.values())))) or time.monotonic() > self._until
+        return (
+            self._known.is_set() and all(map(Future.done, list(self._asked.values())))
+        ) or time.monotonic() > self._until
 
     def settle(self) -> None:
         """Ask once more, and wait a little for what they say."""
@@ -239,7 +273,10 @@ class _Roll:
             self._again.clear()
 
     def _probe(self, address: str) -> None:
-        if self._client.run(eval, _PROBE, workers=[address], on_error="ignore").get(address) is False:
+        if (
+            self._client.run(eval, _PROBE, workers=[address], on_error="ignore").get(address)
+            is False
+        ):
             self.without.add(address)
 
 
@@ -262,13 +299,19 @@ def _dask() -> Any:
     try:
         return importlib.import_module("distributed")
     except ImportError:
-        raise ClusterError("a cluster needs Dask; install it with: pip install 'lagrange_casadi[cluster]'") from None
+        raise ClusterError(
+            "a cluster needs Dask; install it with: pip install 'lagrange_casadi[cluster]'"
+        ) from None
 
 
 @contextmanager
 def _silenced() -> Iterator[None]:
     """Keep Dask's own log from saying at length what is said here in a line."""
-    loggers = [logging.getLogger(name) for name in list(logging.root.manager.loggerDict) if name.startswith("distributed")]
+    loggers = [
+        logging.getLogger(name)
+        for name in list(logging.root.manager.loggerDict)
+        if name.startswith("distributed")
+    ]
     before = [(logger, logger.disabled) for logger in loggers]
     for logger in loggers:
         logger.disabled = True

@@ -1,4 +1,6 @@
-"""The C of one function at many points: each of its arguments has a row for every point, for every few, or one for all."""
+"""The C of one function at many points: each of its arguments has a row for every point, for every
+few, or one for all.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from .printer import print_functions
 _ENTRY = "lagrange_casadi_batch"
 
 _LOOP = """
-/* n points. Of each argument NAME the row of point i is NAME + i/NAME_every times its size, the first where NAME_every is 0. */
+/* n points. Of each argument NAME the row of point i is NAME + i/NAME_every times its size, the
+   first where NAME_every is 0. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
   casadi_int i;
   const double* arg[{arg}];
@@ -39,7 +42,9 @@ class BatchLibrary:
     entry: Any
 
     def evaluate(self, n: int, given: Mapping[str, tuple[Array, int]], into: Array) -> None:
-        """Fill ``into`` (n, result) for n points: of each argument, by name, its rows and for how many points one is."""
+        """Fill ``into`` (n, result) for n points: of each argument, by name, its rows and for how
+        many points one is.
+        """
         arrays = {name: np.ascontiguousarray(rows, float) for name, (rows, _) in given.items()}
         every = {f"{name}_every": each for name, (_, each) in given.items()}
         pointers = {name: array.ctypes.data for name, array in arrays.items()}
@@ -60,13 +65,16 @@ def _call(function: Any) -> Call:
 def emit_batch(function: Any) -> str:
     """The C of a function of one output at many points; the same text in every process."""
     lines = [
-        f"    arg[{k}] = call->{name} + (call->{name}_every ? i/call->{name}_every : 0)*{function.numel_in(k)};"
+        f"    arg[{k}] = call->{name} + (call->{name}_every ? i/call->{name}_every :"
+        f" 0)*{function.numel_in(k)};"
         for k, name in enumerate(_names(function))
     ]
     lines.append(f"    res[0] = call->found + i*{function.numel_out(0)};")
     call = _call(function)
     text = START + call.text() + print_functions({"at_once": function}, "double", prefix="batch")
-    return text + _LOOP.format(entry=_ENTRY, call=call.name, lines="\n".join(lines), arg=len(_names(function)))
+    return text + _LOOP.format(
+        entry=_ENTRY, call=call.name, lines="\n".join(lines), arg=len(_names(function))
+    )
 
 
 def load_batch(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> BatchLibrary:

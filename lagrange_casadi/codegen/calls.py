@@ -1,7 +1,9 @@
-"""What compiled code is called with: a struct whose members Python sets by name and C reads by name.
+"""What compiled code is called with: a struct whose members Python sets by name and C reads by
+name.
 
-One list of members makes both the C struct and the :class:`ctypes.Structure`, so neither depends on an order that is written down
-twice. ``tests/test_calls.py`` asks a compiler whether both lie alike in memory.
+One list of members makes both the C struct and the :class:`ctypes.Structure`, so neither depends on
+an order that is written down twice. ``tests/test_calls.py`` asks a compiler whether both lie alike
+in memory.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ _NUMBERS = {"long long": ctypes.c_longlong, "int": ctypes.c_int, "double": ctype
 class Call:
     """A struct of C: its ``name``, and the C type of each member.
 
-    A type is ``long long``, ``int``, ``double`` or a pointer; ``real`` in it stands for a floating type that :meth:`text` is told.
+    A type is ``long long``, ``int``, ``double`` or a pointer; ``real`` in it stands for a floating
+    type that :meth:`text` is told.
     """
 
     name: str
@@ -28,13 +31,21 @@ class Call:
 
     def text(self, real: str = "double") -> str:
         """The definition in C, with the floating type ``real``."""
-        lines = (f"  {kind}{'' if kind.endswith('*') else ' '}{name};\n" for name, kind in self.members.items())
-        return "typedef struct {\n" + re.sub(r"\breal\b", real, "".join(lines)) + f"}} {self.name};\n"
+        lines = (
+            f"  {kind}{'' if kind.endswith('*') else ' '}{name};\n"
+            for name, kind in self.members.items()
+        )
+        return (
+            "typedef struct {\n" + re.sub(r"\breal\b", real, "".join(lines)) + f"}} {self.name};\n"
+        )
 
     @cached_property
     def type(self) -> type[ctypes.Structure]:
         """The same in Python; pointers are addresses."""
-        fields = [(name, ctypes.c_void_p if kind.endswith("*") else _NUMBERS[kind]) for name, kind in self.members.items()]
+        fields = [
+            (name, ctypes.c_void_p if kind.endswith("*") else _NUMBERS[kind])
+            for name, kind in self.members.items()
+        ]
         # Without slots a member of another name would be taken for an attribute.
         return type(self.name, (ctypes.Structure,), {"__slots__": (), "_fields_": fields})
 
@@ -45,10 +56,15 @@ class Call:
         """
         made = self.type(**values)
         if len(values) < len(self.members):
-            raise TypeError(f"{self.name}: without {', '.join(name for name in self.members if name not in values)}")
+            raise TypeError(
+                f"{self.name}: without"
+                f" {', '.join(name for name in self.members if name not in values)}"
+            )
         return made
 
     def declare(self, entry: Any) -> Any:
-        """A function of a library that takes a pointer to this struct, and gives nothing: declared so, for :mod:`ctypes`."""
+        """A function of a library that takes a pointer to this struct, and gives nothing: declared
+        so, for :mod:`ctypes`.
+        """
         entry.restype, entry.argtypes = None, [ctypes.POINTER(self.type)]
         return entry

@@ -1,9 +1,10 @@
 """The compilers: which there are, with what flags, and a cache of what they have built.
 
-A library is named by the hash of its source, of the flags, of the compiler, and of the machine, of its kind alone where the code
-serves any of that kind. It is built under another name and renamed, so any number of processes may build the same one at once and
-none ever sees half of it; its digest lies beside it, for a truncated library can load and then crash. Whatever of this is not as
-it was left is built again.
+A library is named by the hash of its source, of the flags, of the compiler, and of the machine, of
+its kind alone where the code serves any of that kind. It is built under another name and renamed,
+so any number of processes may build the same one at once and none ever sees half of it; its digest
+lies beside it, for a truncated library can load and then crash. Whatever of this is not as it was
+left is built again.
 """
 
 from __future__ import annotations
@@ -31,13 +32,21 @@ from . import programs
 
 Language = Literal["c", "c++"]
 
-_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-nostartfiles")
+_COMMON = (
+    "-fno-math-errno",
+    "-ffp-contract=off",
+    "-fvisibility=hidden",
+    "-fPIC",
+    "-shared",
+    "-nostartfiles",
+)
 FLAGS: dict[Language, tuple[str, ...]] = {
     "c": ("-std=c99", "-O3", *_COMMON),
     "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
 }
-"""No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call.
-No start files: those that gcc links in where -ffast-math is asked for make the whole process flush to zero what is subnormal."""
+"""No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an
+instruction, no call. No start files: those that gcc links in where -ffast-math is asked for make
+the whole process flush to zero what is subnormal."""
 
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 
@@ -48,7 +57,9 @@ _ANSWER = 20
 """Into how many parts the time limit is divided for a compiler to tell its version."""
 
 LARGE = 20_000
-"""Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves and costs."""
+"""Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves
+and costs.
+"""
 
 _NAMES: dict[Language, tuple[str, tuple[str, ...]]] = {
     "c": ("CC", ("cc", "gcc", "clang")),
@@ -58,7 +69,9 @@ _NAMES: dict[Language, tuple[str, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class Compiler:
-    """A compiler: its language, the command that runs it and the first line of its version, which holds no path."""
+    """A compiler: its language, the command that runs it and the first line of its version, which
+    holds no path.
+    """
 
     language: Language
     command: tuple[str, ...]
@@ -78,11 +91,15 @@ def statements(source: str) -> int:
 
 
 def find_compiler(language: Language = "c") -> Compiler | None:
-    """$CC, else cc, gcc, clang (of C++: $CXX, c++, g++, clang++), else the wheel ziglang; None where there is none.
+    """$CC, else cc, gcc, clang (of C++: $CXX, c++, g++, clang++), else the wheel ziglang; None
+    where there is none.
 
-    Raises :class:`CompilerError` where the variable is set and does not run, or the system starts no program.
+    Raises :class:`CompilerError` where the variable is set and does not run, or the system starts
+    no program.
     """
-    return _find_compiler(language, os.environ.get(_NAMES[language][0], "").strip(), os.environ.get("PATH", ""))
+    return _find_compiler(
+        language, os.environ.get(_NAMES[language][0], "").strip(), os.environ.get("PATH", "")
+    )
 
 
 @functools.lru_cache(maxsize=16)
@@ -93,18 +110,30 @@ def _find_compiler(language: Language, chosen: str, _path: str) -> Compiler | No
         try:
             command = tuple(shlex.split(chosen))
         except ValueError as error:
-            raise CompilerError(f"${variable} = {chosen!r} cannot be split into words: {error}") from None
+            raise CompilerError(
+                f"${variable} = {chosen!r} cannot be split into words: {error}"
+            ) from None
         try:
             version = _version(command)
         except subprocess.TimeoutExpired as error:
             raise CompilerError(f"${variable} = {chosen!r} {_silent(error)}") from None
         if version is None:
-            raise CompilerError(f"${variable} = {chosen!r} does not run; unset it, or name a compiler such as {', '.join(names)}")
+            raise CompilerError(
+                f"${variable} = {chosen!r} does not run; unset it, or name a compiler such as"
+                f" {', '.join(names)}"
+            )
         return Compiler(language, command, version)
     commands: list[tuple[str, ...]] = [(name,) for name in names if shutil.which(name)]
     if _has_zig():
         # Its C library has no libmvec to link with.
-        commands.append((sys.executable, "-m", "ziglang", *(("cc",) if language == "c" else ("c++", "-DLANES_LIBMVEC=0"))))
+        commands.append(
+            (
+                sys.executable,
+                "-m",
+                "ziglang",
+                *(("cc",) if language == "c" else ("c++", "-DLANES_LIBMVEC=0")),
+            )
+        )
     for command in commands:
         try:
             version = _version(command)
@@ -124,7 +153,10 @@ def _has_zig() -> bool:
 
 
 def _version(command: tuple[str, ...]) -> str | None:
-    """The first line of a compiler's version, None where it does not run. Raises ``subprocess.TimeoutExpired``."""
+    """The first line of a compiler's version, None where it does not run.
+
+    Raises ``subprocess.TimeoutExpired``.
+    """
     try:
         run = programs.run([*command, "--version"], programs.limit() / _ANSWER)
     except OSError as error:
@@ -137,22 +169,28 @@ def _version(command: tuple[str, ...]) -> str | None:
 
 
 def _silent(error: subprocess.TimeoutExpired) -> str:
-    return f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER} times as many"
+    return (
+        f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER}"
+        " times as many"
+    )
 
 
 def packed(text: str, compiler: Compiler) -> str:
     """An emitted file as a compiler takes it: for C++ with packs before it."""
     if compiler.language == "c":
         return text
-    return text.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
+    return text.replace(
+        LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1
+    )
 
 
 def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctypes.CDLL:
     """The shared library of a source, from the cache or newly built.
 
-    ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where what it held was damaged. Raises
-    :class:`CompilerError` where the compiler refuses the source, whose whole message is kept beside the source in the cache, does
-    not end in time, or builds what does not load.
+    ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where
+    what it held was damaged. Raises :class:`CompilerError` where the compiler refuses the source,
+    whose whole message is kept beside the source in the cache, does not end in time, or builds what
+    does not load.
     """
     flags = (*compiler.flags(source), *extra)
     machine = _machine() if "-march=native" in flags else platform.machine()
@@ -166,9 +204,15 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
         fresh = _compile(source, compiler, flags, work / name, folder)
         if folder is not None:
             try:
-                cache.keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
+                cache.keep(
+                    [fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")],
+                    folder,
+                )
             except OSError as error:
-                warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only")
+                warn(
+                    f"cannot keep a library in {folder}: {error.strerror}; compiled for this time"
+                    " only"
+                )
         try:
             return ctypes.CDLL(str(fresh))
         except OSError as error:
@@ -177,7 +221,9 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
 
 def broken(compiler: Compiler, error: Exception) -> CompilerError:
     """What to say of a library that does not load, or has not what it was built for."""
-    return CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}")
+    return CompilerError(
+        f"the library built by {' '.join(compiler.command)} does not load: {error}"
+    )
 
 
 def _kept(library: Path) -> ctypes.CDLL | None:
@@ -211,7 +257,9 @@ def _suffix(compiler: Compiler) -> str:
     return ".c" if compiler.language == "c" else ".cpp"
 
 
-def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path, folder: Path | None) -> Path:
+def _compile(
+    source: str, compiler: Compiler, flags: tuple[str, ...], base: Path, folder: Path | None
+) -> Path:
     """Compile beside ``base``; a message of the compiler's is kept in ``folder``."""
     code, library = base.with_suffix(_suffix(compiler)), base.with_suffix(".so")
     command = [*compiler.command, *flags, str(code), "-o", str(library), "-lm"]
@@ -233,20 +281,32 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
     return library
 
 
-def compiled(command: Sequence[str], folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a compiler. Raises ``OSError`` where it cannot be started, :class:`CompilerError` where it does not end in time."""
+def compiled(
+    command: Sequence[str], folder: Path | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a compiler.
+
+    Raises ``OSError`` where it cannot be started, :class:`CompilerError` where it does not end in
+    time.
+    """
     try:
         return programs.run(command, programs.limit(), folder)
     except subprocess.TimeoutExpired as error:
         raise CompilerError(
-            f"{command[0]} did not end within {error.timeout:g} s and was stopped; ${programs.VARIABLE} sets another limit"
+            f"{command[0]} did not end within {error.timeout:g} s and was stopped;"
+            f" ${programs.VARIABLE} sets another limit"
         ) from None
 
 
 def complaint(compiler: Compiler, run: subprocess.CompletedProcess[str]) -> str:
     """The first of what a compiler that failed has to say."""
-    first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
-    return f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()[:_LINE]}"
+    first = next(
+        (line for line in run.stderr.splitlines() if "error" in line.lower()),
+        run.stderr.strip() or "no message",
+    )
+    return (
+        f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()[:_LINE]}"
+    )
 
 
 def _machine() -> str:
@@ -255,4 +315,6 @@ def _machine() -> str:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return f"{platform.machine()} {platform.processor()}"
-    return "\n".join(sorted({line for line in lines if line.startswith(("flags", "Features", "model name"))}))
+    return "\n".join(
+        sorted({line for line in lines if line.startswith(("flags", "Features", "model name"))})
+    )

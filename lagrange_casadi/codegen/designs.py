@@ -1,4 +1,6 @@
-"""The C of many designs: that of a scene, and with it what reduces the instants of a design to what is kept of it."""
+"""The C of many designs: that of a scene, and with it what reduces the instants of a design to what
+is kept of it.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +61,9 @@ CALL = Call(
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
 
 CHECKS = ("CLOSURE", "BRANCH", "GAP", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
-"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants, or the mechanism's extent."""
+"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants,
+or the mechanism's extent.
+"""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -72,12 +76,14 @@ _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 class Reduction:
     """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
 
-    ``quantities`` off links are one column, or the size of a vector of two; then come the forces of each of ``links``. ``units``
-    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are the columns of a graph's bounds with
-    their kinds and limits, then those of ``ROWSIZE``; ``doubts`` are the checks that leave a quantity open, by number of both.
-    ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either: the first is
-    the mechanism's extent [m]. Then comes what ``sections.c`` takes for each link. ``watches`` are what the last columns are
-    watched for, ``knots`` times of kinks: see :class:`.Sharpness`.
+    ``quantities`` off links are one column, or the size of a vector of two; then come the forces of
+    each of ``links``. ``units`` numbers the units of all of them, ``efforts`` says which have
+    means. ``checks`` are the columns of a graph's bounds with their kinds and limits, then those of
+    ``ROWSIZE``; ``doubts`` are the checks that leave a quantity open, by number of both.
+    ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
+    not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
+    for each link. ``watches`` are what the last columns are watched for, ``knots`` times of kinks:
+    see :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -96,12 +102,17 @@ class Reduction:
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
-        """Of each curve: its quantity, its link or -1, and its place, as in :data:`.search.CURVES`."""
+        """Of each curve: its quantity, its link or -1, and its
+        place, as in :data:`.search.CURVES`.
+        """
         found = [(q, -1, OFF) for q in range(len(self.quantities))]
         q, first = len(self.quantities), 0
         for k, link in enumerate(self.links):
             for places in link.places:
-                found += [(q, k, _PLACES[place] if isinstance(place, str) else first + place) for place in places]
+                found += [
+                    (q, k, _PLACES[place] if isinstance(place, str) else first + place)
+                    for place in places
+                ]
                 q += 1
             first += link.rows
         return found
@@ -113,7 +124,9 @@ class Reduction:
 
     @property
     def rows(self) -> int:
-        """Rows of one design that are kept while it is evaluated, beside those of times and iterated coordinates."""
+        """Rows of one design that are kept while it is evaluated, beside those of times and
+        iterated coordinates.
+        """
         return len(self.curves) + self.places + len(self.checks) + 1 + len(self.watches)
 
     def tables(self, precision: Precision) -> Tables:
@@ -122,23 +135,32 @@ class Reduction:
 
 
 def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: Reduction) -> str:
-    """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates instants alone."""
+    """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates
+    instants alone.
+    """
     parts = Parts.of(graph, stages)
     text = emit_scene(graph, stages, newton, parts)
     text += print_functions(
-        {"matter_of": reduction.matter, "status_of": graph.status}, stages.precision, prefix="matter", packs=True
+        {"matter_of": reduction.matter, "status_of": graph.status},
+        stages.precision,
+        prefix="matter",
+        packs=True,
     )
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text += (
-        interface(stages.precision) + CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+        interface(stages.precision)
+        + CALL.text(parts.sizes["real"])
+        + _defined(_macros(graph, stages, newton, reduction, parts))
     )
     text += _tables(graph, reduction) + _source("sections.c") + turning(reduction.links)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
 
-def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts) -> dict[str, object]:
+def _macros(
+    graph: Program, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts
+) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
     checks, curves = len(reduction.checks), len(reduction.curves)
     quantities = len(reduction.quantities) + sum(len(link.places) for link in reduction.links)
@@ -153,7 +175,10 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "LEAP": _real(LEAP),
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
-        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")},
+        **{
+            name.upper(): sizes[name]
+            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")
+        },
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
         "POSITIVE": reduction.positive,
@@ -173,7 +198,9 @@ def _macros(graph: Program, stages: Stages, newton: int | None, reduction: Reduc
         "TOPS": TOPS,
         "END": _real(END[precision]),
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
-        "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
+        "BEGIN(call)": (
+            f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))"
+        ),
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
         **reduction.statuses,
     }
@@ -188,22 +215,32 @@ def _defined(macros: Mapping[str, object]) -> str:
 
 
 def _tables(graph: Program, reduction: Reduction) -> str:
-    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",), (0.0,))
+    columns, kinds, limits = (
+        zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",), (0.0,))
+    )
     sizes = itertools.count(len(graph.bounds))
     beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in graph.bounds] or [-1]
     statuses = [Status.OK, *(rule.status for rule in graph.rules)]
     others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
-    breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
+    breaks = [
+        _table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others
+    ]
     return "".join(
         (
             _table("int", "designs_checked", columns),
-            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds)),
+            _table(
+                "int",
+                "designs_kind",
+                (f"DESIGNS_IS_{kind}" if kind in CHECKS else -1 for kind in kinds),
+            ),
             _table("int", "designs_sized", beside),
             _table("int", "designs_status", map(int, statuses)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
-            _table("int", "designs_doubtful", [quantity for _, quantity in reduction.doubts] or (0,)),
+            _table(
+                "int", "designs_doubtful", [quantity for _, quantity in reduction.doubts] or (0,)
+            ),
             *breaks,
         )
     )
@@ -222,7 +259,10 @@ def _curves(reduction: Reduction) -> str:
     lines = []
     for k, columns in enumerate(reduction.quantities):
         squares = " + ".join(f"y[{c}]*y[{c}]" for c in columns)
-        lines.append(f"  value[{k}] = {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n")
+        lines.append(
+            f"  value[{k}] ="
+            f" {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n"
+        )
     value, place, offset = len(reduction.quantities), 0, reduction.margins
     for k, link in enumerate(reduction.links):
         lines.append(along(k, link, f"value + {value}, place + {place}", offset))
@@ -230,8 +270,8 @@ def _curves(reduction: Reduction) -> str:
         place += link.rows
         offset += 1 + (1 if link.uniform else (len(link.breaks) - 1) * (3 + link.terms))
     return f"""
-static void designs_curves(const casadi_real* y, const casadi_real* matter, unsigned long long need, casadi_real* value,
-                           casadi_real* place) {{
+static void designs_curves(const casadi_real* y, const casadi_real* matter, unsigned long long need,
+                           casadi_real* value, casadi_real* place) {{
   (void) matter; (void) need; (void) place;
 {"".join(lines)}}}
 """

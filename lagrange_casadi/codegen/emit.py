@@ -1,7 +1,8 @@
 """The C of a scene: each function of its graph, and functions that run them over instants.
 
-One file serves two compilers. As C every value is a double. As C++, with ``lanes.h`` put before it, what is done for each instant
-is done for a pack of instants at once; what depends on the instant before (iterated loops) stays with doubles.
+One file serves two compilers. As C every value is a double. As C++, with ``lanes.h`` put before it,
+what is done for each instant is done for a pack of instants at once; what depends on the instant
+before (iterated loops) stays with doubles.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
 """A correction after which the next one would be rounding."""
 
 NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.25
-"""Of one correction to the one before: from where on they shrink too slowly to go with the square. At a dead centre it is 1/2;
-where corrections end early, as in single, their square is not far below them."""
+"""Of one correction to the one before: from where on they shrink too slowly to go with the square.
+At a dead centre it is 1/2; where corrections end early, as in single, their square is not far below
+them."""
 
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
@@ -96,8 +98,10 @@ WIDE = """
 """What follows is for packs."""
 
 _PACK = """
-/* The columns y of a pack of instants: at begins with its times; its iterated coordinates come after what the drive gives. */
-LANES_INLINE void scene_columns(const casadi_real* parameters, const casadi_real* constants, casadi_real* at, casadi_real* y) {{
+/* The columns y of a pack of instants: at begins with its times; its iterated coordinates come
+   after what the drive gives. */
+LANES_INLINE void scene_columns(const casadi_real* parameters, const casadi_real* constants,
+                                casadi_real* at, casadi_real* y) {{
   casadi_real *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
   const casadi_real* arg[5];
   casadi_real* res[3];
@@ -122,7 +126,8 @@ static void scene_constants(const {real}* p, casadi_real* parameters, casadi_rea
   constants_of(arg, res);
 }}
 
-/* A sum that is finite if all so many columns are; four sums, for each addition waits for the one before. */
+/* A sum that is finite if all so many columns are; four sums, for each addition waits for the one
+   before. */
 LANES_INLINE casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
   casadi_real sum[4];
   casadi_int j, k;
@@ -144,8 +149,9 @@ _DRIVE = """  arg[0] = at;
 """
 
 _EVALUATE = """
-/* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i] is iterated coordinate k there.
-   status[i], {OK} where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite.{single} */
+/* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i]
+   is iterated coordinate k there. status[i], {OK} where there is nothing to say against the
+   instant, becomes {NOT_FINITE} where a value is not finite.{single} */
 LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
   const casadi_int n = call->n, stride = call->stride;
   const {real} *t = call->t, *z = call->z;
@@ -176,22 +182,24 @@ LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
     if (many == LANES) {{
       for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
     }} else {{
-      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, (size_t) many*sizeof({real}));
+      const size_t size = (size_t) many*sizeof({real});
+      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, size);
     }}
     sum = scene_sum(y, {columns});
     memcpy(lanes, &sum, sizeof lanes);
-    for (j = 0; j < many; ++j) if (!(lanes[j] - lanes[j] == 0) && status[i + j] == {OK}) status[i + j] = {NOT_FINITE};
+    for (j = 0; j < many; ++j)
+      if (!(lanes[j] - lanes[j] == 0) && status[i + j] == {OK}) status[i + j] = {NOT_FINITE};
   }}
 }}
 """
 
 _IN_PAIRS = """
-   Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride + i] is the rest of t[i],
-   p[{np} + k] that of p[k]."""
+   Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride
+   + i] is the rest of t[i], p[{np} + k] that of p[k]."""
 
 _FOLLOW = """
-/* Iterated loops, each instant from the one before: z[k*stride + i] becomes coordinate k at instant i, and guess, on entry that for
-   the first instant, the last good one. {told} */
+/* Iterated loops, each instant from the one before: z[k*stride + i] becomes coordinate k at instant
+   i, and guess, on entry that for the first instant, the last good one. {told} */
 LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
   static const int turns[{nz}] = {{{turns}}};
   const casadi_int n = call->n, stride = call->stride;
@@ -235,10 +243,11 @@ LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
 
 
 def emit(graph: Program, stages: Stages | None = None, newton: int | None = None) -> str:
-    """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi.
+    """The whole C file of a scene; the same text in every process, on every machine, for the same
+    version of CasADi.
 
-    ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps iterated loops take an
-    instant, None for as many as they need.
+    ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps
+    iterated loops take an instant, None for as many as they need.
     """
     stages = plain(graph) if stages is None else stages
     parts = Parts.of(graph, stages)
@@ -247,19 +256,29 @@ def emit(graph: Program, stages: Stages | None = None, newton: int | None = None
 
 
 def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts) -> str:
-    """What every C file of a scene begins with: its functions, and what runs them for a pack of instants."""
+    """What every C file of a scene begins with: its functions, and what runs them for a pack of
+    instants.
+    """
     sizes = parts.sizes
-    text = (_START_SINGLE if stages.precision == "single" else "") + START + INSTANTS.text(sizes["real"])
+    text = (
+        (_START_SINGLE if stages.precision == "single" else "")
+        + START
+        + INSTANTS.text(sizes["real"])
+    )
     text += print_functions(parts.narrow, stages.precision, prefix="follow")
     if stages.loops:
         text += following(graph, stages, newton, sizes)
     text += WIDE + print_functions(parts.wide, stages.precision, prefix="scene", packs=True)
-    return text + _PACK.format(**sizes, drive=_DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else "")
+    return text + _PACK.format(
+        **sizes, drive=_DRIVE.format(**sizes) if sizes["nc"] + sizes["nd"] else ""
+    )
 
 
 @dataclass(frozen=True)
 class Parts:
-    """What an emitted file is made of: functions of one instant at a time, functions of packs, and sizes."""
+    """What an emitted file is made of: functions of one instant at a time, functions of packs, and
+    sizes.
+    """
 
     narrow: Mapping[str, ca.Function]
     wide: Mapping[str, ca.Function]
@@ -274,18 +293,32 @@ class Parts:
         sizes = _sizes(graph, stages) | {"constants": constants.size1_out(0)}
         place = sizes["nt"] + sizes["nc"] + 2 * sizes["nd"]
         room = {"given": sizes["nt"] * sizes["np"], "fixed": sizes["constants"]}
-        sizes |= {"place": place, "inputs": place + sizes["nz"]} | {name: max(1, size) for name, size in room.items()}
+        sizes |= {"place": place, "inputs": place + sizes["nz"]} | {
+            name: max(1, size) for name, size in room.items()
+        }
         return cls(narrow, wide, sizes)
 
 
 def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
-    """The function that closes iterated loops, by so many steps an instant; its name is ``sizes["follow"]``."""
+    """The function that closes iterated loops, by so many steps an instant; its name is
+    ``sizes["follow"]``.
+    """
     assert graph.newton is not None
     number = literal(stages.precision)
     rule = newton_rule(stages.precision, newton)
     turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
-    slow = f"size > {number(rule['rate'])}*before && size > {number(rule['rounding'])}" if newton is None else "0"
-    numbers = {"turn": math.tau, "inverse": 1.0 / math.tau, "half": 0.5, "done": rule["done"], "lost": rule["lost"]}
+    slow = (
+        f"size > {number(rule['rate'])}*before && size > {number(rule['rounding'])}"
+        if newton is None
+        else "0"
+    )
+    numbers = {
+        "turn": math.tau,
+        "inverse": 1.0 / math.tau,
+        "half": 0.5,
+        "done": rule["done"],
+        "lost": rule["lost"],
+    }
     return _FOLLOW.format(
         **sizes,
         **{name: number(value) for name, value in numbers.items()},
@@ -298,7 +331,9 @@ def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[st
 
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
-    """When iterated loops are done, and lost: the numbers that the emitted C and the virtual machine share."""
+    """When iterated loops are done, and lost: the numbers that the emitted C and the virtual
+    machine share.
+    """
     single = precision == "single"
     done = NEWTON_DONE_SINGLE if single else NEWTON_DONE
     rule = {
@@ -342,11 +377,20 @@ def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
 
 
 @symbolic
-def hoisted(instant: ca.Function, rows: Sequence[int] | None = None) -> tuple[ca.Function, ca.Function]:
-    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p; of some ``rows``."""
+def hoisted(
+    instant: ca.Function, rows: Sequence[int] | None = None
+) -> tuple[ca.Function, ca.Function]:
+    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant
+    with c for p; of some ``rows``.
+    """
     inputs = instant.sx_in()
     out = instant(*inputs) if rows is None else instant(*inputs)[list(rows)]
     rest, symbols, constants = ca.extract_parametric(out, inputs[-1], {"extract_trivial": True})
     c = ca.vertcat(ca.SX(0, 1), *symbols)
-    hoisted = ca.Function("constants_of", [inputs[-1]], [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))], {"cse": True})
+    hoisted = ca.Function(
+        "constants_of",
+        [inputs[-1]],
+        [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))],
+        {"cse": True},
+    )
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})

@@ -26,12 +26,18 @@ Array = npt.NDArray[Any]
 Status = npt.NDArray[np.int32]
 
 _WORTH_A_THREAD = 1 << 24
-"""Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
+"""Statements, those of an instant times the instants: about a millisecond, some times what it takes
+to start a thread.
+"""
 
 _LONGEST, _SLOWER = 128, 4
-"""Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what is done by the instant."""
+"""Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what
+is done by the instant.
+"""
 _LINE, _SPREAD = 16, 8
-"""Values of a cache line of either precision; and into how many parts a thread's share of designs is cut, for they differ."""
+"""Values of a cache line of either precision; and into how many parts a thread's share of designs
+is cut, for they differ.
+"""
 
 _CUT = 64
 """A multiple of any pack, so that no cut falls into one."""
@@ -41,7 +47,8 @@ _CUT = 64
 class Library:
     """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing.
 
-    ``share`` is how many instants are worth a thread of their own, ``reach`` how many are followed in a call.
+    ``share`` is how many instants are worth a thread of their own, ``reach`` how many are followed
+    in a call.
     """
 
     entry: Any
@@ -51,21 +58,38 @@ class Library:
     reach: int
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
-        """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
+        """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess``
+        (k) begins, and moves along.
+        """
         if self.entry_follow is None:
             status[:] = 0
             return
         for start in range(0, t.shape[-1], self.reach):
             cut = slice(start, start + self.reach)
-            self._call(self.entry_follow, z, t=t[..., cut], p=p, guess=guess, z=z[:, cut], out=None, status=status[cut])
+            self._call(
+                self.entry_follow,
+                z,
+                t=t[..., cut],
+                p=p,
+                guess=guess,
+                z=z[:, cut],
+                out=None,
+                status=status[cut],
+            )
 
-    def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
-        """Fill ``out`` (columns, n) for the instants ``t``, where the iterated coordinates are ``z`` (k, n).
+    def evaluate(
+        self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1
+    ) -> None:
+        """Fill ``out`` (columns, n) for the instants ``t``, where the iterated coordinates are
+        ``z`` (k, n).
 
-        ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows are equally far apart. ``status``
-        (n) is what :meth:`follow` left; what is not finite is noted there. The bytes do not depend on ``threads``.
+        ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows
+        are equally far apart. ``status`` (n) is what :meth:`follow` left; what is not finite is
+        noted there. The bytes do not depend on ``threads``.
         """
-        assert all(rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z))
+        assert all(
+            rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z)
+        )
         n = t.shape[-1]
         shares = max(1, min(threads, n // self.share))
         size = min(self._stretch, -(-n // (shares * _CUT)) * _CUT)
@@ -75,7 +99,16 @@ class Library:
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
-            self._call(self.entry, out, t=t[..., cut], p=p, guess=None, z=z[:, cut], out=out[:, cut], status=status[cut])
+            self._call(
+                self.entry,
+                out,
+                t=t[..., cut],
+                p=p,
+                guess=None,
+                z=z[:, cut],
+                out=out[:, cut],
+                status=status[cut],
+            )
 
         _share(run, range(0, n, size), shares)
 
@@ -86,7 +119,15 @@ class Library:
 
     @staticmethod
     def _call(
-        entry: Any, rows: Array, *, t: Array, p: Array, guess: Array | None, z: Array, out: Array | None, status: Status
+        entry: Any,
+        rows: Array,
+        *,
+        t: Array,
+        p: Array,
+        guess: Array | None,
+        z: Array,
+        out: Array | None,
+        status: Status,
     ) -> None:
         """Call with :data:`INSTANTS`; all rows are as far apart as those of ``rows``."""
         call = INSTANTS.made(
@@ -104,7 +145,9 @@ class Library:
 
 @dataclass(frozen=True, eq=False)
 class DesignsLibrary:
-    """The loaded code of many designs of one scene over ``count`` instants. Its calls release the interpreter and allocate nothing.
+    """The loaded code of many designs of one scene over ``count`` instants.
+
+    Its calls release the interpreter and allocate nothing.
 
     ``share`` is how many designs are worth a thread of their own.
     """
@@ -127,7 +170,10 @@ class DesignsLibrary:
         threads: int = 1,
         listed: Listed | None = None,
     ) -> None:
-        """Fill ``results`` for designs ``p``, as :meth:`bound` does. The bytes of a row do not depend on ``threads``."""
+        """Fill ``results`` for designs ``p``, as :meth:`bound` does.
+
+        The bytes of a row do not depend on ``threads``.
+        """
         n = p.shape[0]
         shares = max(1, min(threads, n // self.share))
         size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
@@ -135,7 +181,13 @@ class DesignsLibrary:
         def run(start: int) -> None:
             cut = slice(start, start + size)
             rows = {name: None if array is None else array[cut] for name, array in results.items()}
-            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows, listed)()
+            self.bound(
+                t[cut] if len(t) > 1 else t,
+                bent[cut] if len(bent) > 1 else bent,
+                p[cut],
+                rows,
+                listed,
+            )()
 
         _share(run, range(0, n, size), shares)
 
@@ -147,20 +199,32 @@ class DesignsLibrary:
         results: Mapping[str, npt.NDArray[Any] | None],
         listed: Listed | None = None,
     ) -> Callable[[], None]:
-        """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when it is called.
+        """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when
+        it is called.
 
-        They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps
-        between them the motion bends more than they show; one row of either serves all designs. ``history`` may be None; or all
-        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
-        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on other rows.
+        They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
+        t - 1) tells in which steps between them the motion bends more than they show; one row of
+        either serves all designs. ``history`` may be None; or all but that and the status may be
+        None: then no peaks are sought, and instants need not be in equal steps. ``iterated`` and
+        ``tops``, of which ``listed`` tells, may be left out. The bytes of a row do not depend on
+        other rows.
         """
         stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
         hidden = np.zeros((len(bent), stride), np.int8)
         hidden[:, : bent.shape[1]] = bent
-        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, DTYPES[self.search.precision])
+        room = np.zeros(
+            (self.reduction.rows + self.guess.size + 2) * stride + _LINE,
+            DTYPES[self.search.precision],
+        )
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room}
+        arrays: dict[str, npt.NDArray[Any] | None] = {
+            "t": t,
+            "bent": hidden,
+            "p": p,
+            "guess": self.guess,
+            "room": room,
+        }
         arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
         search, within = self.search.call(self.tables, _CUT)
         call = CALL.made(
@@ -173,7 +237,9 @@ class DesignsLibrary:
             bent_apart=stride if len(bent) > 1 else 0,
             way=listed.way if listed else 0,
             share=listed.share if listed else 0.0,
-            **{name: None if array is None else array.ctypes.data for name, array in arrays.items()},
+            **{
+                name: None if array is None else array.ctypes.data for name, array in arrays.items()
+            },
         )
         # The arrays live as long as what reads and writes them.
         return functools.partial(_enter, self.entry, call, (arrays, search, within))
@@ -199,14 +265,24 @@ def _enter(entry: Any, call: Any, arrays: object) -> None:
 def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:
     """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
 
-    ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises :class:`CompilerError`.
+    ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises
+    :class:`CompilerError`.
     """
     library = loaded(packed(source, compiler), compiler, extra)
     entry, follow = _entry(library, compiler, EVALUATE, INSTANTS), None
     if hasattr(library, FOLLOW):
         follow = _entry(library, compiler, FOLLOW, INSTANTS)
-    share, size = max(_CUT, _WORTH_A_THREAD // statements(source)), statements(source) * steps * _SLOWER
-    return Library(entry, follow, (*compiler.flags(source), *extra), share, max(1, _LONGEST * _WORTH_A_THREAD // size))
+    share, size = (
+        max(_CUT, _WORTH_A_THREAD // statements(source)),
+        statements(source) * steps * _SLOWER,
+    )
+    return Library(
+        entry,
+        follow,
+        (*compiler.flags(source), *extra),
+        share,
+        max(1, _LONGEST * _WORTH_A_THREAD // size),
+    )
 
 
 def load_designs(
@@ -218,12 +294,16 @@ def load_designs(
     guess: npt.NDArray[np.float64],
     precision: Precision,
 ) -> DesignsLibrary:
-    """The same of a file for many designs over ``count`` instants, whose iterated loops begin from ``guess``."""
+    """The same of a file for many designs over ``count`` instants, whose iterated loops begin from
+    ``guess``.
+    """
     search = load_search(compiler, extra, precision)
     entry = _entry(loaded(packed(source, compiler), compiler, extra), compiler, DESIGNS, CALL)
     share = max(1, _WORTH_A_THREAD // (statements(source) * count))
     flags = (*compiler.flags(source), *extra)
-    return DesignsLibrary(entry, flags, share, reduction, count, guess, search, reduction.tables(precision))
+    return DesignsLibrary(
+        entry, flags, share, reduction, count, guess, search, reduction.tables(precision)
+    )
 
 
 def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, call: Call) -> Any:

@@ -1,4 +1,6 @@
-"""The C that makes the section forces of links curves over time: their numbers and tables for ``sections.c``."""
+"""The C that makes the section forces of links curves over time: their numbers and tables for
+``sections.c``.
+"""
 
 from __future__ import annotations
 
@@ -15,12 +17,14 @@ from ..summits.polynomials import interpolation
 
 @dataclass(frozen=True)
 class Along:
-    """A link's part in the columns: its coefficients, what acts at each station, place first; and how its mass lies.
+    """A link's part in the columns: its coefficients, what acts at each station, place first; and
+    how its mass lies.
 
-    The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads along it: the width of each,
-    where it ends, and of each direction the coefficients of all powers, -1 for one that it has not. ``marks`` are places at which
-    these begin or end: a column, or one less another; or at which the density jumps: numbers. Where slices are ``thick`` there are
-    three more directions, of couples.
+    The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads
+    along it: the width of each, where it ends, and of each direction the coefficients of all
+    powers, -1 for one that it has not. ``marks`` are places at which these begin or end: a column,
+    or one less another; or at which the density jumps: numbers. Where slices are ``thick`` there
+    are three more directions, of couples.
     """
 
     law: tuple[int, ...]
@@ -39,7 +43,13 @@ class Along:
     @property
     def uniform(self) -> bool:
         """Whether nothing but its own even mass acts between its ends."""
-        return not self.space and not self.stations and not self.spreads and len(self.breaks) == 2 and self.terms == 1
+        return (
+            not self.space
+            and not self.stations
+            and not self.spreads
+            and len(self.breaks) == 2
+            and self.terms == 1
+        )
 
     @property
     def parted(self) -> int:
@@ -58,12 +68,21 @@ class Along:
 
     @property
     def places(self) -> tuple[tuple[int | str, ...], ...]:
-        """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or ``TIP``. See ``sections.c``."""
+        """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or
+        ``TIP``. See ``sections.c``.
+        """
         parts, stations = self.parted + 1, self.parted
         turns = self._turns
-        ends: tuple[int | str, ...] = ("BASE", "TIP", *(sum(turns) * parts + k for k in range(stations) for _ in range(2)))
+        ends: tuple[int | str, ...] = (
+            "BASE",
+            "TIP",
+            *(sum(turns) * parts + k for k in range(stations) for _ in range(2)),
+        )
         firsts = itertools.accumulate(turns, initial=0)
-        return tuple((*ends, *range(first * parts, (first + many) * parts)) for first, many in zip(firsts, turns, strict=False))
+        return tuple(
+            (*ends, *range(first * parts, (first + many) * parts))
+            for first, many in zip(firsts, turns, strict=False)
+        )
 
     @property
     def rows(self) -> int:
@@ -74,8 +93,8 @@ class Along:
     def degrees(self) -> tuple[int, ...]:
         """Of the polynomials that are zero where forces turn: see :mod:`.section_law`.
 
-        In space first of the resultants of shear and of bending. With loads along the link of the axial force and the shear too,
-        and of the bending moment.
+        In space first of the resultants of shear and of bending. With loads along the link of the
+        axial force and the shear too, and of the bending moment.
         """
         highest = max([self.terms, *(many - 1 for many in self.powers)])
         sizes = (2 * highest + 1 if self.spreads else highest + 2, 2 * highest + 3)
@@ -83,7 +102,9 @@ class Along:
 
     @property
     def _turns(self) -> tuple[int, ...]:
-        """Of each section force, in the order of its table: how often it may turn between two stations."""
+        """Of each section force, in the order of its table: how often it may turn between two
+        stations.
+        """
         if self.spreads:
             return (2, 2, 2, 2 if self.thick else 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
         return (1, 1, 1, 0, 2, 2, 2, 2) if self.space else (1, 1, 2)
@@ -93,18 +114,29 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     """What makes the curves of a link of columns y."""
     loads = [f"y[{column}]" for station in link.stations for column in station]
     for mark in link.marks:
-        place = f"(DESIGNS_REAL) {mark:.17g}" if isinstance(mark, float) else " - ".join(f"y[{column}]" for column in mark)
+        place = (
+            f"(DESIGNS_REAL) {mark:.17g}"
+            if isinstance(mark, float)
+            else " - ".join(f"y[{column}]" for column in mark)
+        )
         loads += [place, *["0"] * (6 if link.space else 3)]
     spread = [f"y[{column}]" if column >= 0 else "0" for load in link.spreads for column in load]
     taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
     taken += "".join(f"    loads[{i}] = {value};\n" for i, value in enumerate(loads))
     taken += "".join(f"    spread[{i}] = {value};\n" for i, value in enumerate(spread))
     if link.uniform:
-        inner = f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law, {into});\n"
+        inner = (
+            f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law,"
+            f" {into});\n"
+        )
         return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
     sizes, room = f"{len(link.breaks) - 1}, {link.terms}, {link.parted}", ""
     nodes = [f"&designs_nodes{degree}" for degree in link.degrees]
-    along_it = f", {len(link.spreads)}, {link.directions}, 1, powers, spread" if link.spreads else ", 0, 0, 0, 0, 0"
+    along_it = (
+        f", {len(link.spreads)}, {link.directions}, 1, powers, spread"
+        if link.spreads
+        else ", 0, 0, 0, 0, 0"
+    )
     along_it += f", 0, {int(link.thick)}, 0"
     if link.space:
         room = f", room[{_room(link)}]"
@@ -117,36 +149,48 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     if link.spreads:
         room += f", spread[{len(spread)}]"
         tables += f"    const int powers[] = {{{', '.join(map(str, link.powers))}}};\n"
-    inner = f"""    casadi_real law[{len(link.law)}], loads[{max(1, len(loads))}], marks[{link.parted + 1}]{room};
-{tables}    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads{along_it}}};
+    inner = f"""    casadi_real law[{len(link.law)}], loads[{max(1, len(loads))}];
+    casadi_real marks[{link.parted + 1}]{room};
+{tables}    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset},
+                               law, loads{along_it}}};
 {taken}    {call}
 """
     return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
 
 
 def _room(link: Along) -> int:
-    """What both planes of a link in space need, and torsion where slices are thick: a law, loads, values and places."""
+    """What both planes of a link in space need, and torsion where slices are thick: a law, loads,
+    values and places.
+    """
     stations, parts = link.parted, link.parted + 1
     turns = 2 * parts if link.spreads else parts
-    return (3 if link.thick else 2) * (7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations)
+    return (3 if link.thick else 2) * (
+        7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations
+    )
 
 
 def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
-    """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as many terms: see there."""
+    """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as
+    many terms: see there.
+    """
     if link.uniform:
         return [length, cells[0][0]]
     beyond: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
     found: list[list[Any]] = []
     for a, b, cell in reversed(list(zip(link.breaks, link.breaks[1:], cells, strict=False))):
         turned = [
-            (-1) ** j * sum(c * math.comb(n, j) * b ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))
+            (-1) ** j
+            * sum(c * math.comb(n, j) * b ** (n - j) for n, c in enumerate(cell) if n >= j)
+            for j in range(len(cell))
         ]
         turned += [0.0] * (link.terms - len(turned))
         found.append([*beyond, *turned])
         x = b - a
         own = [
             sum(
-                c * x ** (j + k + 1) * (math.factorial(j) * math.factorial(k) / math.factorial(j + k + 1))
+                c
+                * x ** (j + k + 1)
+                * (math.factorial(j) * math.factorial(k) / math.factorial(j + k + 1))
                 for j, c in enumerate(turned)
             )
             for k in range(3)
@@ -160,19 +204,24 @@ def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[
 
 
 def turning(links: Sequence[Along]) -> str:
-    """The C of links in space and of links with loads along them, and its tables; nothing where there are none."""
+    """The C of links in space and of links with loads along them, and its tables; nothing where
+    there are none.
+    """
     degrees = sorted({degree for link in links for degree in link.degrees})
     if not degrees:
         return ""
     text = f"#define DESIGNS_DEGREE {degrees[-1]}\n"
     files = ["turning.c", *(["sections_in_space.c"] if any(link.space for link in links) else [])]
-    text += "".join("\n" + resources.files(__package__).joinpath(name).read_text() for name in files)
+    text += "".join(
+        "\n" + resources.files(__package__).joinpath(name).read_text() for name in files
+    )
     for degree in degrees:
         nodes, weights = interpolation(degree)
         for name, values in (("nodes_at", nodes), ("weights", weights.ravel())):
             numbers = ", ".join(f"(DESIGNS_REAL) {value:.17g}" for value in values.tolist())
             text += f"static const DESIGNS_REAL designs_{name}{degree}[] = {{{numbers}}};\n"
         text += (
-            f"static const designs_nodes designs_nodes{degree} = {{{degree}, designs_nodes_at{degree}, designs_weights{degree}}};\n"
+            f"static const designs_nodes designs_nodes{degree} = {{{degree},"
+            f" designs_nodes_at{degree}, designs_weights{degree}}};\n"
         )
     return text

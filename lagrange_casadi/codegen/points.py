@@ -1,4 +1,6 @@
-"""The C of single points: one function of a scene at a time, a place and a choice of its own each, for packs of points at once."""
+"""The C of single points: one function of a scene at a time, a place and a choice of its own each,
+for packs of points at once.
+"""
 
 from __future__ import annotations
 
@@ -30,13 +32,16 @@ POINTS = Call(
         "slopes": "double*",
     },
 )
-"""What the C takes: n points, each with a time, iterated coordinates, a ratio, and so on; and the parameters of all."""
+"""What the C takes: n points, each with a time, iterated coordinates, a ratio, and so on; and the
+parameters of all.
+"""
 
 _ENTRY = "lagrange_casadi_at_points"
 
 _LOOP = """
-/* n points: t[i], z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is meant; for
-   parameters p. Of each found[i] becomes its value, rate[i] its derivative by time, slopes + i*{np} those by the parameters. */
+/* n points: t[i], z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is
+   meant; for parameters p. Of each found[i] becomes its value, rate[i] its derivative by time,
+   slopes + i*{np} those by the parameters. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
   casadi_int i, j, k, of;
   double lane[{own}][LANES], one[{many}][LANES], told[2 + {np}][LANES];
@@ -83,21 +88,32 @@ LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
 
 @dataclass(frozen=True, eq=False)
 class PointsLibrary:
-    """The loaded code of a function ``at_point(t, z, p, xi, value, moving, chosen) -> (found, rate, slopes)``."""
+    """The loaded code of a function ``at_point(t, z, p, xi, value, moving, chosen) -> (found, rate,
+    slopes)``.
+    """
 
     entry: Any
 
     def evaluate(self, given: dict[str, npt.NDArray[Any]], into: dict[str, Array]) -> None:
         """Fill ``into`` for the points that are ``given``, by the names of :data:`POINTS`."""
         arrays = given | into
-        self.entry(POINTS.made(n=given["t"].size, **{name: array.ctypes.data for name, array in arrays.items()}))
+        self.entry(
+            POINTS.made(
+                n=given["t"].size, **{name: array.ctypes.data for name, array in arrays.items()}
+            )
+        )
 
 
 def emit_points(function: Any) -> str:
     """The C of a function at points; the same text in every process."""
     sizes = {f"n{name[0]}": function.size1_in(name) for name in ("z", "p")}
     sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nz"]}
-    text = START + POINTS.text() + WIDE + print_functions({"at_point": function}, "double", prefix="point", packs=True)
+    text = (
+        START
+        + POINTS.text()
+        + WIDE
+        + print_functions({"at_point": function}, "double", prefix="point", packs=True)
+    )
     return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes)
 
 

@@ -1,8 +1,10 @@
-"""C of CasADi's functions of scalars, one statement an instruction: with the bits of CasADi's virtual machine.
+"""C of CasADi's functions of scalars, one statement an instruction: with the bits of CasADi's
+virtual machine.
 
-CasADi's own generator writes literals of doubles, functions of any length, a call that copies a table for every look at it, and
-arguments that may be missing. Here all numbers are of one precision, tables are looked up where they stand, a function is as long
-as compilers are quick with, and may be of packs of numbers (``lanes.h``).
+CasADi's own generator writes literals of doubles, functions of any length, a call that copies a
+table for every look at it, and arguments that may be missing. Here all numbers are of one
+precision, tables are looked up where they stand, a function is as long as compilers are quick with,
+and may be of packs of numbers (``lanes.h``).
 """
 
 from __future__ import annotations
@@ -20,13 +22,18 @@ from ..base.vocabulary import Precision
 from ..errors import DeclarationError, SizeError
 
 LENGTH = 250
-"""Statements of a part of a long function. Shorter ones compile no faster; longer ones do not run faster (``docs/speed.md``)."""
+"""Statements of a part of a long function.
+
+Shorter ones compile no faster; longer ones do not run faster (``docs/speed.md``).
+"""
 
 Format = Callable[[float], str]
 
 
 def literal(precision: Precision) -> Format:
-    """Return how a number is written in C, so that it is read as the same number again, or as the nearest single."""
+    """Return how a number is written in C, so that it is read as the same number again, or as the
+    nearest single.
+    """
     single = precision == "single"
 
     def write(value: float) -> str:
@@ -35,7 +42,10 @@ def literal(precision: Precision) -> Format:
         if math.isinf(number):
             if math.isfinite(value):
                 largest = np.finfo(np.float32).max
-                raise SizeError(f"the number {value:g} is too large for single precision, which ends at {largest:.3g}")
+                raise SizeError(
+                    f"the number {value:g} is too large for single precision, which ends at"
+                    f" {largest:.3g}"
+                )
             return "-INFINITY" if number < 0 else "INFINITY"
         if math.isnan(number):
             return "NAN"
@@ -51,13 +61,16 @@ def function_name(name: str, precision: Precision) -> str:
     return f"{name}f" if precision == "single" else name
 
 
-def print_functions(functions: Mapping[str, ca.Function], precision: Precision, *, prefix: str, packs: bool = False) -> str:
-    """Return static C functions, each ``void NAME(const casadi_real** arg, casadi_real** res)``, of SX functions by name.
+def print_functions(
+    functions: Mapping[str, ca.Function], precision: Precision, *, prefix: str, packs: bool = False
+) -> str:
+    """Return static C functions, each ``void NAME(const casadi_real** arg, casadi_real** res)``, of
+    SX functions by name.
 
-    ``casadi_real`` is for the caller to define: a number of the precision, or with ``packs`` a pack of ``lanes_real``. Names of
-    tables begin with ``prefix``. Nothing of it allocates, recurs, or is seen outside. Raises :class:`.DeclarationError` for a
-    function that calls another one, or does what C has no name for; :class:`.SizeError` for a number that is too large for
-    single precision.
+    ``casadi_real`` is for the caller to define: a number of the precision, or with ``packs`` a pack
+    of ``lanes_real``. Names of tables begin with ``prefix``. Nothing of it allocates, recurs, or is
+    seen outside. Raises :class:`.DeclarationError` for a function that calls another one, or does
+    what C has no name for; :class:`.SizeError` for a number that is too large for single precision.
     """
     printer = _Printer(precision, prefix, packs, {})
     bodies = [printer.function(name, function) for name, function in functions.items()]
@@ -75,7 +88,9 @@ class _Statement:
 
 @dataclass(frozen=True, eq=False)
 class _Printer:
-    """What writes functions in a precision, for packs or not; ``looked_up`` are the tables that they call, by CasADi's name."""
+    """What writes functions in a precision, for packs or not; ``looked_up`` are the tables that
+    they call, by CasADi's name.
+    """
 
     precision: Precision
     prefix: str
@@ -86,20 +101,30 @@ class _Printer:
         """Return a function, in parts where it is long."""
         statements = list(self._statements(function))
         short = len(statements) <= 2 * LENGTH
-        return _whole(name, statements) if short else _in_parts(name, statements, "LAGRANGE_CASADI_PART " if self.packs else "")
+        return (
+            _whole(name, statements)
+            if short
+            else _in_parts(name, statements, "LAGRANGE_CASADI_PART " if self.packs else "")
+        )
 
     def tables(self) -> Iterator[str]:
         """Return the C of the tables that were called."""
         for name, table in self.looked_up.values():
             if self.packs:
-                yield self._table(table, f"{name}_of", "lanes_real") + _PACK.format(name=name, one=f"{name}_of")
+                yield self._table(table, f"{name}_of", "lanes_real") + _PACK.format(
+                    name=name, one=f"{name}_of"
+                )
             else:
                 yield self._table(table, name, "casadi_real")
 
     def _table(self, table: Lookup, name: str, real: str) -> str:
         numbers = table.numbers[1:-1] if table.kind == "cell" else table.numbers
-        lines = ",\n    ".join(map(", ".join, _rows(map(literal(self.precision), numbers.tolist()), 4)))
-        return (_CELL if table.kind == "cell" else _ENTRY).format(name=name, real=real, count=numbers.size, numbers=lines)
+        lines = ",\n    ".join(
+            map(", ".join, _rows(map(literal(self.precision), numbers.tolist()), 4))
+        )
+        return (_CELL if table.kind == "cell" else _ENTRY).format(
+            name=name, real=real, count=numbers.size, numbers=lines
+        )
 
     def _called(self, table: Lookup) -> str:
         name = f"{self.prefix}_{table.kind}{len(self.looked_up)}"
@@ -137,16 +162,28 @@ class _Printer:
             return f"{self._called(step.looked_up)}({given[0]})"
         if step.operation in _LIBRARY:
             return f"{function_name(_LIBRARY[step.operation], self.precision)}({', '.join(given)})"
-        form = (_OF_PACKS if self.packs else _OF_NUMBERS).get(step.operation) or _WRITTEN.get(step.operation)
+        form = (_OF_PACKS if self.packs else _OF_NUMBERS).get(step.operation) or _WRITTEN.get(
+            step.operation
+        )
         if form is None:
-            what = "calls another one" if step.operation == ca.OP_CALL else f"takes {operation_name(step.operation)}"
-            raise DeclarationError(f"function '{function.name()}' has no C: it {what}; evaluate with backend 'vm'")
+            what = (
+                "calls another one"
+                if step.operation == ca.OP_CALL
+                else f"takes {operation_name(step.operation)}"
+            )
+            raise DeclarationError(
+                f"function '{function.name()}' has no C: it {what}; evaluate with backend 'vm'"
+            )
         return form.format(*given, one=literal(self.precision)(1.0))
 
 
 def _same(step: Step) -> bool:
-    """Return whether an instruction changes nothing, as the sign that keeps a sum from being simplified: see :func:`.closed`."""
-    return step.operation == ca.OP_ASSIGN or (step.operation == ca.OP_COPYSIGN and step.arguments[0] == step.arguments[1])
+    """Return whether an instruction changes nothing, as the sign that keeps a sum from being
+    simplified: see :func:`.closed`.
+    """
+    return step.operation == ca.OP_ASSIGN or (
+        step.operation == ca.OP_COPYSIGN and step.arguments[0] == step.arguments[1]
+    )
 
 
 _LIBRARY = {
@@ -154,8 +191,35 @@ _LIBRARY = {
     **{
         getattr(ca, f"OP_{name.upper()}"): name
         for name in (
-            *("pow", "atan2", "hypot", "fmin", "fmax", "fmod", "remainder", "copysign", "sqrt", "fabs", "floor", "ceil", "erf"),
-            *("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh"),
+            *(
+                "pow",
+                "atan2",
+                "hypot",
+                "fmin",
+                "fmax",
+                "fmod",
+                "remainder",
+                "copysign",
+                "sqrt",
+                "fabs",
+                "floor",
+                "ceil",
+                "erf",
+            ),
+            *(
+                "sin",
+                "cos",
+                "tan",
+                "asin",
+                "acos",
+                "atan",
+                "sinh",
+                "cosh",
+                "tanh",
+                "asinh",
+                "acosh",
+                "atanh",
+            ),
             *("exp", "log", "log1p", "expm1"),
         )
     },
@@ -226,16 +290,20 @@ _HEAD = "static {part}void {name}(const casadi_real** arg, casadi_real** res{mor
 
 def _whole(name: str, statements: list[_Statement]) -> str:
     """Return a function in one piece."""
-    variables = sorted({statement.target for statement in statements if statement.target is not None})
+    variables = sorted(
+        {statement.target for statement in statements if statement.target is not None}
+    )
     body = "".join(f"  {statement.text}\n" for statement in statements)
     head = _HEAD.format(part="", name=name, more="") + _unused(body, "arg", "res")
     return f"{head}{_declared(f'a{variable}' for variable in variables)}{body}}}\n"
 
 
 def _in_parts(name: str, statements: list[_Statement], noinline: str) -> str:
-    """Return a long function in parts: a compiler's time grows faster than the length of a function.
+    """Return a long function in parts: a compiler's time grows faster than the length of a
+    function.
 
-    A part takes first, from an array ``a``, what parts before it computed, and leaves there what later ones read.
+    A part takes first, from an array ``a``, what parts before it computed, and leaves there what
+    later ones read.
     """
     parts = [statements[i : i + LENGTH] for i in range(0, len(statements), LENGTH)]
     flows = [_flow(part) for part in parts]

@@ -1,4 +1,6 @@
-"""Programs that are started here, compilers mostly: within a time limit, and ended with all that they started in turn."""
+"""Programs that are started here, compilers mostly: within a time limit, and ended with all that
+they started in turn.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,10 @@ _GRACE = 0.5
 
 
 def limit() -> float:
-    """Seconds that a compiler may take for one file. Raises :class:`CompilerError` where the variable is no number above 0."""
+    """Seconds that a compiler may take for one file.
+
+    Raises :class:`CompilerError` where the variable is no number above 0.
+    """
     text = os.environ.get(VARIABLE, "").strip()
     try:
         seconds = real(text) if text else _LIMIT
@@ -30,18 +35,23 @@ def limit() -> float:
             raise ValueError
     except ValueError:
         raise CompilerError(
-            f"${VARIABLE} = '{text}': expected a number of seconds above 0; without it they are {_LIMIT:g}"
+            f"${VARIABLE} = '{text}': expected a number of seconds above 0; without it they are"
+            f" {_LIMIT:g}"
         ) from None
     return min(seconds, _LONGEST)
 
 
 def run(
-    command: Sequence[str], seconds: float, folder: Path | None = None, variables: Mapping[str, str] | None = None
+    command: Sequence[str],
+    seconds: float,
+    folder: Path | None = None,
+    variables: Mapping[str, str] | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """Run a program to its end, in a folder, with ``variables`` besides those of this process; what it says is read as UTF-8,
-    whatever it is.
+    """Run a program to its end, in a folder, with ``variables`` besides those of this process; what
+    it says is read as UTF-8, whatever it is.
 
-    Raises ``OSError`` where it cannot be started, ``subprocess.TimeoutExpired`` where it has not ended in time.
+    Raises ``OSError`` where it cannot be started, ``subprocess.TimeoutExpired`` where it has not
+    ended in time.
     """
     process = None
     try:
@@ -66,7 +76,9 @@ def run(
 
 
 def _end(process: subprocess.Popen[str]) -> None:
-    """End a program and what it started: a compiler's driver has others do its work, which hold its pipes open."""
+    """End a program and what it started: a compiler's driver has others do its work, which hold its
+    pipes open.
+    """
     for number in (signal.SIGTERM, getattr(signal, "SIGKILL", signal.SIGTERM)):
         with suppress(OSError):
             if hasattr(os, "killpg"):

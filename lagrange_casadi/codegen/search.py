@@ -1,7 +1,9 @@
-"""The search for peaks in C: one library for every scene, which is handed its curves as tables, and what evaluates them.
+"""The search for peaks in C: one library for every scene, which is handed its curves as tables, and
+what evaluates them.
 
-It does what :mod:`..summits.search` does, which is the reference. The compiled code of many designs calls it with a pointer to its
-own function of times; :meth:`Search.peaks` calls it with a function of Python's.
+It does what :mod:`..summits.search` does, which is the reference. The compiled code of many designs
+calls it with a pointer to its own function of times; :meth:`Search.peaks` calls it with a function
+of Python's.
 """
 
 from __future__ import annotations
@@ -36,7 +38,9 @@ _ROOM = "lagrange_casadi_search_room"
 CURVES = Call(
     "lagrange_casadi_curves",
     {
-        **dict.fromkeys(("quantities", "curves", "places", "watches", "knots", "units"), "long long"),
+        **dict.fromkeys(
+            ("quantities", "curves", "places", "watches", "knots", "units"), "long long"
+        ),
         "quantity": "const int*",
         "first": "const int*",
         "unit": "const int*",
@@ -48,18 +52,20 @@ CURVES = Call(
         "knot": "const double*",
     },
 )
-"""What is searched. Of each curve its ``quantity``, its ``link`` or -1, and where along that it is ``placed``: a row of places, or
-:data:`BASE`, :data:`TIP`, :data:`OFF`; of each quantity its ``first`` curve, and the number of its ``unit``; of what is watched its
-kind and the ``watch_first`` of the numbers ``watch_at``."""
+"""What is searched. Of each curve its ``quantity``, its ``link`` or -1, and where along that it is
+``placed``: a row of places, or :data:`BASE`, :data:`TIP`, :data:`OFF`; of each quantity its
+``first`` curve, and the number of its ``unit``; of what is watched its kind and the ``watch_first``
+of the numbers ``watch_at``."""
 
 BASE, TIP, OFF = -1, -2, -3
 
 AT = """\
-typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need, real* out,
-                               long long apart);
+typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need,
+                               real* out, long long apart);
 """
-"""What evaluates curves: at so many times, of the links that ``need`` tells by bits, into rows that lie ``apart``: of curves, of
-their places, of what is watched. It returns 0, or another number to end the search."""
+"""What evaluates curves: at so many times, of the links that ``need`` tells by bits, into rows that
+lie ``apart``: of curves, of their places, of what is watched. It returns 0, or another number to
+end the search."""
 
 CALL = Call(
     "lagrange_casadi_search_call",
@@ -125,9 +131,18 @@ def interface(precision: Precision) -> str:
 
 def source(precision: Precision) -> str:
     """The C of the search."""
-    text = ("#define LANES_SINGLE\n" if precision == "single" else "") + START + _PRELUDE + interface(precision)
-    text += "".join(f"#define SEARCH_{name} {value}\n" for name, value in _macros(precision).items())
-    return text + "".join("\n" + resources.files(__package__).joinpath(name).read_text() for name in _FILES)
+    text = (
+        ("#define LANES_SINGLE\n" if precision == "single" else "")
+        + START
+        + _PRELUDE
+        + interface(precision)
+    )
+    text += "".join(
+        f"#define SEARCH_{name} {value}\n" for name, value in _macros(precision).items()
+    )
+    return text + "".join(
+        "\n" + resources.files(__package__).joinpath(name).read_text() for name in _FILES
+    )
 
 
 _PRELUDE = """\
@@ -212,7 +227,9 @@ class Tables:
                 "link": link,
                 "placed": placed,
                 "watch": [watch.kind for watch in watches],
-                "watch_first": itertools.accumulate((len(watch.at) for watch in watches), initial=0),
+                "watch_first": itertools.accumulate(
+                    (len(watch.at) for watch in watches), initial=0
+                ),
             }.items()
         }
         arrays["watch_at"] = np.array([x for watch in watches for x in watch.at], DTYPES[precision])
@@ -242,17 +259,36 @@ class Search:
         """Where compiled code finds it."""
         return ctypes.cast(self.entry, ctypes.c_void_p).value
 
-    def call(self, tables: Tables, together: int, **members: float | None) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
-        """A call for some curves, of which ``together`` times are evaluated at once, and its room; other members are left out."""
-        given = dict.fromkeys(CALL.members, 0) | {"curves": ctypes.addressof(tables.struct), "together": together} | members
-        made = CALL.made(**{name: value or (None if CALL.members[name].endswith("*") else 0) for name, value in given.items()})
+    def call(
+        self, tables: Tables, together: int, **members: float | None
+    ) -> tuple[ctypes.Structure, npt.NDArray[np.int8]]:
+        """A call for some curves, of which ``together`` times are evaluated at once, and its room;
+        other members are left out.
+        """
+        given = (
+            dict.fromkeys(CALL.members, 0)
+            | {"curves": ctypes.addressof(tables.struct), "together": together}
+            | members
+        )
+        made = CALL.made(
+            **{
+                name: value or (None if CALL.members[name].endswith("*") else 0)
+                for name, value in given.items()
+            }
+        )
         self.room(made)
         room = np.empty(made.size + 4 * _LINE, np.int8)
         made.room = room.ctypes.data + -room.ctypes.data % (4 * _LINE)
         return made, room
 
     def peaks(
-        self, source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags, listed: Listed | None = None
+        self,
+        source: CurveSource,
+        curves: Curves,
+        t: Array,
+        samples: Samples,
+        hiding: Flags,
+        listed: Listed | None = None,
     ) -> Peaks:
         """The same as :func:`..summits.search.peaks`; what ``source`` raises is raised."""
         values, places, watched = samples
@@ -267,16 +303,23 @@ class Search:
             curves.watches,
             curves.knots,
         )
-        # What is before the first value and beyond the last is the search's to write; packs go on beyond the last.
+        # What is before the first value and beyond the last is the search's to write; packs go on
+        # beyond the last.
         rows = np.zeros((count + along.size + len(watched), n + 4 * _LINE))
         own = rows[:, _LINE : -2 * _LINE]
-        own[:] = np.pad(np.concatenate([values, places[along], watched]), ((0, 0), (0, _LINE)), mode="edge")
+        own[:] = np.pad(
+            np.concatenate([values, places[along], watched]), ((0, 0), (0, _LINE)), mode="edge"
+        )
         scales = np.zeros(max(curves.units) + 1)
         scales[: len(curves.scales)] = curves.scales
         hidden = np.zeros((2, rows.shape[1]), np.int8)
         hidden[0, : n - 1] = hiding
         asked = _Asked(source, along)
-        found, told, begin = np.empty((3, quantities)), np.zeros(quantities, np.int8), rows.ctypes.data + _LINE * rows.itemsize
+        found, told, begin = (
+            np.empty((3, quantities)),
+            np.zeros(quantities, np.int8),
+            rows.ctypes.data + _LINE * rows.itemsize,
+        )
         tops = np.empty((quantities, TOPS, 4)) if listed else None
         most = np.fmax.reduce(np.abs(values), axis=1, initial=0.0)
         call, room = self.call(
@@ -338,13 +381,20 @@ class _Asked:
 
 
 @functools.lru_cache(maxsize=8)
-def load_search(compiler: Compiler, extra: tuple[str, ...] = (), precision: Precision = "double") -> Search:
-    """Build the search, or take it from the cache, and load it; ``extra`` flags come after the package's own.
+def load_search(
+    compiler: Compiler, extra: tuple[str, ...] = (), precision: Precision = "double"
+) -> Search:
+    """Build the search, or take it from the cache, and load it; ``extra`` flags come after the
+    package's own.
 
     Raises :class:`CompilerError`.
     """
     library = loaded(packed(source(precision), compiler), compiler, extra)
     try:
-        return Search(CALL.declare(getattr(library, FUNCTION)), CALL.declare(getattr(library, _ROOM)), precision)
+        return Search(
+            CALL.declare(getattr(library, FUNCTION)),
+            CALL.declare(getattr(library, _ROOM)),
+            precision,
+        )
     except AttributeError as error:
         raise broken(compiler, error) from None

@@ -1,11 +1,13 @@
 """The stages of an instant: the functions that are called one after another to evaluate it.
 
-First the drive, which gives the driven coordinates and their rates at a time; then, where loops are iterated, a Newton step of
-theirs, as often as it takes; last the instant itself, all that follows from both.
+First the drive, which gives the driven coordinates and their rates at a time; then, where loops are
+iterated, a Newton step of theirs, as often as it takes; last the instant itself, all that follows
+from both.
 
-What is *counted* (time, driven coordinates, and sums, products and whole parts of them) grows with the turns; nothing else does.
-Where turns are few, the drive hands on time and coordinates as they are. Where they are many, or numbers are single, all that is
-counted is followed in pairs (:mod:`.compensated`), and handed on when it is small again: an angle under a sine or cosine without
+What is *counted* (time, driven coordinates, and sums, products and whole parts of them) grows with
+the turns; nothing else does. Where turns are few, the drive hands on time and coordinates as they
+are. Where they are many, or numbers are single, all that is counted is followed in pairs
+(:mod:`.compensated`), and handed on when it is small again: an angle under a sine or cosine without
 its whole turns, the rest rounded once. What comes after does not know the difference.
 """
 
@@ -30,7 +32,9 @@ from ..base.vocabulary import Precision
 from ..equations.program import Program
 
 FEW_TURNS = 128.0
-"""Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""
+"""Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in
+each rounding.
+"""
 
 _SAMPLES = 65
 
@@ -39,9 +43,9 @@ _SAMPLES = 65
 class Stages(Graphs):
     """The functions of an instant, in a precision.
 
-    ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction, size)`` where loops are iterated;
-    ``instant(counted, d_rate, d_acceleration, z, p) -> out``. The drive of single precision takes t and p as pairs, all the rests
-    after all the values.
+    ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction,
+    size)`` where loops are iterated; ``instant(counted, d_rate, d_acceleration, z, p) -> out``. The
+    drive of single precision takes t and p as pairs, all the rests after all the values.
     """
 
     drive: Any
@@ -57,7 +61,11 @@ def plain(graph: Program) -> Stages:
     """The stages of a graph in doubles that count turns themselves."""
     t, d, rate, acceleration, z, p = graph.instant.sx_in()
     counted = ca.vertcat(t, d)
-    instant = ca.Function("instant", [counted, rate, acceleration, z, p], graph.instant.call([t, d, rate, acceleration, z, p]))
+    instant = ca.Function(
+        "instant",
+        [counted, rate, acceleration, z, p],
+        graph.instant.call([t, d, rate, acceleration, z, p]),
+    )
     loops = None
     if graph.newton is not None:
         loops = ca.Function("loops", [z, counted, p], graph.newton.step.call([z, t, d, p]))
@@ -69,10 +77,18 @@ def plain(graph: Program) -> Stages:
 @symbolic
 @functools.lru_cache(maxsize=32)
 def compensated(graph: Program, precision: Precision) -> Stages:
-    """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
+    """The stages of a graph in pairs.
+
+    Raises :class:`DeclarationError` for a graph that cannot be followed.
+    """
     pairs, single = Pairs(precision), precision == "single"
-    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
-    t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
+    time, parameters = (
+        ca.SX.sym("t", 2 if single else 1),
+        ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1),
+    )
+    t_pair, *p_pairs = (
+        Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters))
+    )
     driven, *changes = interpret(graph.laws.motion, [[t_pair], p_pairs], pairs.arithmetic)
     # As a controller gives them: see controlled().
     driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
@@ -84,11 +100,13 @@ def compensated(graph: Program, precision: Precision) -> Stages:
 
 @dataclass(frozen=True, eq=False)
 class Controlled(Graphs):
-    """The functions of an instant whose drives are given, not prescribed: for code that a controller calls.
+    """The functions of an instant whose drives are given, not prescribed: for code that a
+    controller calls.
 
-    ``law(t, p) -> (d, d_rate, d_acceleration)`` is the law of the drives; ``count(moment, p) -> counted`` stands for the drive of
-    :class:`Stages`, of which ``loops`` and ``instant`` are. A moment is the time and the driven coordinates; in single precision
-    all of them once more follow, what rounding them to single left. So do t and d; parameters do not.
+    ``law(t, p) -> (d, d_rate, d_acceleration)`` is the law of the drives; ``count(moment, p) ->
+    counted`` stands for the drive of :class:`Stages`, of which ``loops`` and ``instant`` are. A
+    moment is the time and the driven coordinates; in single precision all of them once more follow,
+    what rounding them to single left. So do t and d; parameters do not.
     """
 
     law: Any
@@ -100,24 +118,33 @@ class Controlled(Graphs):
 
 @symbolic
 @functools.lru_cache(maxsize=32)
-def controlled(graph: Program, precision: Precision, fixed: tuple[float, ...] | None = None) -> Controlled:
-    """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.
+def controlled(
+    graph: Program, precision: Precision, fixed: tuple[float, ...] | None = None
+) -> Controlled:
+    """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in
+    singles pairs do.
 
-    Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other constants. Raises
-    :class:`DeclarationError` for a graph that cannot be followed in pairs.
+    Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other
+    constants. Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
     """
     names = ["moment", "p"]
     if precision == "double":
         stages, p = plain(graph), graph.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
-        return Controlled(graph.laws.motion, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
+        return Controlled(
+            graph.laws.motion,
+            ca.Function("count", [moment, p], [moment], names, ["counted"]),
+            *_others(stages),
+        )
     pairs, rows = Pairs(precision), 1 + len(graph.driven)
     moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
     known = [Pair(x) for x in _split(p)] if fixed is None else [pairs.constant(x) for x in fixed]
     handed, loops, instant = _counted(graph, pairs, t, driven, known)
     count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
-    return Controlled(_paired_law(graph.laws.motion, pairs, p, known), count, loops, instant, precision)
+    return Controlled(
+        _paired_law(graph.laws.motion, pairs, p, known), count, loops, instant, precision
+    )
 
 
 def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
@@ -129,17 +156,30 @@ def _rest(pair: Pair) -> Any:
 
 
 def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any:
-    """The motion of drives by a time in pairs, each coordinate as a pair; ``known`` are the parameters."""
+    """The motion of drives by a time in pairs, each coordinate as a pair; ``known`` are the
+    parameters.
+    """
     time = ca.SX.sym("t", 2)
     values, *changes = interpret(smooth, [[Pair(time[0], time[1])], known], pairs.arithmetic)
     found = [[x.high for x in values], [_rest(x) for x in values]]
     found += [[pair.value for pair in row] for row in changes]
-    return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
+    return ca.Function(
+        "law",
+        [time, p],
+        [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])],
+        {"cse": True},
+    )
 
 
 def stages_for(graph: Program, precision: Precision, t: Array, p: Array) -> Stages:
-    """Those for instants and parameters: in pairs where numbers are single, and where angles count many turns."""
-    return compensated(graph, precision) if precision == "single" or turns_many(graph, t, p) else plain(graph)
+    """Those for instants and parameters: in pairs where numbers are single, and where angles count
+    many turns.
+    """
+    return (
+        compensated(graph, precision)
+        if precision == "single" or turns_many(graph, t, p)
+        else plain(graph)
+    )
 
 
 def turns_many(graph: Program, t: Array, p: Array) -> bool:
@@ -155,14 +195,17 @@ def turns_many(graph: Program, t: Array, p: Array) -> bool:
 def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
     """The largest counted angle under a sine or cosine [rad], or of which whole turns are taken.
 
-    What is counted is a row over the instants, what parameters set a number, and anything else nothing.
+    What is counted is a row over the instants, what parameters set a number, and anything else
+    nothing.
     """
     angles = [0.0]
     known = numpy_arithmetic().operations
 
     def measured(code: int, *values: Any) -> Any:
         if np.ndim(values[0]) and code in _PHASES | REMAINDERS | {ca.OP_FLOOR}:
-            angles.append(float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0))
+            angles.append(
+                float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0)
+            )
         return known[code](*values)
 
     def counted(code: int, *values: Any) -> Any:
@@ -172,7 +215,8 @@ def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) 
         return found if code in _FOLLOWED or not np.ndim(found) else None
 
     following, of_counted = (
-        Arithmetic(np.float64, {code: functools.partial(rule, code) for code in known}) for rule in (measured, counted)
+        Arithmetic(np.float64, {code: functools.partial(rule, code) for code in known})
+        for rule in (measured, counted)
     )
     t = np.array(instants)
     unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(graph.driven)
@@ -186,7 +230,8 @@ def _largest(graph: Program, instants: tuple[float, ...], p: tuple[float, ...]) 
 
 @dataclass(frozen=True, eq=False)
 class _Value:
-    """A value of a stage: as it is evaluated at an instant, and as a pair where it can be followed in pairs.
+    """A value of a stage: as it is evaluated at an instant, and as a pair where it can be followed
+    in pairs.
 
     ``fixed`` is what parameters alone set.
     """
@@ -197,7 +242,9 @@ class _Value:
 
 
 class _Counting:
-    """Arithmetic that follows in pairs what is counted, and makes a symbol where it goes over into what is not."""
+    """Arithmetic that follows in pairs what is counted, and makes a symbol where it goes over into
+    what is not.
+    """
 
     def __init__(self, pairs: Pairs) -> None:
         self.pairs = pairs
@@ -213,14 +260,20 @@ class _Counting:
         return _Value(lookup.function(self.settled(value)))
 
     def constant(self, value: float) -> _Value:
-        return _Value(ca.SX(value), self.pairs.turn if value == math.tau else self.pairs.constant(value), fixed=True)
+        return _Value(
+            ca.SX(value),
+            self.pairs.turn if value == math.tau else self.pairs.constant(value),
+            fixed=True,
+        )
 
     def apply(self, code: int, *values: _Value) -> _Value:
         pairs = [value.pair for value in values if value.pair is not None]
         if len(pairs) < len(values):
             return _Value(self._plain(code, values))
         if all(value.fixed for value in values):
-            return _Value(self._plain(code, values), self.pairs.operations[code](*pairs), fixed=True)
+            return _Value(
+                self._plain(code, values), self.pairs.operations[code](*pairs), fixed=True
+            )
         if code in _FOLLOWED:
             return _Value(pair=self.pairs.operations[code](*pairs))
         if code in REMAINDERS:
@@ -246,8 +299,13 @@ class _Counting:
         return applied(code, *map(self.settled, values))
 
     def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Any:
-        """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest others take their place."""
-        key = (kind, *(None if part is None else part.element_hash() for part in (pair.high, pair.low)))
+        """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest
+        others take their place.
+        """
+        key = (
+            kind,
+            *(None if part is None else part.element_hash() for part in (pair.high, pair.low)),
+        )
         if key not in self.symbols:
             self.symbols[key] = ca.SX.sym(f"{kind}{len(self.symbols)}"), made(pair), pair
         return self.symbols[key][0]
@@ -260,20 +318,56 @@ _FOLLOWED = {
 }
 
 
-def _counted(graph: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:
-    """What the drive hands on of time and driven coordinates, and the loops and the instant that take it."""
+def _counted(
+    graph: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
+) -> tuple[Any, Any | None, Any]:
+    """What the drive hands on of time and driven coordinates, and the loops and the instant that
+    take it.
+    """
     counting = _Counting(pairs)
     _, _, rate, acceleration, z, symbols = graph.instant.sx_in()
     t_value, d_values = _Value(pair=t), [_Value(pair=pair) for pair in driven]
-    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)]
-    z_values, rates, accelerations = ([_Value(x) for x in _split(column)] for column in (z, rate, acceleration))
-    found = [interpret(graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic)] if graph.newton else []
-    found.append(interpret(graph.instant, [[t_value], d_values, rates, accelerations, z_values, p_values], counting.arithmetic))
-    results = [[_column([counting.settled(value) for value in output]) for output in outputs] for outputs in found]
+    p_values = [
+        _Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)
+    ]
+    z_values, rates, accelerations = (
+        [_Value(x) for x in _split(column)] for column in (z, rate, acceleration)
+    )
+    found = (
+        [
+            interpret(
+                graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic
+            )
+        ]
+        if graph.newton
+        else []
+    )
+    found.append(
+        interpret(
+            graph.instant,
+            [[t_value], d_values, rates, accelerations, z_values, p_values],
+            counting.arithmetic,
+        )
+    )
+    results = [
+        [_column([counting.settled(value) for value in output]) for output in outputs]
+        for outputs in found
+    ]
     counted, handed = counting.handed()
     names = ["counted", "d_rate", "d_acceleration", "z", "p"]
-    instant = ca.Function("instant", [counted, rate, acceleration, z, symbols], results[-1], names, ["out"], {"cse": True})
-    loops = ca.Function("loops", [z, counted, symbols], results[0], {"cse": True}) if graph.newton else None
+    instant = ca.Function(
+        "instant",
+        [counted, rate, acceleration, z, symbols],
+        results[-1],
+        names,
+        ["out"],
+        {"cse": True},
+    )
+    loops = (
+        ca.Function("loops", [z, counted, symbols], results[0], {"cse": True})
+        if graph.newton
+        else None
+    )
     return handed, loops, instant
 
 

@@ -1,4 +1,6 @@
-"""Errors for curves that a motion cannot follow: a kink, a jump, or an instant that is other than both sides of it."""
+"""Errors for curves that a motion cannot follow: a kink, a jump, or an instant that is other than
+both sides of it.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from ..errors import DeclarationError
 
 @dataclass(frozen=True)
 class Kink:
-    """A place, by symbol, at which a value or a slope jumps; by what part of it, infinite where it has no limit."""
+    """A place, by symbol, at which a value or a slope jumps; by what part of it, infinite where it
+    has no limit.
+    """
 
     what: str
     jump: float
@@ -24,15 +28,17 @@ class Kink:
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` has the kink."""
         return DeclarationError(
-            f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a curve "
-            "whose slope does not jump, of CasADi's functions: in place of a table, a curve(x, y), a "
-            "polynomial or a Fourier sum"
+            f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a"
+            " curve whose slope does not jump, of CasADi's functions: in place of a table, a"
+            " curve(x, y), a polynomial or a Fourier sum"
         )
 
 
 @dataclass(frozen=True)
 class Isolated:
-    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides of it."""
+    """An instant, by symbol, at which a value, a slope or a curvature is other than on both sides
+    of it.
+    """
 
     what: str
     at: Mapping[str, float]
@@ -43,9 +49,9 @@ class Isolated:
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` is isolated at an instant."""
         return DeclarationError(
-            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a curve without "
-            "if_else, fabs, sign, floor and the like that touch a place there: in place of if_else(x == 0, 1, sin(x)/x) "
-            "a series where x is small"
+            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a"
+            " curve without if_else, fabs, sign, floor and the like that touch a place there: in"
+            " place of if_else(x == 0, 1, sin(x)/x) a series where x is small"
         )
 
 

@@ -1,6 +1,8 @@
-"""Paths along which nothing comes near to where it may make a kink: by bounds over whole stretches of them.
+"""Paths along which nothing comes near to where it may make a kink: by bounds over whole stretches
+of them.
 
-Most motions and constraints of most designs are far from every kink, and need not be looked at instant by instant.
+Most motions and constraints of most designs are far from every kink, and need not be looked at
+instant by instant.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ class _Kept(threading.local):
 
 
 class Clearance:
-    """What says that ``marks(x, p)`` stay off zero, or off whole numbers if ``whole``, all along a path.
+    """What says that ``marks(x, p)`` stay off zero, or off whole numbers if ``whole``, all along a
+    path.
 
     What stays the same there makes no kink either, unless it is ``open``.
     """
@@ -46,23 +49,33 @@ class Clearance:
 
     @symbolic_property
     def _near(self) -> Any:
-        """The function ``(low, high, p, most) -> (near, most)`` of bounds of what is seen: whether any mark may come near.
+        """The function ``(low, high, p, most) -> (near, most)`` of bounds of what is seen: whether
+        any mark may come near.
 
         ``most`` are the largest sizes that marks are compared with, beside their own.
         """
         symbols, rows, width = boxed(self._marks)
         beside = ca.SX.sym("most", len(rows))
         clear, sizes = ca.SX(width < np.inf), []
-        for (low, high), whole, open_, of in zip(rows, self._whole, self._open, ca.vertsplit(beside), strict=True):
+        for (low, high), whole, open_, of in zip(
+            rows, self._whole, self._open, ca.vertsplit(beside), strict=True
+        ):
             sizes.append(ca.fmax(of, ca.fmax(ca.fabs(low), ca.fabs(high))))
             room = _NEAR * sizes[-1]
-            off = ca.floor(low - room) == ca.floor(high + room) if whole else ca.logic_or(low > room, high < -room)
+            off = (
+                ca.floor(low - room) == ca.floor(high + room)
+                if whole
+                else ca.logic_or(low > room, high < -room)
+            )
             clear = ca.logic_and(clear, off if open_ else ca.logic_or(off, low == high))
         found = [1.0 - clear, ca.vertcat(*sizes)]
-        return ca.Function("near", [*symbols, beside], [ca.densify(one) for one in found], {"cse": True})
+        return ca.Function(
+            "near", [*symbols, beside], [ca.densify(one) for one in found], {"cse": True}
+        )
 
     def near(self, low: Array, high: Array, p: Array, paths: Callable[[Flags], Array]) -> Flags:
-        """Of which paths within ``low`` and ``high`` (d, symbols) a mark may come near, for values ``p`` (d, fixed) of each.
+        """Of which paths within ``low`` and ``high`` (d, symbols) a mark may come near, for values
+        ``p`` (d, fixed) of each.
 
         ``paths`` gives some of them, (d, symbols, n), of straight steps.
         """
@@ -75,18 +88,26 @@ class Clearance:
         first, last, many = ends[:-1], ends[1:], ends.size - 1
         if many < 2:
             return near
-        bounds = [of(of.reduceat(rows, first, axis=2)[..., :many], rows[..., last]) for of in (np.minimum, np.maximum)]
+        bounds = [
+            of(of.reduceat(rows, first, axis=2)[..., :many], rows[..., last])
+            for of in (np.minimum, np.maximum)
+        ]
         low, high = (np.moveaxis(of, 1, 2).reshape(-1, rows.shape[1]) for of in bounds)
-        found, _ = self._looked(low, high, np.repeat(p[near], many, axis=0), np.repeat(most[near], many, axis=0))
+        found, _ = self._looked(
+            low, high, np.repeat(p[near], many, axis=0), np.repeat(most[near], many, axis=0)
+        )
         near[near] = found.reshape(-1, many).any(axis=1)
         return near
 
     def _looked(self, low: Array, high: Array, p: Array, most: Any) -> tuple[Flags, Array]:
-        """Whether any mark comes near within boxes (d, symbols), and how large marks are there (d, marks)."""
+        """Whether any mark comes near within boxes (d, symbols), and how large marks are there (d,
+        marks).
+        """
         count = len(low)
         calls = self._kept.calls
         if count not in calls:
-            # Blocks of designs, and prepared scenes, go on asking for as many, and as many stretches of a few.
+            # Blocks of designs, and prepared scenes, go on asking for as many, and as many
+            # stretches of a few.
             if len(calls) >= _KEPT:
                 calls.clear()
             calls[count] = bound(self._near, count)
@@ -98,7 +119,9 @@ class Clearance:
 
 
 def bound(function: Any, count: int) -> tuple[list[Array], list[Array], Callable[[], None], Any]:
-    """Arrays (count, rows) of the arguments and results of a function, what fills these by those, and what must live for it."""
+    """Arrays (count, rows) of the arguments and results of a function, what fills these by those,
+    and what must live for it.
+    """
     given = [np.empty((count, function.size1_in(k))) for k in range(function.n_in())]
     found = [np.empty((count, function.size1_out(k))) for k in range(function.n_out())]
     mapped = function.map(count) if count > 1 else function

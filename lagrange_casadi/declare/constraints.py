@@ -19,10 +19,13 @@ def constraint(own: Ownership, name: str, phi: Any) -> Constraint:
     phi = own.expression(f"constraint '{name}'", phi, moving=True)
     if not isinstance(phi, ca.SX) or not ca.depends_on(phi, m.measures.places):
         raise DeclarationError(
-            f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT), place(POINT) or direction(LINK)"
+            f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT),"
+            " place(POINT) or direction(LINK)"
         )
     if ca.depends_on(phi, m.measures.rates):
-        raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
+        raise DeclarationError(
+            f"constraint '{name}' depends on rates; declare it with nonholonomic()"
+        )
     return Constraint(name, phi)
 
 
@@ -33,11 +36,15 @@ def row(own: Ownership, name: str, expression: Any, replaces: Joint) -> Row:
     what = f"non-holonomic constraint '{name}'"
     expression = own.expression(what, expression, moving=True)
     if not isinstance(expression, ca.SX) or not ca.depends_on(expression, m.measures.rates):
-        raise DeclarationError(f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)")
+        raise DeclarationError(
+            f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)"
+        )
     if ca.depends_on(ca.jacobian(expression, m.measures.rates), m.measures.rates):
         raise DeclarationError(f"{what} must be linear in the rates")
     found = Row(name, expression, own.joint(replaces).name)
     for other in m.rows.values():
         if other.replaces == found.replaces:
-            raise DeclarationError(f"{what}: '{other.name}' already replaces the drive of joint '{found.replaces}'")
+            raise DeclarationError(
+                f"{what}: '{other.name}' already replaces the drive of joint '{found.replaces}'"
+            )
     return found

@@ -1,4 +1,5 @@
-"""Kinks of what is differentiated twice: of motions over time, and of constraints over what they see.
+"""Kinks of what is differentiated twice: of motions over time, and of constraints over what they
+see.
 
 They are looked for where a mechanism goes, with the parameters that it has there.
 """
@@ -26,14 +27,20 @@ _LOOKED_AT = 4001
 
 
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
-    """That a constraint must have no kink over the symbols of what it sees; None where it can have none."""
+    """That a constraint must have no kink over the symbols of what it sees; None where it can have
+    none.
+    """
     curve = constraint.phi if constraint.lift is None else constraint.lift
-    return Smooth.of(curve, ca.vertcat(mechanism.measures.places, mechanism.time), mechanism.symbols)
+    return Smooth.of(
+        curve, ca.vertcat(mechanism.measures.places, mechanism.time), mechanism.symbols
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class Corners(Graphs):
-    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``; some are ``cams``."""
+    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and
+    ``constraints``; some are ``cams``.
+    """
 
     laws: Mapping[str, Smooth]
     constraints: Mapping[str, Smooth]
@@ -45,24 +52,34 @@ class Corners(Graphs):
     def of(cls, scene: Scene) -> Corners:
         """Return the corners of a scene."""
         m = scene.mechanism
-        found = {name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()}
+        found = {
+            name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()
+        }
         laws = smooth_laws(scene.laws, m.symbols)
         cams = [name for name, constraint in m.constraints.items() if constraint.lift is not None]
-        return cls(laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams)
+        return cls(
+            laws, {name: smooth for name, smooth in found.items() if smooth is not None}, cams
+        )
 
     def words(self) -> list[Any]:
         """Write them for JSON."""
-        laws, constraints = ({name: smooth.words() for name, smooth in of.items()} for of in (self.laws, self.constraints))
+        laws, constraints = (
+            {name: smooth.words() for name, smooth in of.items()}
+            for of in (self.laws, self.constraints)
+        )
         return [laws, constraints, list(self.cams)]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Corners:
         """Read what :meth:`words` wrote."""
-        laws, constraints = ({name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2])
+        laws, constraints = (
+            {name: Smooth.loads(smooth) for name, smooth in of.items()} for of in words[:2]
+        )
         return cls(laws, constraints, words[2])
 
     def refuse_isolated_laws(self, t: Array, p: Sequence[float], *, between: bool = False) -> None:
-        """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than on both sides of it.
+        """Raise :class:`.DeclarationError` for a motion that is other at an instant ``t`` (t,) than
+        on both sides of it.
 
         With ``between`` also for one that is so between instants, where peaks may be sought.
         """
@@ -72,29 +89,41 @@ class Corners(Graphs):
                 raise found.refused(f"the motion of joint '{joint}'")
 
     def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
-        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for parameters ``p``."""
+        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for
+        parameters ``p``.
+        """
         for joint, smooth in self.laws.items():
             found = smooth.kink(np.linspace(*span, _LOOKED_AT)[None], p)
             if found is not None:
                 raise found.refused(f"the motion of joint '{joint}'")
 
-    def refuse_constraints(self, seen: Callable[[str], Array], p: Sequence[float], *, between: bool = False) -> None:
-        """Raise :class:`.DeclarationError` for a constraint with a kink, or isolated at an instant, for parameters ``p``.
+    def refuse_constraints(
+        self, seen: Callable[[str], Array], p: Sequence[float], *, between: bool = False
+    ) -> None:
+        """Raise :class:`.DeclarationError` for a constraint with a kink, or isolated at an instant,
+        for parameters ``p``.
 
-        ``seen`` gives what a constraint sees over the instants, (symbols, t); ``between`` is that of motions.
+        ``seen`` gives what a constraint sees over the instants, (symbols, t); ``between`` is that
+        of motions.
         """
         for name, smooth in self.constraints.items():
             path = seen(name)
             found = smooth.kink(path, p) or smooth.isolated(path, p, between=between)
             if found is not None:
-                raise found.refused(f"cam '{name}': its lift" if name in self.cams else f"constraint '{name}'")
+                raise found.refused(
+                    f"cam '{name}': its lift" if name in self.cams else f"constraint '{name}'"
+                )
 
     def broken_laws(self, t: Array, p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs ``p`` (d, parameters) a motion has a kink between their instants ``t`` (1 or d, t), or is isolated."""
+        """Of which designs ``p`` (d, parameters) a motion has a kink between their instants ``t``
+        (1 or d, t), or is isolated.
+        """
         found = np.zeros(len(p), bool)
         start, stop = (np.broadcast_to(t[:, k], len(p)) for k in (0, -1))
         for smooth in self.laws.values():
-            near = smooth.clearance.near(start[:, None], stop[:, None], p, lambda some: _instants(start[some], stop[some]))
+            near = smooth.clearance.near(
+                start[:, None], stop[:, None], p, lambda some: _instants(start[some], stop[some])
+            )
             if not near.any():
                 continue
             # Most designs share what their motions depend on.
@@ -109,13 +138,17 @@ class Corners(Graphs):
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs a constraint has a kink, or is isolated; ``seen`` as above, (d, symbols, t)."""
+        """Of which designs a constraint has a kink, or is isolated; ``seen`` as above, (d, symbols,
+        t).
+        """
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
             paths = seen(name)
             near = smooth.clearance.near(paths.min(axis=2), paths.max(axis=2), p, paths.__getitem__)
             if near.any():
-                found[near] |= _broken_constraint(smooth, paths[near], np.where(smooth.uses, p[near], 0.0))
+                found[near] |= _broken_constraint(
+                    smooth, paths[near], np.where(smooth.uses, p[near], 0.0)
+                )
         return found
 
 

@@ -17,22 +17,40 @@ from ..errors import DeclarationError, NumberError, shown
 from .splines import Cell, smoothed, through
 
 _SAME = 1e-12
-"""Of the range of a curve's values: by so little the ends of a periodic one may differ, by rounding."""
+"""Of the range of a curve's values: by so little the ends of a periodic one may differ, by
+rounding.
+"""
 
 
-def rows(what: str, places: Sequence[float], values: Sequence[float], least: int) -> tuple[list[float], list[float]]:
-    """Two rows of one length, at increasing places. Raises :class:`DeclarationError`, saying ``what`` is wrong where."""
+def rows(
+    what: str, places: Sequence[float], values: Sequence[float], least: int
+) -> tuple[list[float], list[float]]:
+    """Two rows of one length, at increasing places.
+
+    Raises :class:`DeclarationError`, saying ``what`` is wrong where.
+    """
     try:
-        at, to = [number(p, finite=False) for p in places], [number(v, finite=False) for v in values]
+        at, to = (
+            [number(p, finite=False) for p in places],
+            [number(v, finite=False) for v in values],
+        )
     except (TypeError, NumberError):
-        raise DeclarationError(f"{what}: expected two rows of finite numbers, got {shown(places)} and {shown(values)}") from None
+        raise DeclarationError(
+            f"{what}: expected two rows of finite numbers, got {shown(places)} and {shown(values)}"
+        ) from None
     if len(at) != len(to) or len(at) < least:
-        raise DeclarationError(f"{what}: expected two rows of one length, at least {least}, got {len(at)} and {len(to)}")
+        raise DeclarationError(
+            f"{what}: expected two rows of one length, at least {least}, got {len(at)} and"
+            f" {len(to)}"
+        )
     if not all(math.isfinite(number) for number in (*at, *to)):
         raise DeclarationError(f"{what}: all numbers must be finite")
     for i in range(len(at) - 1):
         if not at[i] < at[i + 1]:
-            raise DeclarationError(f"{what}: places must increase, but entry {i + 1} is at {at[i + 1]:g} after {at[i]:g}")
+            raise DeclarationError(
+                f"{what}: places must increase, but entry {i + 1} is at {at[i + 1]:g} after"
+                f" {at[i]:g}"
+            )
     return at, to
 
 
@@ -40,9 +58,10 @@ def rows(what: str, places: Sequence[float], values: Sequence[float], least: int
 def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
     """A curve for loads: linear between values at increasing places, and straight on beyond them.
 
-    ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values`` in that of the load. Returns a
-    ``casadi.SX`` expression. Constraints and motions refuse it, for there slopes must not jump; :func:`curve` is for them. Raises
-    :class:`DeclarationError` for places that do not increase.
+    ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values``
+    in that of the load. Returns a ``casadi.SX`` expression. Constraints and motions refuse it, for
+    there slopes must not jump; :func:`curve` is for them. Raises :class:`DeclarationError` for
+    places that do not increase.
     """
     at, to = rows("table", places, values, 2)
     try:
@@ -53,10 +72,12 @@ def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A smooth curve of cubic pieces, from :func:`curve`: value, slope and second derivative are continuous.
+    """A smooth curve of cubic pieces, from :func:`curve`: value, slope and second derivative are
+    continuous.
 
-    ``cells`` are c in c0 + c1 u + c2 u^2 + c3 u^3 with u = x - origin - start, where ``starts`` are those of the pieces. A periodic
-    curve goes on as it began; another one is defined from ``low`` to ``high`` only.
+    ``cells`` are c in c0 + c1 u + c2 u^2 + c3 u^3 with u = x - origin - start, where ``starts`` are
+    those of the pieces. A periodic curve goes on as it began; another one is defined from ``low``
+    to ``high`` only.
     """
 
     low: float
@@ -70,36 +91,50 @@ class Curve:
     def __call__(self, x: Any) -> Any:
         """The curve of an expression, as a ``casadi.SX`` expression; of numbers, as numbers.
 
-        Raises :class:`DeclarationError` for what is neither a scalar expression nor numbers, or for a number beyond the ends of a
-        curve that is not periodic. Instants at which an expression is beyond them are refused when they are evaluated.
+        Raises :class:`DeclarationError` for what is neither a scalar expression nor numbers, or for
+        a number beyond the ends of a curve that is not periodic. Instants at which an expression is
+        beyond them are refused when they are evaluated.
         """
         if isinstance(x, ca.SX) and x.numel() == 1:
             return self._expression(x)
         try:
-            numbers = np.array(np.nan) if isinstance(x, ca.SX | ca.MX | ca.DM) else np.asarray(x, float)
+            numbers = (
+                np.array(np.nan) if isinstance(x, ca.SX | ca.MX | ca.DM) else np.asarray(x, float)
+            )
         except (TypeError, ValueError, OverflowError):
             numbers = np.array(np.nan)
         if not np.isfinite(numbers).all():
-            raise DeclarationError(f"curve: expected a scalar casadi.SX expression or finite numbers, got {shown(x)}")
+            raise DeclarationError(
+                f"curve: expected a scalar casadi.SX expression or finite numbers, got {shown(x)}"
+            )
         if not (self.periodic or ((numbers >= self.low) & (numbers <= self.high)).all()):
-            raise DeclarationError(f"curve: {x!r} is beyond its ends, {self.low:g} and {self.high:g}")
+            raise DeclarationError(
+                f"curve: {x!r} is beyond its ends, {self.low:g} and {self.high:g}"
+            )
         within = numbers - self.origin
         if self.periodic:
             within = within - (self.high - self.low) * np.rint(within / (self.high - self.low))
-        cell = np.clip(np.searchsorted(self.starts, within, side="right") - 1, 0, len(self.cells) - 1)
+        cell = np.clip(
+            np.searchsorted(self.starts, within, side="right") - 1, 0, len(self.cells) - 1
+        )
         u, c = within - np.array(self.starts)[cell], np.array(self.cells)[cell]
         found = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
         return found if np.ndim(x) else float(found)
 
     def __repr__(self) -> str:
-        return f"<Curve of {len(self.cells) + 1} points, {'period' if self.periodic else 'from'} {self.low:g} to {self.high:g}>"
+        return (
+            f"<Curve of {len(self.cells) + 1} points, {'period' if self.periodic else 'from'}"
+            f" {self.low:g} to {self.high:g}>"
+        )
 
     def _expression(self, x: Any) -> Any:
         within = x - self.origin if self.origin else x
         if self.periodic:
             # A remainder is exact, and goes on with whole turns where angles count them.
             within = ca.remainder(within, self.high - self.low)
-        number = lookups.cell((*self.starts, self.high - self.origin), within, ends=not self.periodic)
+        number = lookups.cell(
+            (*self.starts, self.high - self.origin), within, ends=not self.periodic
+        )
         u = within - lookups.entries(self.starts, number)
         found = lookups.entries([cell[3] for cell in self.cells], number)
         for k in (2, 1, 0):
@@ -108,26 +143,34 @@ class Curve:
 
 
 @public
-def curve(x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smoothing: float = 0.0) -> Curve:
-    """A smooth curve through points, for constraints, motions, loads and densities: call it on an expression.
+def curve(
+    x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smoothing: float = 0.0
+) -> Curve:
+    """A smooth curve through points, for constraints, motions, loads and densities: call it on an
+    expression.
 
-    ``curve(angles, lifts, periodic=True)(m.coordinate(cam))`` is the lift of a cam. Between the points it is a cubic spline with a
-    continuous second derivative. It is not-a-knot at its ends; a ``periodic`` one goes on over its seam as everywhere else, and its
-    first and last value are one. With a ``smoothing`` it is the least bent curve whose distance from the points, in the root mean
+    ``curve(angles, lifts, periodic=True)(m.coordinate(cam))`` is the lift of a cam. Between the
+    points it is a cubic spline with a continuous second derivative. It is not-a-knot at its ends; a
+    ``periodic`` one goes on over its seam as everywhere else, and its first and last value are one.
+    With a ``smoothing`` it is the least bent curve whose distance from the points, in the root mean
     square, is so much, in the unit of ``y``: as large as the noise of what was measured.
 
-    Raises :class:`.DeclarationError` for fewer than four points, rows of different lengths, an ``x`` that does not increase,
-    numbers that are not finite, ends of a periodic curve that differ, and a smoothing that is negative or leaves a straight line.
+    Raises :class:`.DeclarationError` for fewer than four points, rows of different lengths, an
+    ``x`` that does not increase, numbers that are not finite, ends of a periodic curve that differ,
+    and a smoothing that is negative or leaves a straight line.
     """
     at, to = rows("curve", x, y, 4)
     span = max(to) - min(to)
     if periodic and abs(to[-1] - to[0]) > _SAME * max(span, abs(to[0])):
         raise DeclarationError(
-            f"curve: a periodic curve ends as it begins, but its values are {to[0]:.9g} at {at[0]:g} and {to[-1]:.9g} at "
-            f"{at[-1]:g}; give the first value once more at the end of the period"
+            f"curve: a periodic curve ends as it begins, but its values are {to[0]:.9g} at"
+            f" {at[0]:g} and {to[-1]:.9g} at {at[-1]:g}; give the first value once more at the end"
+            " of the period"
         )
     if not (isinstance(smoothing, (int, float)) and 0.0 <= smoothing < math.inf):
-        raise DeclarationError(f"curve: smoothing must be a finite number that is not negative, got {smoothing!r}")
+        raise DeclarationError(
+            f"curve: smoothing must be a finite number that is not negative, got {smoothing!r}"
+        )
     if periodic:
         to[-1] = to[0]
     if smoothing:
@@ -135,5 +178,7 @@ def curve(x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smo
     origin = (at[0] + at[-1]) / 2 if periodic else 0.0
     starts, cells = through(at, to, periodic=periodic, origin=origin)
     if not all(math.isfinite(number) for cell in cells for number in cell):
-        raise DeclarationError("curve: its points are too near each other for their values: slopes overflow")
+        raise DeclarationError(
+            "curve: its points are too near each other for their values: slopes overflow"
+        )
     return Curve(at[0], at[-1], periodic, origin, tuple(starts), tuple(cells))

@@ -1,7 +1,9 @@
-"""A mechanism as its certificate reads it: straight from the declaration, as numbers in space; a plane is z = 0.
+"""A mechanism as its certificate reads it: straight from the declaration, as numbers in space; a
+plane is z = 0.
 
-Nothing here comes from the derivation, so a wrong derivation cannot hide. What was stated as expressions, constraints, motions
-and laws of loads, stands beside the numbers as functions (:mod:`.stated`).
+Nothing here comes from the derivation, so a wrong derivation cannot hide. What was stated as
+expressions, constraints, motions and laws of loads, stands beside the numbers as functions
+(:mod:`.stated`).
 """
 
 from __future__ import annotations
@@ -34,7 +36,9 @@ class Place:
 
 @dataclass(frozen=True)
 class BodyNumbers:
-    """A body's length [m], None for a point mass; its mass, and its centre and inertia about the centre, in its axes."""
+    """A body's length [m], None for a point mass; its mass, and its centre and inertia about the
+    centre, in its axes.
+    """
 
     length: float | None
     mass: float
@@ -44,7 +48,9 @@ class BodyNumbers:
 
 @dataclass(frozen=True)
 class AxisNumbers:
-    """A coordinate of a joint by its full name, and its direction in the parent's axes where all coordinates are zero."""
+    """A coordinate of a joint by its full name, and its direction in the parent's axes where all
+    coordinates are zero.
+    """
 
     coordinate: str
     kind: Literal["angle", "slide"]
@@ -55,8 +61,9 @@ class AxisNumbers:
 class JointNumbers:
     """A joint between two places; see :class:`.Joint`.
 
-    ``axes`` are in sequence. The first direction of the ``triad`` is that of the joint's axis. ``turned`` are the child's axes in
-    the parent's where all coordinates are zero. ``free`` says whether it turns about an axis of which no coordinate tells.
+    ``axes`` are in sequence. The first direction of the ``triad`` is that of the joint's axis.
+    ``turned`` are the child's axes in the parent's where all coordinates are zero. ``free`` says
+    whether it turns about an axis of which no coordinate tells.
     """
 
     kind: str
@@ -71,7 +78,9 @@ class JointNumbers:
 
 @dataclass(frozen=True)
 class LoadNumbers:
-    """The places of a load, the second one bearing the opposite; of a friction its coordinate and its numbers by their words."""
+    """The places of a load, the second one bearing the opposite; of a friction its coordinate and
+    its numbers by their words.
+    """
 
     points: tuple[Place, ...]
     coordinate: str = ""
@@ -82,9 +91,10 @@ class LoadNumbers:
 class Declared:
     """A mechanism in plain numbers, and what was stated of it as functions of what they measure.
 
-    ``drives`` are the coordinates whose efforts make the motion, ``driven`` those whose motion is given. ``beside`` are the
-    directions in ground axes that were declared for y axes of links. ``multipliers`` are the names of all constraints and rows,
-    and ``equations`` are these; ``motions`` are those of ``driven``, and ``laws`` those of loads. There are none where they are
+    ``drives`` are the coordinates whose efforts make the motion, ``driven`` those whose motion is
+    given. ``beside`` are the directions in ground axes that were declared for y axes of links.
+    ``multipliers`` are the names of all constraints and rows, and ``equations`` are these;
+    ``motions`` are those of ``driven``, and ``laws`` those of loads. There are none where they are
     not known, as of a file.
     """
 
@@ -101,19 +111,32 @@ class Declared:
     laws: tuple[LoadLaw, ...] = ()
 
     @classmethod
-    def of(cls, description: Description, stated: Stated | None = None, p: Sequence[float] | Array = ()) -> Declared:
-        """The numbers of a description, which a file holds too; and what was ``stated``, for values of all parameters."""
+    def of(
+        cls, description: Description, stated: Stated | None = None, p: Sequence[float] | Array = ()
+    ) -> Declared:
+        """The numbers of a description, which a file holds too; and what was ``stated``, for values
+        of all parameters.
+        """
         known, stated = tuple(map(float, p)), stated or Stated((), (), ())
         space = in_space(description)
         loads = description["loads"].items()
         return cls(
             gravity=_triple(description["gravity"]),
             bodies={name: _body(body, space) for name, body in description["bodies"].items()},
-            joints={name: (_joint if space else _planar_joint)(name, joint) for name, joint in description["joints"].items()},
-            loads={name: LoadNumbers(tuple(map(_place, load["points"])), *_friction(load)) for name, load in loads},
+            joints={
+                name: (_joint if space else _planar_joint)(name, joint)
+                for name, joint in description["joints"].items()
+            },
+            loads={
+                name: LoadNumbers(tuple(map(_place, load["points"])), *_friction(load))
+                for name, load in loads
+            },
             drives=tuple(drives_of(description)),
             driven=tuple(motions_of(description)),
-            beside={name: _triple(direction) for name, direction in description.get("beside", {}).items()},
+            beside={
+                name: _triple(direction)
+                for name, direction in description.get("beside", {}).items()
+            },
             multipliers=(*description["constraints"], *description["rows"]),
             equations=tuple(equation.at(known) for equation in stated.equations),
             motions=tuple(motion.at(known) for motion in stated.motions),
@@ -127,10 +150,14 @@ class Declared:
 
     @cached_property
     def extent(self) -> float:
-        """The size of the mechanism, and how far from the origin it stands: the largest of places."""
+        """The size of the mechanism, and how far from the origin it
+        stands: the largest of places.
+        """
         points = [place for joint in self.joints.values() for place in (joint.parent, joint.child)]
         points += [place for load in self.loads.values() for place in load.points]
-        return self.size + max((abs(x) for place in points if place.body == "ground" for x in place.at), default=0.0)
+        return self.size + max(
+            (abs(x) for place in points if place.body == "ground" for x in place.at), default=0.0
+        )
 
     @cached_property
     def kinds(self) -> dict[str, Literal["angle", "slide"]]:
@@ -162,7 +189,11 @@ def _body(told: Description, space: bool) -> BodyNumbers:
     length, mass = told["length"], told["mass"]
     if "centre" in told:
         centre = told["centre"]
-        inertia = _rows(centre["inertia"]) if space else ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, centre["inertia"]))
+        inertia = (
+            _rows(centre["inertia"])
+            if space
+            else ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, centre["inertia"]))
+        )
         return BodyNumbers(length, mass, (centre["x"], centre["y"], centre.get("z", 0.0)), inertia)
     if length is None or mass == 0.0:
         return BodyNumbers(length, mass)
@@ -192,7 +223,11 @@ def _planar_joint(name: str, told: Description) -> JointNumbers:
     x, y = told["axis"]
     slides = told["kind"] in ("prismatic", "slot")
     c, s = math.cos(told["angle"]), math.sin(told["angle"])
-    axis = [AxisNumbers(name, told["coordinate"], (x, y, 0.0) if slides else _Z)] if told["coordinate"] else []
+    axis = (
+        [AxisNumbers(name, told["coordinate"], (x, y, 0.0) if slides else _Z)]
+        if told["coordinate"]
+        else []
+    )
     return JointNumbers(
         kind=told["kind"],
         parent=_place(told["parent"]),
@@ -205,4 +240,6 @@ def _planar_joint(name: str, told: Description) -> JointNumbers:
 
 
 def _friction(told: Description) -> tuple[Any, ...]:
-    return (told["friction"]["coordinate"], told["friction"]["numbers"]) if "friction" in told else ()
+    return (
+        (told["friction"]["coordinate"], told["friction"]["numbers"]) if "friction" in told else ()
+    )

@@ -1,7 +1,9 @@
-"""How mass lies along a straight link: piecewise polynomial in the ratio u = xi/l, which covers every density a table can give.
+"""How mass lies along a straight link: piecewise polynomial in the ratio u = xi/l, which covers
+every density a table can give.
 
-From a section at u to the tip the moments of the material are combinations of T_k(u) = int_u^1 p(w) (w - u)^k dw with p = dm/du:
-mu0 = T0, mu1 = l (u T0 + T1), mu1 - xi mu0 = l T1, mu2 - xi mu1 = l^2 (u T1 + T2): nothing cancels near the tip.
+From a section at u to the tip the moments of the material are combinations of T_k(u) = int_u^1 p(w)
+(w - u)^k dw with p = dm/du: mu0 = T0, mu1 = l (u T0 + T1), mu1 - xi mu0 = l T1, mu2 - xi mu1 = l^2
+(u T1 + T2): nothing cancels near the tip.
 """
 
 from __future__ import annotations
@@ -23,10 +25,12 @@ from .curves import Curve, rows
 
 @dataclass(frozen=True, eq=False)
 class Density:
-    """Mass along a link: on the i-th interval of ``breaks`` (ratios from 0 to 1) the polynomial sum_j cells[i][j] u^j.
+    """Mass along a link: on the i-th interval of ``breaks`` (ratios from 0 to 1) the polynomial
+    sum_j cells[i][j] u^j.
 
-    It is the mass per unit of the ratio [kg], or where ``per_length`` the mass per length [kg/m]. Coefficients are numbers or
-    expressions in parameters. Where slices have rotary inertia, ``slices`` are the :class:`.Slices`.
+    It is the mass per unit of the ratio [kg], or where ``per_length`` the mass per length [kg/m].
+    Coefficients are numbers or expressions in parameters. Where slices have rotary inertia,
+    ``slices`` are the :class:`.Slices`.
     """
 
     breaks: tuple[float, ...]
@@ -45,14 +49,23 @@ class Density:
         return _jumps(self.breaks, self.cells)
 
     def ends(self, length: Any) -> tuple[Any, Any, Any]:
-        """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
+        """Masses at the base and at the tip, and a moment of inertia, that together move just as
+        the link does.
 
-        They have its mass, first and second moment: with p = dm/du int p (1 - u) du, int p u du, and l^2 int p u (u - 1) du.
+        They have its mass, first and second moment: with p = dm/du int p (1 - u) du, int p u du,
+        and l^2 int p u (u - 1) du.
         """
         found: list[Any] = [0.0, 0.0, 0.0]
-        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+        for (a, b), cell in zip(
+            zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
+        ):
             for j, coefficient in enumerate(cell):
-                mass, first, second = (part / n for n, part in zip(range(j + 1, j + 4), _differences(b, a, j + 3)[j:], strict=True))
+                mass, first, second = (
+                    part / n
+                    for n, part in zip(
+                        range(j + 1, j + 4), _differences(b, a, j + 3)[j:], strict=True
+                    )
+                )
                 for k, part in enumerate((mass - first, first, second - first)):
                     found[k] = found[k] + coefficient * part
         scale = length if self.per_length else 1.0
@@ -63,7 +76,9 @@ class Density:
         larger = (lambda x: ca.fmax(x, 0.0)) if isinstance(u, ca.SX) else (lambda x: max(x, 0.0))
         scale = length if self.per_length else 1.0
         found: list[Any] = [0.0, 0.0, 0.0]
-        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+        for (a, b), cell in zip(
+            zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
+        ):
             high, low = 1.0 - u if b == 1.0 else larger(b - u), 0.0 if a == 0.0 else larger(a - u)
             parts = _differences(high, low, len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
@@ -78,15 +93,18 @@ class Density:
     def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
         """The density at given parameters, per unit of the ratio."""
         scale = length if self.per_length else 1.0
-        return NumericDensity(self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells))
+        return NumericDensity(
+            self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells)
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Slices:
-    """Second moments of mass per length [kg m] of a link's slices, on the axes of its cross-section: like densities along it.
+    """Second moments of mass per length [kg m] of a link's slices, on the axes of its
+    cross-section: like densities along it.
 
-    They are the sums of y y, z z and y z over a slice; its moments of inertia per length are ``yy + zz`` about the link's axis,
-    ``zz`` about y and ``yy`` about z.
+    They are the sums of y y, z z and y z over a slice; its moments of inertia per length are ``yy +
+    zz`` about the link's axis, ``zz`` about y and ``yy`` about z.
     """
 
     yy: Density
@@ -134,7 +152,9 @@ class NumericDensity:
     def tails(self, u: Array) -> tuple[Array, ...]:
         """T0, T1 and T2 at ratios ``u`` of any shape."""
         found: list[Any] = [np.zeros_like(u) for _ in range(3)]
-        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+        for (a, b), cell in zip(
+            zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True
+        ):
             parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u) if len(cell) > 1 else cell):
                 for k in range(3):
@@ -144,20 +164,30 @@ class NumericDensity:
     def at(self, u: Array) -> Array:
         """The density at ratios ``u`` of any shape; at a break, that towards the tip."""
         cell = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.cells) - 1)
-        return np.asarray(sum(np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0) for i, c in enumerate(self.cells)))
+        return np.asarray(
+            sum(
+                np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0)
+                for i, c in enumerate(self.cells)
+            )
+        )
 
 
 @public
 def uniform(mass: Symbolic) -> Density:
-    """A link of one density throughout, by its whole mass [kg], a number or an expression in parameters."""
+    """A link of one density throughout, by its whole mass [kg], a number or an expression in
+    parameters.
+    """
     return Density((0.0, 1.0), ((mass,),), per_length=False)
 
 
 @public
 def polynomial(*coefficients: Symbolic) -> Density:
-    """c0 + c1 u + c2 u^2 + ... [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip.
+    """c0 + c1 u + c2 u^2 + ...
 
-    Coefficients are numbers or expressions in parameters. Raises :class:`DeclarationError` without a coefficient.
+    [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip.
+
+    Coefficients are numbers or expressions in parameters. Raises :class:`DeclarationError` without
+    a coefficient.
     """
     if not coefficients:
         raise DeclarationError("density polynomial: expected at least one coefficient")
@@ -168,11 +198,14 @@ def polynomial(*coefficients: Symbolic) -> Density:
 def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
     """Linear between values [kg/m] at ratios xi/l that rise from 0 to 1.
 
-    Raises :class:`DeclarationError` for tables that do not increase, do not reach from 0 to 1, or are negative.
+    Raises :class:`DeclarationError` for tables that do not increase, do not reach from 0 to 1, or
+    are negative.
     """
     u, v = rows("density table", ratios, values, 2)
     if (u[0], u[-1]) != (0.0, 1.0):
-        raise DeclarationError(f"density table: ratios must reach from 0 to 1, got {u[0]:g} to {u[-1]:g}")
+        raise DeclarationError(
+            f"density table: ratios must reach from 0 to 1, got {u[0]:g} to {u[-1]:g}"
+        )
     cells = []
     for i in range(len(u) - 1):
         slope = (v[i + 1] - v[i]) / (u[i + 1] - u[i])
@@ -182,20 +215,29 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
 
 @public
 def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
-    """A density of slices that have rotary inertia, of a link in space, by second moments of mass per length [kg m].
+    """A density of slices that have rotary inertia, of a link in space, by second moments of mass
+    per length [kg m].
 
-    ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes of the link's cross-section: of
-    a homogeneous bar the density of its material times its area's second moments. Each is a number or an expression in parameters,
-    or is itself told along the link by a function of this module, whose values are then in kg m. A round bar of diameter d has
+    ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes
+    of the link's cross-section: of a homogeneous bar the density of its material times its area's
+    second moments. Each is a number or an expression in parameters, or is itself told along the
+    link by a function of this module, whose values are then in kg m. A round bar of diameter d has
     yy = zz = d^2/16 times its mass per length.
 
     Raises :class:`DeclarationError` for what is no density.
     """
     if not isinstance(density, Density):
-        raise DeclarationError(f"density thick: expected a density of lagrange_casadi.density, got {density!r}")
-    moments = [moment if isinstance(moment, Density) else polynomial(moment) for moment in (yy, zz, yz)]
+        raise DeclarationError(
+            f"density thick: expected a density of lagrange_casadi.density, got {density!r}"
+        )
+    moments = [
+        moment if isinstance(moment, Density) else polynomial(moment) for moment in (yy, zz, yz)
+    ]
     if any(not moment.per_length or moment.slices for moment in moments) or density.slices:
-        raise DeclarationError("density thick: second moments are numbers, or along the link by polynomial, tabulated or along")
+        raise DeclarationError(
+            "density thick: second moments are numbers, or along the link by polynomial, tabulated"
+            " or along"
+        )
     return replace(density, slices=Slices(*moments))
 
 
@@ -203,28 +245,44 @@ def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
 def along(curve: Curve) -> Density:
     """A smooth :func:`.curve` through values [kg/m] over the ratio xi/l, from 0 to 1.
 
-    Raises :class:`DeclarationError` for what is no curve, or does not reach from 0 to 1. A density that is negative between the
-    values is refused where it is used.
+    Raises :class:`DeclarationError` for what is no curve, or does not reach from 0 to 1. A density
+    that is negative between the values is refused where it is used.
     """
     if not isinstance(curve, Curve):
-        raise DeclarationError(f"density along: expected a curve of lagrange_casadi.curve, got {curve!r}")
+        raise DeclarationError(
+            f"density along: expected a curve of lagrange_casadi.curve, got {curve!r}"
+        )
     if curve.periodic or (curve.low, curve.high) != (0.0, 1.0):
-        raise DeclarationError(f"density along: the curve must reach from 0 to 1, and not go round, got {curve!r}")
+        raise DeclarationError(
+            f"density along: the curve must reach from 0 to 1, and not go round, got {curve!r}"
+        )
     cells = []
     for start, cell in zip(curve.starts, curve.cells, strict=True):
-        # In powers of the ratio, not of what is beyond the start; by fractions, for these terms nearly cancel.
+        # In powers of the ratio, not of what is beyond the start; by fractions, for these terms
+        # nearly cancel.
         about = Fraction(start)
-        powers = [sum(Fraction(c) * math.comb(j, k) * (-about) ** (j - k) for j, c in enumerate(cell) if j >= k) for k in range(4)]
+        powers = [
+            sum(
+                Fraction(c) * math.comb(j, k) * (-about) ** (j - k)
+                for j, c in enumerate(cell)
+                if j >= k
+            )
+            for k in range(4)
+        ]
         cells.append(tuple(float(power) for power in powers))
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
 
 
 def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Any]]) -> tuple[float, ...]:
-    """The inner breaks at which neighbouring cells have two values, or values that numbers do not tell."""
+    """The inner breaks at which neighbouring cells have two values, or values that numbers do not
+    tell.
+    """
     found = []
     for u, before, after in zip(breaks[1:], cells, cells[1:], strict=False):
         known = not any(isinstance(c, ca.SX) for c in (*before, *after))
-        values = [sum(c * u**j for j, c in enumerate(cell)) for cell in (before, after)] if known else []
+        values = (
+            [sum(c * u**j for j, c in enumerate(cell)) for cell in (before, after)] if known else []
+        )
         sizes = [sum(np.abs(c) for c in cell) for cell in (before, after)] if known else []
         if not known or np.any(np.abs(values[1] - values[0]) > _SAME * np.maximum(*sizes)):
             found.append(u)
@@ -235,7 +293,9 @@ _SAME = 1e-9
 
 
 def _differences(high: Any, low: Any, count: int) -> list[Any]:
-    """high^n - low^n for n = 1, 2, ..., by products of their difference, so that close ones do not cancel; of numbers or arrays."""
+    """high^n - low^n for n = 1, 2, ..., by products of their difference, so that close ones do not
+    cancel; of numbers or arrays.
+    """
     width, power, total, found = high - low, low, 1.0, []
     for _ in range(count):
         found.append(width * total)
@@ -245,4 +305,7 @@ def _differences(high: Any, low: Any, count: int) -> list[Any]:
 
 def _shift(cell: Sequence[Any], u: Any) -> list[Any]:
     """Coefficients of p(u + x) as a polynomial in x."""
-    return [sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))]
+    return [
+        sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j)
+        for j in range(len(cell))
+    ]

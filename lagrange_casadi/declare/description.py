@@ -1,4 +1,6 @@
-"""A mechanism at given parameters as plain numbers: what a file keeps of it, and what a drawing is made from."""
+"""A mechanism at given parameters as plain numbers: what a file keeps of it, and what a drawing is
+made from.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,11 @@ def _shape(place: Any, centre: Any, gravity: Any, joint: Any, load: Any) -> dict
                 {"length": None, "mass": float},
                 body | {"centre": centre},
                 body | {"density": _DENSITY},
-                body | {"density": _DENSITY | {"slices": {"yy": _DENSITY, "zz": _DENSITY, "yz": _DENSITY}}},
+                body
+                | {
+                    "density": _DENSITY
+                    | {"slices": {"yy": _DENSITY, "zz": _DENSITY, "yz": _DENSITY}}
+                },
             )
         },
         "joints": {str: {"kind": str, "parent": place, "child": place} | joint},
@@ -65,7 +71,14 @@ IN_SPACE = _shape(
     place=_PLACE | {"z": float},
     centre={"x": float, "y": float, "z": float, "inertia": _MATRIX},
     gravity=_VECTOR,
-    joint={"coordinates": {str: str}, "driven": [str], "axes": [_VECTOR], "triad": _MATRIX, "turned": _MATRIX, "pitch": float},
+    joint={
+        "coordinates": {str: str},
+        "driven": [str],
+        "axes": [_VECTOR],
+        "triad": _MATRIX,
+        "turned": _MATRIX,
+        "pitch": float,
+    },
     load={"turning": bool},
 ) | {"bars": [str], "unmeasured": [str]}
 """The same of a mechanism in space."""
@@ -80,16 +93,30 @@ def shape_of(value: Any) -> dict[str, Any]:
     """What a description is like: that of a planar mechanism, or that of one in space."""
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
-    optional = {"outlines": {str: [[float, float]]}, "losses": [str], "beside": {str: _VECTOR}, "rounded": {str: [float]}}
+    optional = {
+        "outlines": {str: [[float, float]]},
+        "losses": [str],
+        "beside": {str: _VECTOR},
+        "rounded": {str: [float]},
+    }
     optional["snapped"] = {str: [float]}
     optional["unturned"] = [str]
-    return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
+    return shape | {
+        name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value
+    }
 
 
 def check_places(description: Description) -> None:
     """Raise ``ValueError`` where a joint or a load is at a place on a body that there is not."""
-    ends = ((name, joint[end]) for name, joint in description["joints"].items() for end in ("parent", "child"))
-    for name, place in (*ends, *((name, point) for name, load in description["loads"].items() for point in load["points"])):
+    ends = (
+        (name, joint[end])
+        for name, joint in description["joints"].items()
+        for end in ("parent", "child")
+    )
+    for name, place in (
+        *ends,
+        *((name, point) for name, load in description["loads"].items() for point in load["points"]),
+    ):
         if place["body"] != "ground" and place["body"] not in description["bodies"]:
             raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
 
@@ -119,21 +146,41 @@ def _density(told: Description) -> NumericDensity:
 def coordinates_of(description: Description) -> dict[str, str]:
     """The coordinates of all joints, with their kinds: "angle" or "slide"."""
     if not in_space(description):
-        return {name: joint["coordinate"] for name, joint in description["joints"].items() if joint["coordinate"]}
-    return {name: kind for joint in description["joints"].values() for name, kind in joint["coordinates"].items()}
+        return {
+            name: joint["coordinate"]
+            for name, joint in description["joints"].items()
+            if joint["coordinate"]
+        }
+    return {
+        name: kind
+        for joint in description["joints"].values()
+        for name, kind in joint["coordinates"].items()
+    }
 
 
 def kinds_of_described(description: Description) -> Kinds:
-    """The kinds of coordinates, those of guides too, and of frictions of a described mechanism, and the units of its outputs."""
+    """The kinds of coordinates, those of guides too, and of frictions of a described mechanism, and
+    the units of its outputs.
+    """
     coordinates = coordinates_of(description) | motions_of(description)
-    rubbing = {name: load["friction"]["coordinate"] for name, load in description["loads"].items() if "friction" in load}
+    rubbing = {
+        name: load["friction"]["coordinate"]
+        for name, load in description["loads"].items()
+        if "friction" in load
+    }
     frictions = {name: coordinates[coordinate] for name, coordinate in rubbing.items()}
     return Kinds(coordinates, frictions, description.get("outputs", {}))
 
 
 def measured_of(description: Description) -> list[str]:
-    """The coordinates whose motion is told: all but the angles of joints with three turns that close loops."""
-    return [name for name in coordinates_of(description) if name not in description.get("unmeasured", ())]
+    """The coordinates whose motion is told: all but the angles of joints with three turns that
+    close loops.
+    """
+    return [
+        name
+        for name in coordinates_of(description)
+        if name not in description.get("unmeasured", ())
+    ]
 
 
 def _driven(description: Description) -> list[str]:
@@ -170,7 +217,9 @@ def fitted_of(description: Description) -> list[str]:
 def parts_of(description: Description) -> list[str]:
     """The names of all parts that outputs are of."""
     tables = ("bodies", "joints", "constraints", "rows", "loads")
-    return [part for table in tables for part in description[table]] + list(description.get("outputs", ()))
+    return [part for table in tables for part in description[table]] + list(
+        description.get("outputs", ())
+    )
 
 
 class Place(int):
@@ -179,7 +228,9 @@ class Place(int):
 
 @dataclass(frozen=True, eq=False)
 class Template(Graphs):
-    """A description but for its numbers, in whose stead are :class:`Place`; ``numbers(p)`` is all of them."""
+    """A description but for its numbers, in whose stead are :class:`Place`; ``numbers(p)`` is all
+    of them.
+    """
 
     content: Description
     numbers: Any
@@ -196,23 +247,31 @@ class Template(Graphs):
         return found
 
     def placed(self, content: Description, p: Any) -> Description:
-        """A part of the content, with expressions of parameters ``p`` at its places, and numbers where these are constant."""
+        """A part of the content, with expressions of parameters ``p`` at its places, and numbers
+        where these are constant.
+        """
         numbers = [float(x) if x.is_constant() else x for x in ca.vertsplit(ca.SX(self.numbers(p)))]
         found: Description = _with(content, lambda place: numbers[place])
         return found
 
     def dumps(self) -> str:
         """The template as text."""
-        return json.dumps([_with(self.content, lambda place: {_PLACED: int(place)}), self.numbers.serialize()])
+        return json.dumps(
+            [_with(self.content, lambda place: {_PLACED: int(place)}), self.numbers.serialize()]
+        )
 
     @classmethod
     def loads(cls, text: str) -> Template:
         """The template that :meth:`dumps` made a text of."""
-        content, numbers = json.loads(text, object_hook=lambda found: Place(found[_PLACED]) if _PLACED in found else found)
+        content, numbers = json.loads(
+            text, object_hook=lambda found: Place(found[_PLACED]) if _PLACED in found else found
+        )
         return cls(content, ca.Function.deserialize(numbers))
 
     @classmethod
-    def of(cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None) -> Template:
+    def of(
+        cls, mechanism: Mechanism, driven: Collection[str], drives: Collection[str] | None = None
+    ) -> Template:
         """The template of what :func:`describe` gives."""
         content, asked = numbered(mechanism, driven)
         if mechanism.outputs:
@@ -222,12 +281,17 @@ class Template(Graphs):
         if mechanism.snapped:
             content["snapped"] = {name: list(by) for name, by in mechanism.snapped.items()}
         if drives is not None:
-            content |= {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+            content |= {
+                "drives": list(drives),
+                "motions": {name: _kind(mechanism, name) for name in driven},
+            }
         return cls.over(content, asked, mechanism.symbols)
 
     @classmethod
     def over(cls, content: Description, asked: Sequence[Any], symbols: Any) -> Template:
-        """The template whose numbers are expressions of the parameters' symbols, in the order of its places."""
+        """The template whose numbers are expressions of the parameters' symbols, in the order of
+        its places.
+        """
         numbers = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(expression) for expression in asked)))
         return cls(content, ca.Function("numbers", [symbols], [numbers], ["p"], ["numbers"]))
 
@@ -243,25 +307,36 @@ def _with(content: Any, number: Callable[[Place], Any]) -> Any:
 
 @symbolic
 def describe(
-    mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], drives: Collection[str] | None = None
+    mechanism: Mechanism,
+    values: Mapping[str, float],
+    driven: Collection[str],
+    drives: Collection[str] | None = None,
 ) -> Description:
-    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join.
+    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the
+    places they join.
 
-    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it, where these are others. A joint in
-    space has its coordinates in sequence, with their kinds; their ``axes`` and how the child's axes are ``turned``, both where all
-    coordinates are zero; and its own axes, the ``triad``. Directions are in the parent's axes, a row each.
+    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it,
+    where these are others. A joint in space has its coordinates in sequence, with their kinds;
+    their ``axes`` and how the child's axes are ``turned``, both where all coordinates are zero; and
+    its own axes, the ``triad``. Directions are in the parent's axes, a row each.
     """
-    return template_of(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(values)
+    return template_of(mechanism, tuple(driven), None if drives is None else tuple(drives)).filled(
+        values
+    )
 
 
 @functools.lru_cache(maxsize=32)
-def template_of(mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None) -> Template:
+def template_of(
+    mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, ...] | None
+) -> Template:
     """The template of what :func:`describe` gives, made once."""
     return Template.of(mechanism, driven, drives)
 
 
 def _lies_by_default(joint: Joint) -> bool:
-    """Whether a slender link slides along one line of its parent, and nothing was said of how it lies there."""
+    """Whether a slender link slides along one line of its parent, and nothing was said of how it
+    lies there.
+    """
     body = joint.child.body
     slender = isinstance(body, Link) and isinstance(body.mass, Density)
     return slender and joint.kind in ("prismatic", "cylindrical", "screw") and not joint.turn_given
@@ -275,7 +350,9 @@ def _kind(mechanism: Mechanism, name: str) -> str:
 
 
 def motions_of(description: Description) -> dict[str, str]:
-    """The coordinates whose motion is given, of joints and of guides, with their kinds: "angle" or "slide"."""
+    """The coordinates whose motion is given, of joints and of guides, with their kinds: "angle" or
+    "slide".
+    """
     kinds = coordinates_of(description)
     driven = {name: kinds[name] for name in _driven(description)}
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
@@ -283,9 +360,11 @@ def motions_of(description: Description) -> dict[str, str]:
 
 @symbolic
 def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Description, list[Any]]:
-    """A description with places in the place of its numbers, and the expressions of the parameters that stand at these places.
+    """A description with places in the place of its numbers, and the expressions of the parameters
+    that stand at these places.
 
-    The mass of a link that has a density is no such place, for it follows from the density; nor are values of parameters.
+    The mass of a link that has a density is no such place, for it follows from the density; nor are
+    values of parameters.
     """
     asked: list[Any] = []
 
@@ -296,7 +375,9 @@ def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Descri
     return _described(mechanism, driven, number), asked
 
 
-def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[Any], Any]) -> Description:
+def _described(
+    mechanism: Mechanism, driven: Collection[str], number: Callable[[Any], Any]
+) -> Description:
     def place(point: Point) -> Description:
         found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
         return found | {"z": number(point.z)} if mechanism.space else found
@@ -306,7 +387,11 @@ def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[
 
     def centre(mass: RigidMass) -> Description:
         found = dict(zip("xyz", vector(mass.centre), strict=False))
-        return found | {"inertia": [vector(row) for row in mass.inertia] if mechanism.space else number(mass.inertia)}
+        return found | {
+            "inertia": [vector(row) for row in mass.inertia]
+            if mechanism.space
+            else number(mass.inertia)
+        }
 
     def matter(body: Link | PointMass) -> Description:
         if isinstance(body, PointMass):
@@ -323,7 +408,10 @@ def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[
 
     def along(link: Link, density: Density) -> Description:
         scale = link.length if density.per_length else 1.0
-        return {"breaks": list(density.breaks), "cells": [vector(c * scale for c in cell) for cell in density.cells]}
+        return {
+            "breaks": list(density.breaks),
+            "cells": [vector(c * scale for c in cell) for cell in density.cells],
+        }
 
     def fitted(joint: Joint) -> Description:
         parts = mechanism.fitted.get(joint.name)
@@ -347,7 +435,10 @@ def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[
         }
 
     def load_of(load: Load) -> Description:
-        found: Description = {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
+        found: Description = {
+            "kind": type(load).__name__.lower(),
+            "points": [place(point) for point in load.points],
+        }
         if mechanism.space:
             found["turning"] = getattr(load, "turning", False)
         if isinstance(load, Friction):
@@ -357,17 +448,38 @@ def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[
 
     bodies = {body.name: matter(body) for body in mechanism.moving}
     loads = {name: load_of(load) for name, load in mechanism.loads.items()}
-    joints = {joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint) for joint in mechanism.joints.values()}
+    joints = {
+        joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint)
+        for joint in mechanism.joints.values()
+    }
     parameters = {
         name: {"value": None, "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
         for name, parameter in mechanism.parameters.items()
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}
-    beside = {name: vector(link.beside) for name, link in mechanism.links.items() if link.beside is not None}
-    outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
-    lossy = [c.name for c in mechanism.constraints.values() if c.transmission is not None and c.transmission.loss is not None]
+    beside = {
+        name: vector(link.beside)
+        for name, link in mechanism.links.items()
+        if link.beside is not None
+    }
+    outlines = {
+        name: [vector(corner) for corner in link.outline]
+        for name, link in mechanism.links.items()
+        if link.outline
+    }
+    lossy = [
+        c.name
+        for c in mechanism.constraints.values()
+        if c.transmission is not None and c.transmission.loss is not None
+    ]
     unturned = [joint.name for joint in mechanism.joints.values() if _lies_by_default(joint)]
-    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside), ("unturned", unturned)
+    told = (
+        ("paths", paths),
+        ("outlines", outlines),
+        ("losses", lossy),
+        ("beside", beside),
+        ("unturned", unturned),
+    )
     return {
         "name": mechanism.name,
         "parameters": parameters,

@@ -1,4 +1,6 @@
-"""Directions in space as users tell them: axes, turns in sequence, places of a reference posture, moments of inertia."""
+"""Directions in space as users tell them: axes, turns in sequence, places of a reference posture,
+moments of inertia.
+"""
 
 from __future__ import annotations
 
@@ -34,22 +36,32 @@ FAINT = 1e-15
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Where a body is in the reference posture: its origin, its axes, and the tip of a link, in ground axes."""
+    """Where a body is in the reference posture: its origin, its axes, and the tip of a link, in
+    ground axes.
+    """
 
     origin: Vector = ZERO
     rotation: Rotation = Rotation()  # noqa: RUF009 - it is frozen
     tip: Vector | None = None
 
     def point(self, body: Body, place: Vector) -> Point:
-        """The body's point at a place; of a link its base or tip to the last digit, where that is the place but for rounding."""
+        """The body's point at a place; of a link its base or tip to the last digit, where that is
+        the place but for rounding.
+        """
         if isinstance(body, Link) and self.tip is not None:
             for end, there in ((body.base, self.origin), (body.tip, self.tip)):
-                if all(_is_same(one, other, body.length) for one, other in zip(place, there, strict=True)):
+                if all(
+                    _is_same(one, other, body.length)
+                    for one, other in zip(place, there, strict=True)
+                ):
                     return end
         x, y, z = self.local(place)
         if isinstance(body, Link):
             # What lies on its axis lies there to the last digit.
-            x, y, z = (0.0 if _is_same(component, 0.0, body.length) else component for component in (x, y, z))
+            x, y, z = (
+                0.0 if _is_same(component, 0.0, body.length) else component
+                for component in (x, y, z)
+            )
         return Point(body, x, y, z=z)
 
     def local(self, place: Vector) -> Vector:
@@ -75,12 +87,14 @@ def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
 
 
 def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") -> Triad:
-    """Directions u, v, w at right angles: along an axis, along a second one or any across it, and at right angles to both.
+    """Directions u, v, w at right angles: along an axis, along a second one or any across it, and
+    at right angles to both.
 
-    A second one that is off a right angle by the rounding of a drawing is made exact: its part across the first is taken. Where
-    parameters set them, so it is if their defaults are off; what other values are off by more than that is left, to be refused.
-    It is noted for the joint ``what``. Raises :class:`DeclarationError`, which names a ``part`` of it, for an axis of length zero,
-    and for a second one that is off by more.
+    A second one that is off a right angle by the rounding of a drawing is made exact: its part
+    across the first is taken. Where parameters set them, so it is if their defaults are off; what
+    other values are off by more than that is left, to be refused. It is noted for the joint
+    ``what``. Raises :class:`DeclarationError`, which names a ``part`` of it, for an axis of length
+    zero, and for a second one that is off by more.
     """
     said = f"{what}{part}"
     if axis is None:
@@ -96,7 +110,9 @@ def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") 
         if isinstance(cosine, float) and abs(cosine) > ROUNDED:
             raise DeclarationError(not_right(said, cosine))
         if SAME < abs(off := own.at_defaults(cosine)) <= ROUNDED:
-            along = cosine if isinstance(cosine, float) else ca.fmax(-ROUNDED, ca.fmin(ROUNDED, cosine))
+            along = (
+                cosine if isinstance(cosine, float) else ca.fmax(-ROUNDED, ca.fmin(ROUNDED, cosine))
+            )
             v = _unit(f"{said}: second axis", minus(v, times(along, u)))
             own.snapped(what, angle=abs(off))
     return u, v, cross(u, v)
@@ -109,13 +125,17 @@ def not_right(what: str, cosine: float) -> str:
 
 
 def most_across(axis: Sequence[float]) -> int:
-    """Which coordinate axis is most across a direction; of those that are but for rounding, the first."""
+    """Which coordinate axis is most across a direction; of those that are but for rounding, the
+    first.
+    """
     least = min(map(abs, axis))
     return next(k for k in range(3) if abs(axis[k]) <= least + ROUNDED)
 
 
 def across(axis: Vector) -> Vector:
-    """A direction at right angles to one: the part across it of the coordinate axis that is most across; of symbols, any."""
+    """A direction at right angles to one: the part across it of the coordinate axis that is most
+    across; of symbols, any.
+    """
     if all(isinstance(component, float) for component in axis):
         most = most_across(axis)
         return _unit("axis", minus(AXES[most], times(axis[most], axis)))
@@ -127,8 +147,13 @@ def across(axis: Vector) -> Vector:
 
 
 def turned_by(what: str, turned: Any, own: Ownership) -> tuple[Vector, Vector]:
-    """The directions of a body's x and y axes: as told, or after turns in sequence, each about an axis that those before carry."""
-    expected = "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the child's x and y axes"
+    """The directions of a body's x and y axes: as told, or after turns in sequence, each about an
+    axis that those before carry.
+    """
+    expected = (
+        "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the"
+        " child's x and y axes"
+    )
     if not isinstance(turned, (list, tuple)):
         raise DeclarationError(f"{what}: turned is {expected}, got {turned!r}")
     if len(turned) == 2 and all(isinstance(one, (tuple, list)) and len(one) == 3 for one in turned):
@@ -143,8 +168,12 @@ def turned_by(what: str, turned: Any, own: Ownership) -> tuple[Vector, Vector]:
     return found.x, found.y
 
 
-def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Reference, Expression, Vector | None]:
-    """The reference of a link that lies between two places, its length, and the direction ``beside`` of length 1, where told."""
+def between(
+    what: str, places: Any, beside: Any, checked: Checked
+) -> tuple[Reference, Expression, Vector | None]:
+    """The reference of a link that lies between two places, its length, and the direction
+    ``beside`` of length 1, where told.
+    """
     if not isinstance(places, (tuple, list)) or len(places) != 2:
         raise DeclarationError(f"{what}: between must be two places, got {places!r}")
     base, tip = (vector(f"{what}: between", place, checked, "m") for place in places)
@@ -160,44 +189,66 @@ def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Refe
         aside = _unit(f"{what}: beside", vector(f"{what}: beside", beside, checked))
         part = minus(aside, times(dot(aside, x), x))
         if all(isinstance(component, float) and abs(component) < RIGHT for component in part):
-            raise DeclarationError(f"{what}: beside lies along the link, and must tell which way its y axis is")
+            raise DeclarationError(
+                f"{what}: beside lies along the link, and must tell which way its y axis is"
+            )
         y = _unit(f"{what}: beside", part)
     return Reference(base, Rotation.of(x, y), tip), length, aside
 
 
 def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:
-    """Moments of inertia as three rows, symmetric to the last digit where they are but for rounding.
+    """Moments of inertia as three rows, symmetric to the last digit where they are but for
+    rounding.
 
     Raises :class:`DeclarationError` for what is no symmetric matrix, and are not three moments.
     """
     told = f"{what}: inertia"
-    if isinstance(inertia, (tuple, list)) and len(inertia) == 3 and not any(isinstance(row, (tuple, list)) for row in inertia):
+    if (
+        isinstance(inertia, (tuple, list))
+        and len(inertia) == 3
+        and not any(isinstance(row, (tuple, list)) for row in inertia)
+    ):
         x, y, z = vector(told, inertia, checked)
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
-        raise DeclarationError(f"{told} must be three moments, or a matrix of three rows, got {inertia!r}")
+        raise DeclarationError(
+            f"{told} must be three moments, or a matrix of three rows, got {inertia!r}"
+        )
     rows = [list(vector(told, row, checked)) for row in inertia]
-    size = max((abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0)
+    size = max(
+        (abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0
+    )
     for i in range(3):
         for j in range(i):
             if not _is_same(rows[i][j], rows[j][i], size):
-                raise DeclarationError(f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) differ")
+                raise DeclarationError(
+                    f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1},"
+                    f" {i + 1}) differ"
+                )
             rows[i][j] = rows[j][i]
     x, y, z = ((one, two, three) for one, two, three in rows)
     return x, y, z
 
 
-def rotated(moments: tuple[Vector, Vector, Vector], reference: Reference) -> tuple[Vector, Vector, Vector]:
+def rotated(
+    moments: tuple[Vector, Vector, Vector], reference: Reference
+) -> tuple[Vector, Vector, Vector]:
     """Moments of inertia on ground axes, on a body's."""
     axes = (reference.rotation.x, reference.rotation.y, reference.rotation.z)
     x, y, z = (
-        tuple(dot(one, (dot(moments[0], other), dot(moments[1], other), dot(moments[2], other))) for other in axes) for one in axes
+        tuple(
+            dot(one, (dot(moments[0], other), dot(moments[1], other), dot(moments[2], other)))
+            for other in axes
+        )
+        for one in axes
     )
     return (x[0], x[1], x[2]), (x[1], y[1], y[2]), (x[2], y[2], z[2])
 
 
 def _is_same(one: Expression, other: Expression, size: Expression) -> bool:
-    """Whether two expressions are one, as they are written; numbers but for rounding, beside a size."""
+    """Whether two expressions are one, as they are written; numbers but for rounding, beside a
+    size.
+    """
     if isinstance(one, float) and isinstance(other, float):
         return one == other or (isinstance(size, float) and abs(one - other) <= SAME * size)
     return bool(ca.is_equal(ca.SX(one), ca.SX(other), 9))
@@ -214,8 +265,13 @@ def _unit(what: str, value: Vector) -> Vector:
 
 
 def _settled(direction: Vector) -> Vector:
-    """A direction whose components are nothing where they are rounding: so what slides across a link stays at its end."""
-    x, y, z = (0.0 if isinstance(component, float) and abs(component) < FAINT else component for component in direction)
+    """A direction whose components are nothing where they are rounding: so what slides across a
+    link stays at its end.
+    """
+    x, y, z = (
+        0.0 if isinstance(component, float) and abs(component) < FAINT else component
+        for component in direction
+    )
     return x, y, z
 
 

@@ -12,26 +12,33 @@ from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 
 BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far an argument may be beyond the ends of a curve by rounding, as :func:`beyond_ends` tells it."""
+"""How far an argument may be beyond the ends of a curve by rounding, as :func:`beyond_ends` tells
+it.
+"""
 
 
 @symbolic
 def beyond_ends(expression: Any) -> list[Any]:
-    """How far each argument of an expression's curves is beyond the curve's ends; of curves that have ends.
+    """How far each argument of an expression's curves is beyond the curve's ends; of curves that
+    have ends.
 
-    The square of how far it is from the middle between the ends, over the square of how far these are, less one: it is above zero
-    beyond the ends, and smooth, so that splines may follow it.
+    The square of how far it is from the middle between the ends, over the square of how far these
+    are, less one: it is above zero beyond the ends, and smooth, so that splines may follow it.
     """
     expression = ca.densify(ca.vec(ca.SX(expression)))
     function = ca.Function("arguments", ca.symvar(expression), [expression], {"cse": True})
-    calls = [k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CALL]
+    calls = [
+        k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CALL
+    ]
     written: Any = function.instructions_sx() if calls else None
     found: list[Any] = []
     for k in calls:
         table = lookup(written[k].which_function())
         if table is not None and table.ends:
             low, high = float(table.numbers[0]), float(table.numbers[-1])
-            found.append(((2.0 / (high - low)) * written[k].dep(0) - (high + low) / (high - low)) ** 2 - 1.0)
+            found.append(
+                ((2.0 / (high - low)) * written[k].dep(0) - (high + low) / (high - low)) ** 2 - 1.0
+            )
     return found
 
 

@@ -30,7 +30,8 @@ _UNEVEN = 1e-9
 def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
     """Even points in numbers, of a unit.
 
-    Raises :class:`DeclarationError` for a count below 1, ends that are not finite, or too far apart for a double, fall, or are one.
+    Raises :class:`DeclarationError` for a count below 1, ends that are not finite, or too far apart
+    for a double, fall, or are one.
     """
     try:
         if isinstance(even, str | Mapping) or len(even) != 3:
@@ -38,26 +39,34 @@ def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
         start, stop = (number(end, unit, finite=False) for end in (even[0], even[1]))
         count = int(number(even[2]))
     except (TypeError, ValueError, LookupError, OverflowError):
-        raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}") from None
+        raise DeclarationError(
+            f"{what}: expected (start, stop, count), got {shown(even)}"
+        ) from None
     if count < 1 or count != even[2]:
-        raise DeclarationError(f"{what}: COUNT must be a whole number from 1 to 2^63 - 1, got {shown(even[2])}")
+        raise DeclarationError(
+            f"{what}: COUNT must be a whole number from 1 to 2^63 - 1, got {shown(even[2])}"
+        )
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
     if not math.isfinite(stop - start):
-        raise DeclarationError(f"{what}: START and STOP are too far apart, got {start:g} and {stop:g}")
+        raise DeclarationError(
+            f"{what}: START and STOP are too far apart, got {start:g} and {stop:g}"
+        )
     if stop < start or (count > 1 and stop == start):
         raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
     if count == 1 and stop > start:
-        raise DeclarationError(f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1")
+        raise DeclarationError(
+            f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1"
+        )
     return start, stop, count
 
 
 def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Array:
     """All of some even points, or those of given numbers.
 
-    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
-    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
-    memory holds.
+    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not
+    0.30000000000000004; where these take more than the digits of a double, they are those of
+    ``numpy.linspace``. Raises :class:`SizeError` for more than memory holds.
     """
     start, stop, count = even
     if numbers is None:

@@ -18,19 +18,28 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def check_name(kind: str, name: str) -> None:
-    """Raise :class:`DeclarationError` for what cannot be a name in a file, on the command line, and in C."""
+    """Raise :class:`DeclarationError` for what cannot be a name in a file, on the command line, and
+    in C.
+    """
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise DeclarationError(f"{kind} name {name!r} must be a letter followed by letters, digits or underscores")
+        raise DeclarationError(
+            f"{kind} name {name!r} must be a letter followed by letters, digits or underscores"
+        )
 
 
 def check_line(what: str, text: object) -> None:
-    """Raise :class:`DeclarationError` for what is no line of printable characters: it may stand in files, figures and C."""
+    """Raise :class:`DeclarationError` for what is no line of printable characters: it may stand in
+    files, figures and C.
+    """
     if not isinstance(text, str) or not text.isprintable():
         raise DeclarationError(f"{what} must be a line of printable characters, got {text!r}")
 
 
-def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: str = "1") -> Expression:
-    """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text, as ``"100 mm"``.
+def scalar(
+    what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: str = "1"
+) -> Expression:
+    """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text,
+    as ``"100 mm"``.
 
     Raises :class:`DeclarationError`, saying what is ``allowed``.
     """
@@ -38,15 +47,18 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: st
         if value.numel() != 1:
             raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
         known = {symbol.element_hash() for symbol in symbols}
-        foreign = [f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known]
+        foreign = [
+            f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known
+        ]
         if foreign:
             raise DeclarationError(f"{what} depends on {', '.join(foreign)}, not a {allowed}")
         if not (value.is_constant() or value.is_symbolic()):
             called = ca.Function("expression", ca.symvar(value), [value]).find_functions()
             if any(function.class_name().endswith("Interpolant") for function in called):
                 raise DeclarationError(
-                    f"{what} calls casadi.interpolant, whose C runs in doubles only, and one instant at a time; expected "
-                    "lagrange_casadi.curve(x, y)(ARGUMENT), smooth, or where corners may be table(ARGUMENT, x, y)"
+                    f"{what} calls casadi.interpolant, whose C runs in doubles only, and one"
+                    " instant at a time; expected lagrange_casadi.curve(x, y)(ARGUMENT), smooth,"
+                    " or where corners may be table(ARGUMENT, x, y)"
                 )
             return written_out(value)
         return value
@@ -55,17 +67,25 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: st
     except NumberError as error:
         if isinstance(value, str) and unit != "1":
             raise DeclarationError(f"{what}: {error}") from None
-        raise DeclarationError(f"{what} must be a number or an expression in parameters, got {shown(value)}") from None
+        raise DeclarationError(
+            f"{what} must be a number or an expression in parameters, got {shown(value)}"
+        ) from None
     if not math.isfinite(found):
-        nan = "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin" if math.isnan(found) else ""
+        nan = (
+            "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin"
+            if math.isnan(found)
+            else ""
+        )
         raise DeclarationError(f"{what} must be finite, got {found}{nan}")
     return found
 
 
 def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expression], str]:
-    """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in which unit texts tell them.
+    """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in
+    which unit texts tell them.
 
-    That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none of these, or in both units.
+    That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none
+    of these, or in both units.
     """
     found: list[Expression] = []
     units: set[str] = set()
@@ -74,11 +94,16 @@ def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expres
         base = unit.removesuffix(per)
         if isinstance(value, str) and unit not in (f"rad{per}", f"m{per}"):
             examples = f"'350 deg{per}' or '100 mm{per}'"
-            raise DeclarationError(f"{what}: expected a number, an expression, or a text such as {examples}, got {shown(value)}")
+            raise DeclarationError(
+                f"{what}: expected a number, an expression, or a text such as {examples}, got"
+                f" {shown(value)}"
+            )
         units |= {base} if unit else set()
         found.append(scalar(what, read, symbols_of(read), "parameter"))
     if len(units) > 1:
-        raise DeclarationError(f"{what}: angles and lengths at once; expected those of one coordinate")
+        raise DeclarationError(
+            f"{what}: angles and lengths at once; expected those of one coordinate"
+        )
     return found, next(iter(units), "")
 
 
@@ -88,17 +113,22 @@ def symbols_of(value: Any) -> list[Any]:
 
 
 def sound(condition: Any) -> Any:
-    """One where a condition on parameters holds; elsewhere not a number, which every backend and compiler has as a root."""
+    """One where a condition on parameters holds; elsewhere not a number, which every backend and
+    compiler has as a root.
+    """
     return ca.sqrt(2.0 * condition - 1.0)
 
 
 def told(error: BaseException) -> str:
-    """What an error says, in a line; of a choice that Python cannot make for a symbol, what makes it instead."""
+    """What an error says, in a line; of a choice that Python cannot make for a symbol, what makes
+    it instead.
+    """
     text = one_line(error)
     if "truth value of a CasADi" in text:
         return (
-            "a symbol is neither true nor false before it has a value: use casadi.if_else(condition, a, b) for 'if', "
-            "casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and 'max'"
+            "a symbol is neither true nor false before it has a value: use"
+            " casadi.if_else(condition, a, b) for 'if', casadi.logic_and and logic_or for 'and' and"
+            " 'or', casadi.fmin and fmax for 'min' and 'max'"
         )
     return f"{type(error).__name__}: {text}"
 
@@ -111,8 +141,13 @@ def bound(what: str, value: Any, unit: str) -> float:
         raise DeclarationError(f"{what}: {error}") from None
 
 
-def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:
-    """A direction of length one. Raises :class:`DeclarationError` for (0, 0), or for what has not two components."""
+def unit_vector(
+    what: str, axis: Any, component: Callable[[Any], Expression]
+) -> tuple[Expression, Expression]:
+    """A direction of length one.
+
+    Raises :class:`DeclarationError` for (0, 0), or for what has not two components.
+    """
     if not isinstance(axis, (tuple, list)) or len(axis) != 2:
         raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
     x, y = (component(a) for a in axis)
@@ -130,17 +165,30 @@ def plain(value: Any) -> Expression:
     return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
 
 
-def value_of(expression: Expression, symbols: Mapping[str, Any], values: Mapping[str, float]) -> float:
-    """The value of an expression in parameters. Raises :class:`.DeclarationError` for what is none, or lacks values."""
+def value_of(
+    expression: Expression, symbols: Mapping[str, Any], values: Mapping[str, float]
+) -> float:
+    """The value of an expression in parameters.
+
+    Raises :class:`.DeclarationError` for what is none, or lacks values.
+    """
     if not isinstance(expression, ca.SX):
         try:
             return float(expression)
         except (TypeError, ValueError, OverflowError, RuntimeError):
-            raise DeclarationError(f"number: expected an expression in parameters, got {shown(expression)}") from None
+            raise DeclarationError(
+                f"number: expected an expression in parameters, got {shown(expression)}"
+            ) from None
     if missing := [name for name in symbols if name not in values]:
-        raise DeclarationError(f"number: expected values of all parameters, and {', '.join(missing)} have none")
+        raise DeclarationError(
+            f"number: expected values of all parameters, and {', '.join(missing)} have none"
+        )
     try:
         numbers = ca.vertcat(ca.SX(0, 1), *(values[name] for name in symbols))
-        return float(ca.evalf(ca.substitute(expression, ca.vertcat(ca.SX(0, 1), *symbols.values()), numbers)))
+        return float(
+            ca.evalf(ca.substitute(expression, ca.vertcat(ca.SX(0, 1), *symbols.values()), numbers))
+        )
     except (RuntimeError, NotImplementedError):
-        raise DeclarationError(f"number: expected an expression in parameters alone, got {shown(expression)}") from None
+        raise DeclarationError(
+            f"number: expected an expression in parameters alone, got {shown(expression)}"
+        ) from None

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Pin:
     """A pin through an eye between two cheeks of a fork [m].
 
-    ``eye`` is the width of the eye, ``cheek`` that of each cheek, ``gap`` that between eye and cheek; ``pressure`` is what the
-    softer of them bears [Pa]. The pin fits loosely in both.
+    ``eye`` is the width of the eye, ``cheek`` that of each cheek, ``gap`` that between eye and
+    cheek; ``pressure`` is what the softer of them bears [Pa]. The pin fits loosely in both.
     """
 
     diameter: Symbolic
@@ -38,8 +38,9 @@ class Pin:
 class Plain:
     """A plain bearing by its bore and its width [m], and what its material bears.
 
-    ``pressure`` is the largest load over bore times width [Pa], ``speed`` the largest speed of sliding [m/s], and ``heating`` the
-    largest mean of the product of both over time [W/m^2]. What is None is not looked at.
+    ``pressure`` is the largest load over bore times width [Pa], ``speed`` the largest speed of
+    sliding [m/s], and ``heating`` the largest mean of the product of both over time [W/m^2]. What
+    is None is not looked at.
     """
 
     bore: Symbolic
@@ -54,8 +55,9 @@ class Plain:
 class Rolling:
     """A rolling bearing by its ratings, and the hours that nine of ten must run.
 
-    ``dynamic`` and ``static`` are its basic load ratings C and C0 [N]; ``exponent`` is 3 of ball bearings and 10/3 of roller
-    bearings. The equivalent load is ``radial`` times the force across the pin's axis, and ``axial`` times that along it (ISO 281).
+    ``dynamic`` and ``static`` are its basic load ratings C and C0 [N]; ``exponent`` is 3 of ball
+    bearings and 10/3 of roller bearings. The equivalent load is ``radial`` times the force across
+    the pin's axis, and ``axial`` times that along it (ISO 281).
     """
 
     dynamic: Positive
@@ -67,17 +69,22 @@ class Rolling:
 
 
 Fitted = Pin | Plain | Rolling
-KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {"pin": Pin, "plain": Plain, "rolling": Rolling}
+KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {
+    "pin": Pin,
+    "plain": Plain,
+    "rolling": Rolling,
+}
 _UNITS = dict.fromkeys(("diameter", "eye", "cheek", "gap", "bore", "width"), "m") | {"speed": "m/s"}
 _MAY_BE_ZERO = ("gap", "axial", "radial")
 
 
 @public
 def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
-    """Say what a pin joint of a mechanism is made of: of each kind one part at most, for ``safety:JOINT``.
+    """Say what a pin joint of a mechanism is made of: of each kind one part at most, for
+    ``safety:JOINT``.
 
-    Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for what is no such part, and for
-    numbers that are not positive.
+    Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for
+    what is no such part, and for numbers that are not positive.
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "own"):
         raise DeclarationError(f"fit: expected a Mechanism first, got {shown(mechanism)}")
@@ -85,15 +92,26 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     what = f"joint '{joint.name}'"
     mechanism.own.open(f"fit {what}")
     if joint.kind not in ("revolute", "cylindrical"):
-        raise DeclarationError(f"{what}: pins and bearings are fitted to revolute and cylindrical joints, and it is {joint.kind}")
+        raise DeclarationError(
+            f"{what}: pins and bearings are fitted to revolute and cylindrical joints, and it is"
+            f" {joint.kind}"
+        )
     found: dict[str, Fitted] = dict(mechanism.fitted.get(joint.name, {}))
     for part in parts:
         kind = next((name for name, known in KINDS.items() if isinstance(part, known)), None)
         if kind is None:
-            raise DeclarationError(f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got {shown(part)}")
+            raise DeclarationError(
+                f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got"
+                f" {shown(part)}"
+            )
         if kind in found:
             raise DeclarationError(f"{what}: it has a {kind} part already")
-        found[kind] = type(part)(**{name: _checked(mechanism, f"{what}: {kind}", name, value) for name, value in _numbers(part)})
+        found[kind] = type(part)(
+            **{
+                name: _checked(mechanism, f"{what}: {kind}", name, value)
+                for name, value in _numbers(part)
+            }
+        )
     mechanism.fitted[joint.name] = found
 
 
@@ -104,7 +122,9 @@ def _numbers(part: Fitted) -> list[tuple[str, Any]]:
 def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
     if name == "material":
         if not isinstance(value, Material):
-            raise DeclarationError(f"{what}: expected a material of lagrange_casadi.beams, got {value!r}")
+            raise DeclarationError(
+                f"{what}: expected a material of lagrange_casadi.beams, got {value!r}"
+            )
         value.needs(what, "yield_strength")
         return value
     if value is None and name in ("pressure", "speed", "heating", "static"):
@@ -126,11 +146,17 @@ def told_parts(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> d
     def plain(name: str, value: Any) -> Any:
         return asdict(value) if name == "material" else None if value is None else number(value)
 
-    return {kind: {name: plain(name, value) for name, value in _numbers(part)} for kind, part in parts.items()}
+    return {
+        kind: {name: plain(name, value) for name, value in _numbers(part)}
+        for kind, part in parts.items()
+    }
 
 
 def parts_told(told: Mapping[str, Any]) -> dict[str, Fitted]:
-    """The parts of such numbers. Raises ``LookupError`` or ``TypeError`` for what are none, as in a forged file."""
+    """The parts of such numbers.
+
+    Raises ``LookupError`` or ``TypeError`` for what are none, as in a forged file.
+    """
     found: dict[str, Fitted] = {}
     for kind, numbers in told.items():
         words = dict(numbers)

@@ -12,26 +12,44 @@ from .ownership import Ownership
 from .parts import POSITIVE, Expression, Friction
 
 _UNITS = {"radius": "m", "length": "m", "stribeck": "m/s"}
-_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "prismatic", "cylindrical", "screw", "spherical")
+_IN_PLANE, _IN_SPACE = (
+    ("revolute", "prismatic", "slot"),
+    ("revolute", "prismatic", "cylindrical", "screw", "spherical"),
+)
 
 
-def friction(own: Ownership, name: str, joint: Joint, along: str, told: Mapping[str, Expression | None]) -> Friction:
-    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it; ``along`` names a coordinate of a joint of two.
+def friction(
+    own: Ownership, name: str, joint: Joint, along: str, told: Mapping[str, Expression | None]
+) -> Friction:
+    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it; ``along`` names
+    a coordinate of a joint of two.
 
-    Raises :class:`DeclarationError` where the joint has no such friction, and where a number is missing or says nothing.
+    Raises :class:`DeclarationError` where the joint has no such friction, and where a number is
+    missing or says nothing.
     """
     own.free("load", name, own.mechanism.loads)
     what = f"friction '{name}'"
     axis, beside = _axes(own, what, joint, along)
     units = _UNITS | {"smooth": "rad/s" if axis.kind == "angle" else "m/s"}
-    numbers = {key: _number(own, what, key, value, units.get(key, "1")) for key, value in told.items() if value is not None}
+    numbers = {
+        key: _number(own, what, key, value, units.get(key, "1"))
+        for key, value in told.items()
+        if value is not None
+    }
     _require(what, joint, axis, numbers)
     if numbers.get("static") is not None and "stribeck" not in numbers:
-        raise DeclarationError(f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from static")
+        raise DeclarationError(
+            f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from"
+            " static"
+        )
     if "stribeck" in numbers and "static" not in numbers:
-        raise DeclarationError(f"{what}: stribeck goes with static, the friction coefficient at the start of sliding")
+        raise DeclarationError(
+            f"{what}: stribeck goes with static, the friction coefficient at the start of sliding"
+        )
     if beside is not None and "smooth" in numbers:
-        raise DeclarationError(f"{what}: joint '{joint.name}' slides and turns at once, and has no smooth sign")
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' slides and turns at once, and has no smooth sign"
+        )
     return Friction(
         name,
         joint,
@@ -54,21 +72,30 @@ def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Ax
     valid = _IN_SPACE if own.mechanism.space else _IN_PLANE
     if joint.kind not in valid:
         where = "space" if own.mechanism.space else "a plane"
-        raise DeclarationError(f"{what}: joint '{joint.name}' is {joint.kind}; in {where} these may rub: {', '.join(valid)}")
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' is {joint.kind}; in {where} these may rub:"
+            f" {', '.join(valid)}"
+        )
     if not joint.axes:
         points = [body.name for body in joint.bodies if not body.oriented]
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it "
-            "as a link with mass, centre and inertia"
+            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has"
+            " no direction; declare it as a link with mass, centre and inertia"
         )
     if joint.kind == "spherical":
         if along:
-            raise DeclarationError(f"{what}: joint '{joint.name}' rubs along the way in which it turns, and not along '{along}'")
+            raise DeclarationError(
+                f"{what}: joint '{joint.name}' rubs along the way in which it turns, and not along"
+                f" '{along}'"
+            )
         return joint.axes[0], None
     names = [axis.name for axis in joint.axes if axis.name]
     if len(names) == 2:
         if along not in names:
-            raise DeclarationError(f"{what}: joint '{joint.name}' has two coordinates; expected along='{names[0]}' or '{names[1]}'")
+            raise DeclarationError(
+                f"{what}: joint '{joint.name}' has two coordinates; expected along='{names[0]}' or"
+                f" '{names[1]}'"
+            )
         first, second = joint.axes
         return (first, second) if along == names[0] else (second, first)
     if along and along not in names:
@@ -81,41 +108,66 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
     if "mu" not in numbers and "viscous" not in numbers:
         raise DeclarationError(f"{what}: expected mu, a friction coefficient, or viscous")
     if "mu" not in numbers:
-        needless = [key for key in ("radius", "length", "static", "stribeck", "smooth") if key in numbers]
+        needless = [
+            key for key in ("radius", "length", "static", "stribeck", "smooth") if key in numbers
+        ]
         if needless:
             raise DeclarationError(f"{what}: {needless[0]} goes with mu, a friction coefficient")
         return
     if joint.kind == "screw" and "static" in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' is a screw, and a thread has one mu; valid: mu, radius, viscous, smooth"
+            f"{what}: joint '{joint.name}' is a screw, and a thread has one mu; valid: mu, radius,"
+            " viscous, smooth"
         )
-    if joint.turned is not None and joint.kind == "prismatic" and joint.bears_moment and "radius" not in numbers:
+    if (
+        joint.turned is not None
+        and joint.kind == "prismatic"
+        and joint.bears_moment
+        and "radius" not in numbers
+    ):
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' holds its child against turning about its line; expected radius, at which it does [m]"
+            f"{what}: joint '{joint.name}' holds its child against turning about its line; expected"
+            " radius, at which it does [m]"
         )
     if axis.kind == "angle" or joint.kind == "cylindrical":
         if "radius" not in numbers:
-            raise DeclarationError(f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]")
-        borne = joint.turned is not None and joint.kind in ("revolute", "cylindrical") and joint.bears_moment
+            raise DeclarationError(
+                f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]"
+            )
+        borne = (
+            joint.turned is not None
+            and joint.kind in ("revolute", "cylindrical")
+            and joint.bears_moment
+        )
         if borne and "length" not in numbers:
             raise DeclarationError(
-                f"{what}: joint '{joint.name}' bears a moment; expected length, from one bearing to the other [m]"
+                f"{what}: joint '{joint.name}' bears a moment; expected length, from one bearing to"
+                " the other [m]"
             )
         if "length" in numbers and not borne:
-            raise DeclarationError(f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius")
+            raise DeclarationError(
+                f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius"
+            )
         return
     if "radius" in numbers and not (joint.turned is not None and joint.bears_moment):
-        raise DeclarationError(f"{what}: joint '{joint.name}' slides and has no radius; valid: length")
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' slides and has no radius; valid: length"
+        )
     if joint.bears_moment and "length" not in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' bears a moment; expected length, that of its guidance [m], on whose two edges it rests"
+            f"{what}: joint '{joint.name}' bears a moment; expected length, that of its guidance"
+            " [m], on whose two edges it rests"
         )
     if not joint.bears_moment and "length" in numbers:
-        raise DeclarationError(f"{what}: joint '{joint.name}' bears no moment, and needs no length of guidance")
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' bears no moment, and needs no length of guidance"
+        )
 
 
 def _number(own: Ownership, what: str, word: str, value: Expression, unit: str) -> Expression:
     found, positive = own.expression(f"{what}: {word}", value, unit), word in POSITIVE
     if isinstance(found, float) and (found < 0.0 or (found == 0.0 and positive)):
-        raise DeclarationError(f"{what}: {word} must be {'positive' if positive else 'at least 0'}, got {found:g}")
+        raise DeclarationError(
+            f"{what}: {word} must be {'positive' if positive else 'at least 0'}, got {found:g}"
+        )
     return found

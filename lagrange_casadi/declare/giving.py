@@ -12,23 +12,31 @@ Elastic = bool | Sequence[str]
 
 
 def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
-    """What a scene says of elasticity, checked: no, yes, or the links that give way, in their order.
+    """What a scene says of elasticity, checked: no, yes, or the links that give way, in their
+    order.
 
-    Raises :class:`.UnknownNameError` for what is no link, and :class:`.DeclarationError` for a link that has no beam, or a material
-    without elasticity.
+    Raises :class:`.UnknownNameError` for what is no link, and :class:`.DeclarationError` for a link
+    that has no beam, or a material without elasticity.
     """
     if isinstance(elastic, bool):
         return elastic
     if not isinstance(elastic, (list, tuple)) or not all(isinstance(name, str) for name in elastic):
-        raise DeclarationError(f"elastic: expected True, or a list of the links that give way, got {elastic!r}")
-    having = [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
+        raise DeclarationError(
+            f"elastic: expected True, or a list of the links that give way, got {elastic!r}"
+        )
+    having = [
+        name
+        for name, link in mechanism.links.items()
+        if isinstance(link.mass, Density) and link.beam is not None
+    ]
     for name in elastic:
         if name not in mechanism.links:
             raise UnknownNameError("link in elastic", name, having)
         beam = mechanism.links[name].beam
         if name not in having or beam is None:
             raise DeclarationError(
-                f"elastic: link '{name}' has no beam, which says what it is made of; links with one: {', '.join(having) or 'none'}"
+                f"elastic: link '{name}' has no beam, which says what it is made of; links with"
+                f" one: {', '.join(having) or 'none'}"
             )
         beam.material.needs(f"elastic link '{name}'", "elasticity")
     return tuple(name for name in having if name in elastic)

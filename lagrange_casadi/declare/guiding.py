@@ -1,8 +1,9 @@
-"""Motions of points and of bodies' poses, said as motions of joints: of slides and a pin, without mass, that guide them.
+"""Motions of points and of bodies' poses, said as motions of joints: of slides and a pin, without
+mass, that guide them.
 
-The point of a path is pinned to a guide that slides along the ground's x and y; a body whose pose is given is turned on it. The
-guide bears nothing: no effort is at its joints, and what holds it there are the drives (:mod:`.drives`). So everything that
-solves loops of joints serves here too.
+The point of a path is pinned to a guide that slides along the ground's x and y; a body whose pose
+is given is turned on it. The guide bears nothing: no effort is at its joints, and what holds it
+there are the drives (:mod:`.drives`). So everything that solves loops of joints serves here too.
 """
 
 from __future__ import annotations
@@ -20,14 +21,21 @@ from .parts import Body, Link, Point, PointMass, RigidMass
 _NAMES = {1: ("",), 2: (".x", ".y"), 3: (".x", ".y", ".angle")}
 
 
-def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]) -> dict[str, Motion]:
+def laws_of(
+    mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]
+) -> dict[str, Motion]:
     """The motions by joint, those of guides by names like ``tool.x``.
 
-    Raises :class:`UnknownNameError` for what is no joint, path or body, and :class:`DeclarationError` for what cannot move so.
+    Raises :class:`UnknownNameError` for what is no joint, path or body, and
+    :class:`DeclarationError` for what cannot move so.
     """
     found: dict[str, Motion] = {}
     for name, laws in motion.items():
-        given = (laws,) if isinstance(laws, Motion) or not isinstance(laws, (tuple, list)) else tuple(laws)
+        given = (
+            (laws,)
+            if isinstance(laws, Motion) or not isinstance(laws, (tuple, list))
+            else tuple(laws)
+        )
         if name in mechanism.joints:
             joint = mechanism.joints[name]
             _check_joint(joint)
@@ -39,8 +47,9 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
             expected, what = 1, "joint"
         elif mechanism.space and (name in mechanism.paths or name in mechanism.bodies):
             raise DeclarationError(
-                f"motion of '{name}': in space the motion of a point or a pose is that of a joint: declare a free() joint from the "
-                "ground to it, give that its motion, and name the joints that make it by drives=[...]"
+                f"motion of '{name}': in space the motion of a point or a pose is that of a joint:"
+                " declare a free() joint from the ground to it, give that its motion, and name the"
+                " joints that make it by drives=[...]"
             )
         elif name in mechanism.paths:
             expected, what = 2, "path"
@@ -48,19 +57,38 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
             expected, what = (3 if mechanism.bodies[name].oriented else 2), "body"
         else:
             bodies = [body.name for body in mechanism.moving]
-            raise UnknownNameError("joint, path or body in motion", name, [*mechanism.coordinates, *mechanism.paths, *bodies])
+            raise UnknownNameError(
+                "joint, path or body in motion",
+                name,
+                [*mechanism.coordinates, *mechanism.paths, *bodies],
+            )
         for law in given:
             if not isinstance(law, Motion):
-                raise DeclarationError(f"motion of {what} '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
+                raise DeclarationError(
+                    f"motion of {what} '{name}': expected a law of lagrange_casadi.motion, got"
+                    f" {law!r}"
+                )
         if len(given) != expected or (expected > 1 and isinstance(laws, Motion)):
-            wanted = {1: "one law", 2: "two laws, of x and y", 3: "three laws, of x, y and the angle"}[expected]
-            raise DeclarationError(f"motion of {what} '{name}': expected {wanted}, got {len(given)}")
+            wanted = {
+                1: "one law",
+                2: "two laws, of x and y",
+                3: "three laws, of x, y and the angle",
+            }[expected]
+            raise DeclarationError(
+                f"motion of {what} '{name}': expected {wanted}, got {len(given)}"
+            )
         found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
     for name, law in found.items():
-        turns = mechanism.coordinates[name][1].kind == "angle" if name in mechanism.coordinates else name.endswith(".angle")
+        turns = (
+            mechanism.coordinates[name][1].kind == "angle"
+            if name in mechanism.coordinates
+            else name.endswith(".angle")
+        )
         unit = ANGLE if turns else LENGTH
         if law.unit not in ("", unit):
-            raise DeclarationError(f"motion of '{name}': it is told in {law.unit}, and its coordinate is in {unit}")
+            raise DeclarationError(
+                f"motion of '{name}': it is told in {law.unit}, and its coordinate is in {unit}"
+            )
     return found
 
 
@@ -68,7 +96,9 @@ def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
     """The motions of a joint's several axes, in their sequence."""
     names, what = [axis.coordinate for axis in joint.axes], f"motion of joint '{joint.name}'"
     if len(given) != len(names):
-        raise DeclarationError(f"{what}: expected {len(names)} laws, of {', '.join(names)}, got {len(given)}")
+        raise DeclarationError(
+            f"{what}: expected {len(names)} laws, of {', '.join(names)}, got {len(given)}"
+        )
     for law in given:
         if not isinstance(law, Motion):
             raise DeclarationError(f"{what}: expected laws of lagrange_casadi.motion, got {law!r}")
@@ -77,25 +107,49 @@ def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
 
 def _check_joint(joint: Joint) -> None:
     if not joint.axes:
-        why = "a weld does not move" if joint.kind == "weld" else "a point mass has no direction, so a pin at it has no angle"
+        why = (
+            "a weld does not move"
+            if joint.kind == "weld"
+            else "a point mass has no direction, so a pin at it has no angle"
+        )
         raise DeclarationError(f"joint '{joint.name}' cannot be driven: {why}")
 
 
 def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]) -> Mechanism:
-    """The mechanism with the guides of what moves as given, and with the same symbols; itself where only joints do."""
-    names = [name for name in motion if name not in mechanism.joints and name not in mechanism.coordinates]
+    """The mechanism with the guides of what moves as given, and with the same symbols; itself where
+    only joints do.
+    """
+    names = [
+        name
+        for name in motion
+        if name not in mechanism.joints and name not in mechanism.coordinates
+    ]
     if not names:
         return mechanism
     found = copy.copy(mechanism)
     found.bodies, found.joints = dict(mechanism.bodies), dict(mechanism.joints)
     for name in names:
-        body = mechanism.paths[name].point.body if name in mechanism.paths else mechanism.bodies[name]
+        body = (
+            mechanism.paths[name].point.body if name in mechanism.paths else mechanism.bodies[name]
+        )
         point = mechanism.paths[name].point if name in mechanism.paths else Point(body, 0.0, 0.0)
         turns = name not in mechanism.paths and body.oriented
         beside = Link(f"{name}.x", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
-        guide: Body = Link(f"{name}.y", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0)) if turns else PointMass(f"{name}.y", 0.0)
-        along = Joint(f"{name}.x", "prismatic", Point(mechanism.ground, 0.0, 0.0), Point(beside, 0.0, 0.0), (1.0, 0.0))
-        across = Joint(f"{name}.y", "prismatic", Point(beside, 0.0, 0.0), Point(guide, 0.0, 0.0), (0.0, 1.0))
+        guide: Body = (
+            Link(f"{name}.y", 0.0, RigidMass(0.0, (0.0, 0.0), 0.0))
+            if turns
+            else PointMass(f"{name}.y", 0.0)
+        )
+        along = Joint(
+            f"{name}.x",
+            "prismatic",
+            Point(mechanism.ground, 0.0, 0.0),
+            Point(beside, 0.0, 0.0),
+            (1.0, 0.0),
+        )
+        across = Joint(
+            f"{name}.y", "prismatic", Point(beside, 0.0, 0.0), Point(guide, 0.0, 0.0), (0.0, 1.0)
+        )
         if turns:
             held = Joint(f"{name}.angle", "revolute", Point(guide, 0.0, 0.0), point)
         else:

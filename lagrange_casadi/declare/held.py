@@ -21,17 +21,25 @@ ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
 
 @public
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
-    """The effective lengths of a link as a column over its own, where it bends along y and along z, by the joints at its ends.
+    """The effective lengths of a link as a column over its own, where it bends along y and along z,
+    by the joints at its ends.
 
-    In a plane a pin lets the end turn and holds it out of the plane; a weld, a slide, or the drive of a pin holds it. A link that
-    is pinned at both ends has 1, one of which an end is held 2, for nothing holds its other end sideways, and held at both 1. Out
-    of the plane a link that is joined at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
+    In a plane a pin lets the end turn and holds it out of the plane; a weld, a slide, or the drive
+    of a pin holds it. A link that is pinned at both ends has 1, one of which an end is held 2, for
+    nothing holds its other end sideways, and held at both 1. Out of the plane a link that is joined
+    at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
     theoretical numbers (Timoshenko and Gere, table of section 2.4).
     """
     if not (isinstance(description, Mapping) and {"bodies", "joints"} <= {*description}):
-        raise DeclarationError(f"effective_lengths: expected the description of a solution, got {shown(description)}")
+        raise DeclarationError(
+            f"effective_lengths: expected the description of a solution, got {shown(description)}"
+        )
     if link not in description["bodies"] or description["bodies"][link]["length"] is None:
-        raise UnknownNameError("link", link, [name for name, body in description["bodies"].items() if body["length"] is not None])
+        raise UnknownNameError(
+            "link",
+            link,
+            [name for name, body in description["bodies"].items() if body["length"] is not None],
+        )
     ends = held_ends(description, link)
     if in_space(description):
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)
@@ -71,7 +79,14 @@ def _holds(description: Description, link: str, tip: bool) -> str:
             if place is joint["parent"] and joint["kind"] in _SLIDING:
                 continue  # what slides along it is elsewhere
             lone = description["bodies"].get(other["body"], {"length": 0.0})["length"] is None
-            if lone and sum(other["body"] in (j["parent"]["body"], j["child"]["body"]) for j in description["joints"].values()) < 2:
+            if (
+                lone
+                and sum(
+                    other["body"] in (j["parent"]["body"], j["child"]["body"])
+                    for j in description["joints"].values()
+                )
+                < 2
+            ):
                 continue  # a mass that hangs on nothing else
             held = joint["kind"] in ("weld", "prismatic") or bool(joint["driven"])
             found = "held" if held and not lone else found or "turns"

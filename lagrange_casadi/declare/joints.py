@@ -1,7 +1,9 @@
-"""Joints: what each kind lets free, as one table, and a joint as the sequence of axes along which it does.
+"""Joints: what each kind lets free, as one table, and a joint as the sequence of axes along which
+it does.
 
-A kind's freedoms are slides and turns about the directions u, v, w of the joint's triad, which the parent carries. Slides come
-first; of several turns each is carried by the turns before it. A new kind of joint is an entry of the table.
+A kind's freedoms are slides and turns about the directions u, v, w of the joint's triad, which the
+parent carries. Slides come first; of several turns each is carried by the turns before it. A new
+kind of joint is an entry of the table.
 """
 
 from __future__ import annotations
@@ -11,7 +13,18 @@ from typing import Literal, NamedTuple
 
 from .parts import Body, Expression, Point, Vector
 
-JointKind = Literal["revolute", "prismatic", "cylindrical", "universal", "spherical", "screw", "planar", "slot", "weld", "free"]
+JointKind = Literal[
+    "revolute",
+    "prismatic",
+    "cylindrical",
+    "universal",
+    "spherical",
+    "screw",
+    "planar",
+    "slot",
+    "weld",
+    "free",
+]
 Move = Literal["slide", "turn", "screw"]
 Triad = tuple[Vector, Vector, Vector]
 
@@ -28,7 +41,11 @@ class Freedom(NamedTuple):
 
 
 _TURNS = (Freedom("turn_1", "turn", 0), Freedom("turn_2", "turn", 1), Freedom("turn_3", "turn", 2))
-_SLIDES = (Freedom("slide_1", "slide", 0), Freedom("slide_2", "slide", 1), Freedom("slide_3", "slide", 2))
+_SLIDES = (
+    Freedom("slide_1", "slide", 0),
+    Freedom("slide_2", "slide", 1),
+    Freedom("slide_3", "slide", 2),
+)
 
 IN_SPACE: dict[JointKind, tuple[Freedom, ...]] = {
     "revolute": (Freedom("", "turn", 0),),
@@ -37,7 +54,11 @@ IN_SPACE: dict[JointKind, tuple[Freedom, ...]] = {
     "universal": _TURNS[:2],
     "spherical": _TURNS,
     "screw": (Freedom("", "screw", 0),),
-    "planar": (Freedom("slide_1", "slide", 1), Freedom("slide_2", "slide", 2), Freedom("turn", "turn", 0)),
+    "planar": (
+        Freedom("slide_1", "slide", 1),
+        Freedom("slide_2", "slide", 2),
+        Freedom("turn", "turn", 0),
+    ),
     "slot": (Freedom("slide", "slide", 0), *_TURNS),
     "weld": (),
     "free": (*_SLIDES, *_TURNS),
@@ -55,10 +76,12 @@ IN_PLANE: dict[JointKind, tuple[Freedom, ...]] = {
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A coordinate of a joint: along what it is measured, in the parent's axes where all coordinates are zero.
+    """A coordinate of a joint: along what it is measured, in the parent's axes where all
+    coordinates are zero.
 
-    ``name`` is its own among the coordinates of its joint, empty where there is one; ``coordinate`` is its full name, ``JOINT`` or
-    ``JOINT:NAME``. Of a screw, ``pitch`` is how far it slides for an angle [m/rad].
+    ``name`` is its own among the coordinates of its joint, empty where there is one; ``coordinate``
+    is its full name, ``JOINT`` or ``JOINT:NAME``. Of a screw, ``pitch`` is how far it slides for an
+    angle [m/rad].
     """
 
     name: str
@@ -77,17 +100,21 @@ class Axis:
 class Joint:
     """A joint between a point of its parent and a point of its child.
 
-    - ``revolute`` holds the two points together; the coordinate is the child's direction less the parent's [rad].
-    - ``prismatic`` holds the child's point on the line through the parent's point along ``axis`` (a unit vector in the parent's
-      axes) and the child's direction at ``angle`` [rad] from the parent's; the coordinate is the place on the line [m].
+    - ``revolute`` holds the two points together; the coordinate is the child's direction less the
+      parent's [rad].
+    - ``prismatic`` holds the child's point on the line through the parent's point along ``axis`` (a
+      unit vector in the parent's axes) and the child's direction at ``angle`` [rad] from the
+      parent's; the coordinate is the place on the line [m].
     - ``slot`` holds the child's point on that line and leaves its direction free.
-    - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's; it has no coordinate.
+    - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's;
+      it has no coordinate.
 
     What slides on a line loads the line's carrier, the parent, where it is at the moment.
 
-    In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE` tells along which the joint moves;
-    ``turned`` are the directions of the child's x and y axes, in the parent's axes, where all coordinates are zero. ``pitch`` is
-    that of a screw [m/rad]. ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by default.
+    In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE`
+    tells along which the joint moves; ``turned`` are the directions of the child's x and y axes, in
+    the parent's axes, where all coordinates are zero. ``pitch`` is that of a screw [m/rad].
+    ``turn_given`` says whether ``angle`` or ``turned`` was declared, and not taken by default.
     """
 
     name: str
@@ -103,7 +130,9 @@ class Joint:
 
     @property
     def triad(self) -> Triad:
-        """Three directions at right angles that the parent carries; in a plane along the axis, across it, and out of the plane."""
+        """Three directions at right angles that the parent carries; in a plane along the axis,
+        across it, and out of the plane.
+        """
         if self.directions is not None:
             return self.directions
         x, y = self.axis
@@ -125,7 +154,9 @@ class Joint:
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """Its coordinates, in the sequence in which they move the child; without directions there are no turns to measure."""
+        """Its coordinates, in the sequence in which they move the child; without directions there
+        are no turns to measure.
+        """
         return self._axes(turns=all(body.oriented for body in self.bodies))
 
     def axes_of(self, body: Body) -> tuple[Axis, ...]:
@@ -133,7 +164,11 @@ class Joint:
         return self._axes(turns=body.oriented)
 
     def _axes(self, *, turns: bool) -> tuple[Axis, ...]:
-        named = [freedom for freedom in self.lets if freedom.name is not None and (turns or freedom.move == "slide")]
+        named = [
+            freedom
+            for freedom in self.lets
+            if freedom.name is not None and (turns or freedom.move == "slide")
+        ]
         return tuple(
             Axis(
                 freedom.name or "",
@@ -163,7 +198,11 @@ class Joint:
     @property
     def bears_moment(self) -> bool:
         """Whether it can hold its child against turning, about some axis."""
-        return self.child.body.oriented and self.parent.body.oriented and self.turns < (1 if self.turned is None else 3)
+        return (
+            self.child.body.oriented
+            and self.parent.body.oriented
+            and self.turns < (1 if self.turned is None else 3)
+        )
 
     @property
     def aligns(self) -> bool:
@@ -172,6 +211,8 @@ class Joint:
 
     @property
     def coordinate(self) -> Literal["angle", "slide"] | None:
-        """The kind of its coordinate, where it has one; None too for a pin at a point mass, which has no direction to measure."""
+        """The kind of its coordinate, where it has one; None too for a pin at a point mass, which
+        has no direction to measure.
+        """
         axes = self.axes
         return axes[0].kind if len(axes) == 1 else None

@@ -1,8 +1,10 @@
-"""Where an expression has a kink or a jump, found numerically along a path, from the operations in which it can have one.
+"""Where an expression has a kink or a jump, found numerically along a path, from the operations in
+which it can have one.
 
-What is differentiated twice must have a slope that does not jump: else rates jump, and accelerations say nothing of it. With
-comparisons, sizes, whole parts and divisors, and with functions at the ends of where they are defined, it may jump or not: the
-pieces of a cam's curve may go on smoothly, and those of a table do not. So every place at which an operation may make a kink is
+What is differentiated twice must have a slope that does not jump: else rates jump, and
+accelerations say nothing of it. With comparisons, sizes, whole parts and divisors, and with
+functions at the ends of where they are defined, it may jump or not: the pieces of a cam's curve may
+go on smoothly, and those of a table do not. So every place at which an operation may make a kink is
 found to the last bit, and value and slopes on both sides of it are compared.
 """
 
@@ -34,7 +36,9 @@ _MOST_PLACES = 0.9
 """At which share of instants a constraint's terms are no larger than what they are measured by."""
 
 _ROUNDS, _SLACK = 8, 10.0
-"""How many places are looked for in a step; and by how much more limits may differ, which are extrapolated."""
+"""How many places are looked for in a step; and by how much more limits may differ, which are
+extrapolated.
+"""
 
 _DIP, _TOUCH = 0.3, 1e-12
 """Of what is beside it: how near to zero an argument seems to come, and what is zero."""
@@ -55,10 +59,12 @@ _AT_ONCE = 1 << 17
 class Smooth:
     """A scalar expression whose slopes must not jump, and operations in it that may make them.
 
-    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of operations that may make a
-    kink where they pass zero, or a whole number if ``whole``; what is ``open`` there may be without bound, or have a slope that is,
-    and may make a kink where it only touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way,
-    ``slopes(x, p)`` the value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
+    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of
+    operations that may make a kink where they pass zero, or a whole number if ``whole``; what is
+    ``open`` there may be without bound, or have a slope that is, and may make a kink where it only
+    touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)``
+    the value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it
+    depends.
     """
 
     symbols: tuple[Any, ...]
@@ -71,9 +77,15 @@ class Smooth:
 
     @classmethod
     def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
-        """That of an expression of ``moving`` and ``fixed`` symbols; None where nothing can make a kink."""
+        """That of an expression of ``moving`` and ``fixed`` symbols; None where nothing can make a
+        kink.
+        """
         expression = ca.SX(expression)
-        own = [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)] if moving.numel() else []
+        own = (
+            [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)]
+            if moving.numel()
+            else []
+        )
         if not own:
             return None
         x, way = ca.vertcat(*own), ca.SX.sym("way", len(own))
@@ -92,11 +104,18 @@ class Smooth:
         return cls(
             tuple(own),
             ca.Function("marks", [x, fixed], [ca.densify(rows)], {"cse": True}),
-            ca.Function("turns", [x, fixed, way], [ca.densify(ca.jtimes(rows, x, way))], {"cse": True}),
+            ca.Function(
+                "turns", [x, fixed, way], [ca.densify(ca.jtimes(rows, x, way))], {"cse": True}
+            ),
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
             np.array(open_),
-            np.array([ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)] if fixed.numel() else [], bool),
+            np.array(
+                [ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)]
+                if fixed.numel()
+                else [],
+                bool,
+            ),
         )
 
     def words(self) -> list[Any]:
@@ -111,19 +130,36 @@ class Smooth:
         names, *functions, whole, open_, uses = words
         marks, turns, slopes = map(ca.Function.deserialize, functions)
         symbols = tuple(map(ca.SX.sym, names))
-        return cls(symbols, marks, turns, slopes, np.array(whole, bool), np.array(open_, bool), np.array(uses, bool))
+        return cls(
+            symbols,
+            marks,
+            turns,
+            slopes,
+            np.array(whole, bool),
+            np.array(open_, bool),
+            np.array(uses, bool),
+        )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
-        """The worst kink along a path (symbols, n) of straight steps, for ``values`` of the fixed symbols."""
+        """The worst kink along a path (symbols, n) of straight steps, for ``values`` of the fixed
+        symbols.
+        """
         found = [*self._kinks(np.asarray(path, float)[None], np.array(values, float)[None])]
         if not found:
             return None
         _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
         return Kink(what, jump, self._named(place))
 
-    def isolated(self, path: Array, values: Sequence[float], *, between: bool = False) -> Isolated | None:
-        """An instant of a path (symbols, n), or a place ``between`` two, at which something is other than on both sides of it."""
-        found = next(self._isolated(np.asarray(path, float)[None], np.array(values, float)[None], between), None)
+    def isolated(
+        self, path: Array, values: Sequence[float], *, between: bool = False
+    ) -> Isolated | None:
+        """An instant of a path (symbols, n), or a place ``between`` two, at which something is
+        other than on both sides of it.
+        """
+        found = next(
+            self._isolated(np.asarray(path, float)[None], np.array(values, float)[None], between),
+            None,
+        )
         return None if found is None else Isolated(found[1], self._named(found[2]))
 
     def _named(self, place: Array) -> dict[str, float]:
@@ -131,15 +167,21 @@ class Smooth:
 
     @symbolic_property
     def _bends(self) -> Any:
-        """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second one along a way."""
+        """The function ``(x, p, way)`` of the value, its derivatives by the symbols, and the second
+        one along a way.
+        """
         x, p, way = self.turns.sx_in()
         slopes = self.slopes(x, p)
         along = ca.jtimes(ca.dot(slopes[1:], way), x, way)
-        return ca.Function("bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True})
+        return ca.Function(
+            "bends", [x, p, way], [ca.densify(ca.vertcat(slopes, along))], {"cse": True}
+        )
 
     @symbolic_property
     def clearance(self) -> Clearance:
-        """Tells along which paths no mark comes near to where it passes, at a small part of the cost of looking for kinks."""
+        """Tells along which paths no mark comes near to where it passes, at a small part of the
+        cost of looking for kinks.
+        """
         return Clearance(self.marks, self.whole, self.open)
 
     def broken(self, paths: Array, p: Array) -> Flags:
@@ -147,7 +189,9 @@ class Smooth:
         return _owners(self._kinks, paths, p)
 
     def isolates(self, paths: Array, p: Array, *, between: bool = False) -> Flags:
-        """Which paths (d, symbols, n) have an isolated instant, or place ``between``, for values ``p`` (d, fixed) of each."""
+        """Which paths (d, symbols, n) have an isolated instant, or place ``between``, for values
+        ``p`` (d, fixed) of each.
+        """
         return _owners(partial(self._isolated, between=between), paths, p)
 
     def _kinks(self, paths: Array, p: Array) -> Iterator[tuple[int, str, float, Array]]:
@@ -155,7 +199,10 @@ class Smooth:
         count, _, n = paths.shape
         if n < 2 or not count:
             return
-        flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
+        flat, fixed = (
+            np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1),
+            np.repeat(p.T, n, axis=1),
+        )
         with np.errstate(all="ignore"):
             marks = called(self.marks, flat, fixed).reshape(-1, count, n)
             passed, touched, _ = self._places(Steps.of(paths, p), marks)
@@ -166,10 +213,11 @@ class Smooth:
         yield from found
 
     def _isolated(self, paths: Array, p: Array, between: bool) -> Iterator[tuple[int, str, Array]]:
-        """Every instant with a value, slope or curvature of its own: the number of its path, what it is, and where.
+        """Every instant with a value, slope or curvature of its own: the number of its path, what
+        it is, and where.
 
-        It is where an operation's mark is zero, or a whole number, to the last bit. Where one of them jumps, what lies between both
-        sides is no other.
+        It is where an operation's mark is zero, or a whole number, to the last bit. Where one of
+        them jumps, what lies between both sides is no other.
         """
         count, symbols, n = paths.shape
         if not count:
@@ -184,25 +232,38 @@ class Smooth:
                 ends = [of.to(end, end) for of in (passed, turned) for end in (of.low, of.high)]
                 steps = Steps.joined([steps, *ends])
             # It is no place alone where a mark stays as it is.
-            exact, *beside = (self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART))
+            exact, *beside = (
+                self._exact(self._marks(steps, steps.low + far)) for far in (0.0, *_APART)
+            )
             alone = exact & ~np.all(beside, axis=0)
             steps, alone = steps.some(alone.any(axis=0).nonzero()[0]), alone[:, alone.any(axis=0)]
             if not steps.owner.size:
                 return
             here = called(self._bends, steps.at(steps.low), steps.p, steps.way)
             # Most are at rest, or go on as they are.
-            others = [called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART]
-            some = np.isfinite(here).all(axis=0) & ~np.all([row == here for row in others], axis=(0, 1))
+            others = [
+                called(self._bends, steps.at(steps.low + far), steps.p, steps.way) for far in _APART
+            ]
+            some = np.isfinite(here).all(axis=0) & ~np.all(
+                [row == here for row in others], axis=(0, 1)
+            )
             if not some.any():
                 return
             steps, here, alone = steps.some(np.flatnonzero(some)), here[:, some], alone[:, some]
-            rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(-1, count, n)
-            usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[:, steps.owner]
+            rows = called(self._bends, flat, fixed, Steps.through(paths, p).way).reshape(
+                -1, count, n
+            )
+            usual = np.concatenate([_usual(rows[:-1], paths), _finite(rows[-1:]).max(axis=2)])[
+                :, steps.owner
+            ]
             kinds = np.array([0, *[1] * symbols, 2])
             # A curvature goes on to change over what a place is spread.
             faint = _FAINT * usual
             faint[2] = np.maximum(_FAINT, self._stretch(steps, alone)) * usual[2]
-            sides = [Side(side.value - here[:, None], side.off, side.there) for side in sides_of(self._bends, steps, steps.low)]
+            sides = [
+                Side(side.value - here[:, None], side.off, side.there)
+                for side in sides_of(self._bends, steps, steps.low)
+            ]
             same, signs = [], []
             for side in sides:
                 sizes = np.abs(side.value) + np.abs(here)[:, None]
@@ -217,7 +278,8 @@ class Smooth:
             yield int(steps.owner[k]), what, places[:, k]
 
     def _stretch(self, steps: Steps, alone: Flags) -> Array:
-        """How many steps a place is spread over: the least for which a mark that is ``alone`` there, (marks, m), stays as it is.
+        """How many steps a place is spread over: the least for which a mark that is ``alone``
+        there, (marks, m), stays as it is.
 
         Two curves that touch in a third power are the same number for so long.
         """
@@ -232,14 +294,18 @@ class Smooth:
         return np.asarray(marks == np.where(self.whole[:, None], np.rint(marks), 0.0))
 
     def _places(self, steps: Steps, marks: Array) -> tuple[Steps, Steps, Steps]:
-        """Where marks pass, where something is open, and where marks turn back: steps from just before to just after."""
+        """Where marks pass, where something is open, and where marks turn back: steps from just
+        before to just after.
+        """
         states = self._states(marks)
         changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
         turned, row = self._turned(steps, marks)
         at = turned.at(turned.low)
         there = self._marks(turned, turned.low)
         largest = np.where(np.isfinite(marks), np.abs(marks), 0.0).max(axis=2)[row, turned.owner]
-        beside = np.maximum(*(np.abs(self._marks(turned, x)[row, np.arange(row.size)]) for x in (0.0, 1.0)))
+        beside = np.maximum(
+            *(np.abs(self._marks(turned, x)[row, np.arange(row.size)]) for x in (0.0, 1.0))
+        )
         zero = np.abs(there[row, np.arange(row.size)]) <= _TOUCH * beside + _ROUNDING * largest
         touched = [turned.some(zero & self.open[row])]
         waiting = [steps.some(changed)]
@@ -293,13 +359,17 @@ class Smooth:
         return np.where(whole, np.floor(marks), marks > 0.0)
 
     def _compared(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
-        """Kinks where marks pass, by what is just before and just after; what seems one must have other limits on both sides.
+        """Kinks where marks pass, by what is just before and just after; what seems one must have
+        other limits on both sides.
 
-        A size of what only touches zero has a slope of zero where rounding makes it nothing. Where the path ends there is one side.
+        A size of what only touches zero has a slope of zero where rounding makes it nothing. Where
+        the path ends there is one side.
         """
         off = steps.off(4.0, 1.0)
         # Off the place itself, where a size has the slope of neither side.
-        before, after = (called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
+        before, after = (
+            called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off)
+        )
         gaps = _both(np.abs(after - before))
         sizes = _both(np.maximum(np.abs(before), np.abs(after)))
         broken = gaps > _SAME * sizes + _FAINT * usual[:, steps.owner]
@@ -308,7 +378,8 @@ class Smooth:
         yield from self._limits(steps.some(broken.any(axis=0) & ~at_end), usual)
 
     def _limits(self, steps: Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
-        """Kinks where something may be without bound: both sides must have limits, and the same ones.
+        """Kinks where something may be without bound: both sides must have limits, and the same
+        ones.
 
         What is beyond the path's ends has no say.
         """
@@ -326,17 +397,21 @@ class Smooth:
             found, part = vanishes(side, sizes[rows], least[rows])
             return np.array([found[0], found[1:].all(axis=0)]), _both(part)
 
-        same, part = vanishing(between(before, after), np.maximum(np.abs(before.value), np.abs(after.value)), faint)
+        same, part = vanishing(
+            between(before, after), np.maximum(np.abs(before.value), np.abs(after.value)), faint
+        )
         # What is large elsewhere may be so for it has no limit here.
-        limits = np.array([vanishing(side.steps, side.sizes, 0.0 * faint)[0] for side in sides]).all(axis=0)
+        limits = np.array(
+            [vanishing(side.steps, side.sizes, 0.0 * faint)[0] for side in sides]
+        ).all(axis=0)
         yield from _worst(steps, np.where(limits, part, np.inf), ~(same & limits))
 
 
 def _usual(slopes: Array, paths: Array) -> Array:
     """How large the value and the slopes (rows, d, n) along paths (d, symbols, n) are, (2, d).
 
-    A constraint's value is zero but for rounding: it is as large as what is added up in it, at most places. A slope beside a pole
-    says nothing of what is added up elsewhere.
+    A constraint's value is zero but for rounding: it is as large as what is added up in it, at most
+    places. A slope beside a pole says nothing of what is added up elsewhere.
     """
     sizes = _finite(slopes)
     terms = (sizes[1:] * np.abs(np.moveaxis(paths, 1, 0))).sum(axis=0)
@@ -349,7 +424,9 @@ def _finite(rows: Array) -> Array:
     return np.where(np.isfinite(rows), np.abs(rows), 0.0)
 
 
-def _owners(look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array) -> Flags:
+def _owners(
+    look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array
+) -> Flags:
     """Of which paths (d, symbols, n) anything is found."""
     found = np.zeros(len(paths), bool)
     size = max(1, _AT_ONCE // max(paths.shape[2], 1))
@@ -365,7 +442,9 @@ def _both(rows: Array) -> Array:
 
 
 def _worst(steps: Steps, parts: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
-    """Kinks by what part of it jumps of the value and of slopes, (2, m); without bound where there is no limit."""
+    """Kinks by what part of it jumps of the value and of slopes, (2, m); without bound where there
+    is no limit.
+    """
     places = steps.at(steps.high)
     for k in np.flatnonzero(broken.any(axis=0)):
         row = 0 if broken[0, k] else 1

@@ -1,4 +1,6 @@
-"""The motions of several drives as a function that holds nothing else, and the times and knots of their samples."""
+"""The motions of several drives as a function that holds nothing else, and the times and knots of
+their samples.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,11 @@ _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 
 @dataclass(frozen=True, eq=False)
 class Laws(Graphs):
-    """The motion of several drives, ``joints``, by one function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of scalars.
+    """The motion of several drives, ``joints``, by one function ``motion(t, p) -> (d, d_rate,
+    d_acceleration)`` of scalars.
 
-    ``spans`` are the times that each law covers, and ``knots`` those of its samples [s]. ``beyond`` is the function of
-    :func:`.ends_function`, or None.
+    ``spans`` are the times that each law covers, and ``knots`` those of its samples [s]. ``beyond``
+    is the function of :func:`.ends_function`, or None.
     """
 
     joints: tuple[str, ...]
@@ -33,8 +36,17 @@ class Laws(Graphs):
     @symbolic
     def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
         """The function of laws by the joint's name."""
-        spans, knots = tuple(law.span for law in laws.values()), tuple(law.knots for law in laws.values())
-        return cls(tuple(laws), motion_function(laws, parameters), spans, knots, ends_function(laws, parameters))
+        spans, knots = (
+            tuple(law.span for law in laws.values()),
+            tuple(law.knots for law in laws.values()),
+        )
+        return cls(
+            tuple(laws),
+            motion_function(laws, parameters),
+            spans,
+            knots,
+            ends_function(laws, parameters),
+        )
 
     @property
     def span(self) -> tuple[float, float]:
@@ -49,16 +61,22 @@ class Laws(Graphs):
             return self
         t, p = self.motion.sx_in()
         some = [self.joints.index(joint) for joint in joints]
-        motion = ca.Function("motion", [t, p], [row[some] for row in self.motion(t, p)], *_NAMES, {"cse": True})
+        motion = ca.Function(
+            "motion", [t, p], [row[some] for row in self.motion(t, p)], *_NAMES, {"cse": True}
+        )
         beyond = None
         if self.beyond is not None:
-            beyond = ca.Function("beyond", [t, p], [self.beyond(t, p)[some]], ["t", "p"], ["beyond"], {"cse": True})
+            beyond = ca.Function(
+                "beyond", [t, p], [self.beyond(t, p)[some]], ["t", "p"], ["beyond"], {"cse": True}
+            )
         spans, knots = tuple(self.spans[k] for k in some), tuple(self.knots[k] for k in some)
         return Laws(tuple(joints), motion, spans, knots, beyond)
 
     @symbolic
     def jerk(self) -> Any:
-        """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a knot, that after it."""
+        """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a knot, that
+        after it.
+        """
         t, p = self.motion.sx_in()
         by_t = ca.densify(ca.jacobian(self.motion(t, p)[2], t))
         return ca.Function("jerk", [t, p], [by_t], ["t", "p"], ["d_jerk"], {"cse": True})
@@ -73,4 +91,10 @@ class Laws(Graphs):
         """The laws that :meth:`words` made."""
         joints, spans, knots, *functions = words
         motion, beyond = (None if f is None else ca.Function.deserialize(f) for f in functions)
-        return cls(tuple(joints), motion, tuple((low, high) for low, high in spans), tuple(map(tuple, knots)), beyond)
+        return cls(
+            tuple(joints),
+            motion,
+            tuple((low, high) for low, high in spans),
+            tuple(map(tuple, knots)),
+            beyond,
+        )

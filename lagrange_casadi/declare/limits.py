@@ -1,4 +1,6 @@
-"""What the parts must be together, and what the values of parameters may make of them: lengths, masses, densities, stations."""
+"""What the parts must be together, and what the values of parameters may make of them: lengths,
+masses, densities, stations.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ _TOLD = 8
 """Parameters that a message names."""
 
 
-def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]) -> None:
+def check_connected(
+    name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]
+) -> None:
     """Raise :class:`DeclarationError` for bodies that no chain of joints connects to the ground."""
     joined, reached = list(joints), {ground.name}
     while new := {
@@ -40,16 +44,19 @@ def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: I
     loose = [f"'{body.name}'" for body in bodies if body.name not in reached]
     if loose:
         raise DeclarationError(
-            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not connected to the ground by any chain "
-            f"of joints; joints declared: {', '.join(joint.name for joint in joined) or 'none'}"
+            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not"
+            " connected to the ground by any chain of joints; joints declared:"
+            f" {', '.join(joint.name for joint in joined) or 'none'}"
         )
 
 
-def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float] | None) -> dict[str, float]:
+def parameter_values(
+    parameters: Mapping[str, Parameter], overrides: Mapping[str, float] | None
+) -> dict[str, float]:
     """Defaults with overrides, each checked against its range.
 
-    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at once, and
-    :class:`DeclarationError` for what has no names.
+    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at
+    once, and :class:`DeclarationError` for what has no names.
     """
     overrides = {} if overrides is None else overrides
     check_kind("parameters", overrides, "values by name, as {'l': 0.25}", Mapping)
@@ -57,7 +64,10 @@ def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str
         raise UnknownNameError("parameter", unknown, parameters)
     if faults := parameter_faults(parameters, overrides):
         raise ParameterError("; ".join(faults))
-    return {name: parameter.number(overrides.get(name, parameter.default)) for name, parameter in parameters.items()}
+    return {
+        name: parameter.number(overrides.get(name, parameter.default))
+        for name, parameter in parameters.items()
+    }
 
 
 def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:
@@ -66,25 +76,37 @@ def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, f
 
 
 def margins(point: Point, precision: Precision) -> list[Expression]:
-    """What must not be negative for a fixed point to be on its link, where that has sections: how far it is from either end."""
-    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+    """What must not be negative for a fixed point to be on its link, where that has sections: how
+    far it is from either end.
+    """
+    if not (
+        isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
+    ):
         return []
     slack = END[precision] * point.body.length
     return [point.x + slack, (point.body.length - point.x) + slack]
 
 
 def on_link(point: Point, number: Callable[[Expression], float]) -> tuple[Point, float]:
-    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections, the end; and how far it was."""
-    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+    """A point; or where the rounding of a drawing put it beyond an end of a link that has sections,
+    the end; and how far it was.
+    """
+    if not (
+        isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
+    ):
         return point, 0.0
     x, moved = along_link(point.x, point.body.length, number)
     return (replace(point, x=x), moved) if moved else (point, 0.0)
 
 
-def along_link(x: Expression, length: Expression, number: Callable[[Expression], float]) -> tuple[Expression, float]:
-    """A place along a link [m]; or where the rounding of a drawing put it beyond an end, that end, and by how much it was moved.
+def along_link(
+    x: Expression, length: Expression, number: Callable[[Expression], float]
+) -> tuple[Expression, float]:
+    """A place along a link [m]; or where the rounding of a drawing put it beyond an end, that end,
+    and by how much it was moved.
 
-    So far as it is beyond for any parameters; ``number`` has the value of an expression for the default ones.
+    So far as it is beyond for any parameters; ``number`` has the value of an expression for the
+    default ones.
     """
     for end, beyond in ((0.0, -x), (length, x - length)):
         if ca.jacobian(ca.SX(beyond), ca.vertcat(ca.SX(0, 1), *ca.symvar(ca.SX(beyond)))).is_zero():
@@ -107,18 +129,25 @@ def at_end(point: Point) -> Expression:
 
 
 def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
-    """Why a body has no sections, in words: a link, of which it is not known how its mass lies, or none of the links."""
+    """Why a body has no sections, in words: a link, of which it is not known how its mass lies, or
+    none of the links.
+    """
     if link:
         return (
-            f"link '{name}' is known by its centre of mass and inertia only; a section needs to know how its mass lies along it, "
-            "so give it a mass alone or a density"
+            f"link '{name}' is known by its centre of mass and inertia only; a section needs to"
+            " know how its mass lies along it, so give it a mass alone or a density"
         )
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
 
 
 def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
-    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
-    return told_values(values or {name: parameter.default for name, parameter in mechanism.parameters.items()}, not values)
+    """With which parameters something was found, to end a message with: the defaults, or others;
+    nothing where there are none.
+    """
+    return told_values(
+        values or {name: parameter.default for name, parameter in mechanism.parameters.items()},
+        not values,
+    )
 
 
 def told_values(values: Mapping[str, float], default: bool = False) -> str:
@@ -126,4 +155,8 @@ def told_values(values: Mapping[str, float], default: bool = False) -> str:
     listed = [f"{name} = {value:.6g}" for name, value in values.items()]
     if len(listed) > _TOLD:
         listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
-    return f"; with the {'default ' if default else ''}parameters {', '.join(listed)}" if listed else ""
+    return (
+        f"; with the {'default ' if default else ''}parameters {', '.join(listed)}"
+        if listed
+        else ""
+    )

@@ -1,4 +1,6 @@
-"""Whether what is known at ever smaller distances from a place, on both sides of it, has limits there, and the same ones."""
+"""Whether what is known at ever smaller distances from a place, on both sides of it, has limits
+there, and the same ones.
+"""
 
 from __future__ import annotations
 
@@ -12,21 +14,26 @@ from ..base.arrays import Array
 Flags = npt.NDArray[np.bool_]
 
 _ORDERS = 5
-"""How many terms, of the first to the fourth power of the distance, are taken out of a difference one after another."""
+"""How many terms, of the first to the fourth power of the distance, are taken out of a difference
+one after another.
+"""
 
 _NOISY, _NOISIER = 1e-3, 2.0
-"""Of how large it is, noise of which a distance still counts; or how much above the least noise, where all have more."""
+"""Of how large it is, noise of which a distance still counts; or how much above the least noise,
+where all have more.
+"""
 
 _TINY = np.finfo(float).tiny
 
 _HALVINGS, _FEWEST = 8, 4
-"""In so many halvings of the distance what falls to zero is halved, as powers of it do that are slopes of nothing sharp; and in how
-many at least that is seen."""
+"""In so many halvings of the distance what falls to zero is halved, as powers of it do that are
+slopes of nothing sharp; and in how many at least that is seen."""
 
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """Rows (rows, distances, m) at distances from m places, each half of the one before, and how far they may be off.
+    """Rows (rows, distances, m) at distances from m places, each half of the one before, and how
+    far they may be off.
 
     ``there`` (distances, m) says where there is anything to look at.
     """
@@ -49,10 +56,14 @@ class Side:
 
     @property
     def nearest_signs(self) -> Array:
-        """Their signs (rows, m) at the least distance that rounding does not hide; zero where it hides all."""
+        """Their signs (rows, m) at the least distance that rounding does not hide; zero where it
+        hides all.
+        """
         clear = self.there & np.isfinite(self.value) & (np.abs(self.value) > self.off)
         last = self.value.shape[1] - 1 - clear[:, ::-1].argmax(axis=1)[:, None]
-        return np.asarray(np.where(clear.any(axis=1), np.sign(np.take_along_axis(self.value, last, 1)[:, 0]), 0.0))
+        return np.asarray(
+            np.where(clear.any(axis=1), np.sign(np.take_along_axis(self.value, last, 1)[:, 0]), 0.0)
+        )
 
 
 def between(before: Side, after: Side) -> Side:
@@ -61,12 +72,14 @@ def between(before: Side, after: Side) -> Side:
 
 
 def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
-    """Which rows (rows, m) tend to zero with the distance; and what rests of them, over ``sizes`` (rows, distances, m).
+    """Which rows (rows, m) tend to zero with the distance; and what rests of them, over ``sizes``
+    (rows, distances, m).
 
-    Zero is what is less than ``least``. What tends to rest + c h + d h^2 is extrapolated to h = 0, by as many terms as serve.
-    Rounding spoils it where h is small, what is of higher order where it is large; so where it is small from a distance on that
-    noise does not hide, but for that noise where it is nearer, there is no rest. Of a root or a power it is not small anywhere,
-    but falls for ever.
+    Zero is what is less than ``least``. What tends to rest + c h + d h^2 is extrapolated to h = 0,
+    by as many terms as serve. Rounding spoils it where h is small, what is of higher order where it
+    is large; so where it is small from a distance on that noise does not hide, but for that noise
+    where it is nearer, there is no rest. Of a root or a power it is not small anywhere, but falls
+    for ever.
     """
     value, off, there = rows.value, rows.off, rows.there
     sizes, least = (of[:, -value.shape[1] :] for of in (sizes, least))
@@ -80,8 +93,12 @@ def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
             sizes, least = (np.maximum(of[:, 1:], of[:, :-1]) for of in (sizes, least))
             there = there[1:] & there[:-1]
         gaps = np.where(np.isfinite(value), np.abs(value), np.inf)
-        noise = np.where(there & np.isfinite(off), off / np.maximum(least, _NOISY * sizes + _TINY), np.inf)
-        clear = (noise <= np.maximum(1.0, _NOISIER * noise.min(axis=1, keepdims=True))) & np.isfinite(noise)
+        noise = np.where(
+            there & np.isfinite(off), off / np.maximum(least, _NOISY * sizes + _TINY), np.inf
+        )
+        clear = (
+            noise <= np.maximum(1.0, _NOISIER * noise.min(axis=1, keepdims=True))
+        ) & np.isfinite(noise)
         if order == 1:
             found |= _falls(gaps, clear)
         share = gaps / np.maximum(least + off, _TINY)
@@ -105,4 +122,6 @@ def _falls(gaps: Array, clear: Flags) -> Flags:
     number = np.arange(1, count)[:, None]
     within = (number > first[:, None]) & (number <= last[:, None])
     falls = ((gaps[:, 1:] < gaps[:, :-1]) | ~within).all(axis=1)
-    return np.asarray(falls & (last - first >= _FEWEST) & (end < start * 0.5 ** ((last - first) / _HALVINGS)))
+    return np.asarray(
+        falls & (last - first >= _FEWEST) & (end < start * 0.5 ** ((last - first) / _HALVINGS))
+    )

@@ -1,4 +1,6 @@
-"""Loads along a link: what may be declared as one, and the polynomials along the link that it is kept as."""
+"""Loads along a link: what may be declared as one, and the polynomials along the link that it is
+kept as.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from .parts import Expression, LineLoad, Link
 from .powers import powers
 
 Spread: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"
-"""A value along a link: one throughout, a pair for where it begins and ends, or a polynomial of the distance from the base."""
+"""A value along a link: one throughout, a pair for where it begins and ends, or a polynomial of the
+distance from the base.
+"""
 
 Between: TypeAlias = "tuple[Expression, Expression] | None"
 """Distances from the base of a link [m], between which a load acts; None is the whole link."""
@@ -23,16 +27,27 @@ HIGHEST = 7
 """The highest power of the distance that a load may have."""
 
 
-def line_load(own: Ownership, name: str, link: Link, components: Sequence[Spread], between: Between, turning: bool) -> LineLoad:
+def line_load(
+    own: Ownership,
+    name: str,
+    link: Link,
+    components: Sequence[Spread],
+    between: Between,
+    turning: bool,
+) -> LineLoad:
     """A load along a link of a mechanism, of so many ``components``.
 
-    Raises :class:`DeclarationError` for what is no link, for ends that are no pair, and for what is no polynomial along the link.
+    Raises :class:`DeclarationError` for what is no link, for ends that are no pair, and for what is
+    no polynomial along the link.
     """
     own.free("load", name, own.mechanism.loads)
     what = f"load '{name}'"
     body = own.point(what, link).body
     if not isinstance(body, Link):
-        raise DeclarationError(f"{what}: a line load acts along a link, and '{body.name}' is none; take a force at a point")
+        raise DeclarationError(
+            f"{what}: a line load acts along a link, and '{body.name}' is none; take a force at a"
+            " point"
+        )
 
     def checked(value: Expression) -> Expression:
         return own.expression(what, value, moving=True)
@@ -42,11 +57,17 @@ def line_load(own: Ownership, name: str, link: Link, components: Sequence[Spread
         end = body.length
     else:
         if not isinstance(between, tuple | list) or len(between) != 2:
-            raise DeclarationError(f"{what}: between must be two distances from the base of '{body.name}' [m], got {between!r}")
+            raise DeclarationError(
+                f"{what}: between must be two distances from the base of '{body.name}' [m], got"
+                f" {between!r}"
+            )
         places = (own.expression(f"{what}: between", place, "m") for place in between)
         start, end = (own.along(what, place, body) for place in places)
         if isinstance(start, float) and isinstance(end, float) and not start < end:
-            raise DeclarationError(f"{what}: between must be two distances from the base that rise, got {start:g} and {end:g} m")
+            raise DeclarationError(
+                f"{what}: between must be two distances from the base that rise, got {start:g} and"
+                f" {end:g} m"
+            )
     found = [_powers(what, value, start, end, checked) for value in components]
     many = max(map(len, found))
     x, y, *z = ((*coefficients, *[0.0] * (many - len(coefficients))) for coefficients in found)
@@ -54,7 +75,11 @@ def line_load(own: Ownership, name: str, link: Link, components: Sequence[Spread
 
 
 def _powers(
-    what: str, value: Spread, start: Expression, end: Expression, checked: Callable[[Expression], Expression]
+    what: str,
+    value: Spread,
+    start: Expression,
+    end: Expression,
+    checked: Callable[[Expression], Expression],
 ) -> list[Expression]:
     """Coefficients by powers of (end - xi)/(end - start)."""
     if callable(value):
@@ -62,8 +87,8 @@ def _powers(
     pair = tuple(value) if isinstance(value, tuple | list) else (value,)
     if len(pair) > 2 or not pair:
         raise DeclarationError(
-            f"{what}: expected one value, two, where it begins and where it ends, or a function of the distance from the base [m], "
-            f"got {value!r}"
+            f"{what}: expected one value, two, where it begins and where it ends, or a function of"
+            f" the distance from the base [m], got {value!r}"
         )
     first, last = checked(pair[0]), checked(pair[-1])
     return [last, first - last] if len(pair) == 2 else [last]
@@ -81,16 +106,19 @@ def _of_function(
     try:
         value = function(distance)
     except Exception as error:  # whatever a user's function raises
-        raise DeclarationError(f"{what}: its function of the distance fails: {told(error)}") from error
+        raise DeclarationError(
+            f"{what}: its function of the distance fails: {told(error)}"
+        ) from error
     if not isinstance(value, ca.SX):
         return [checked(value)]
     if value.numel() != 1:
         raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
-    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is told by the coefficients.
+    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is told by the
+    # coefficients.
     found = powers(value, distance, (ca.SX(end), ca.SX(start - end)))
     if found is None or len(found) > HIGHEST + 1:
         raise DeclarationError(
-            f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at most; take one load for each part "
-            "of the link on which it is one"
+            f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at"
+            " most; take one load for each part of the link on which it is one"
         )
     return [checked(coefficient) for coefficient in found]

@@ -1,4 +1,6 @@
-"""The lowest value of a polynomial on an interval, as expressions: its coefficients may depend on parameters."""
+"""The lowest value of a polynomial on an interval, as expressions: its coefficients may depend on
+parameters.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,16 @@ from typing import Any
 import casadi as ca
 
 _HALVINGS = 30
-"""How often an interval with a zero of a derivative is halved. At a turning point a miss by 1e-9 changes a value by its square."""
+"""How often an interval with a zero of a derivative is halved.
+
+At a turning point a miss by 1e-9 changes a value by its square.
+"""
 
 
 def lowest(cell: Sequence[Any], start: float, stop: float) -> tuple[Any, Any]:
-    """Where sum_j cell[j] u^j is lowest for u from ``start`` to ``stop``, and its value there, for finite coefficients."""
+    """Where sum_j cell[j] u^j is lowest for u from ``start`` to ``stop``, and its value there, for
+    finite coefficients.
+    """
     place, value = ca.SX(start), _at(cell, ca.SX(start))
     turning = _zeros(_derivative(cell), start, stop) if len(cell) > 2 else []
     for u in (ca.SX(stop), *turning):
@@ -24,9 +31,11 @@ def lowest(cell: Sequence[Any], start: float, stop: float) -> tuple[Any, Any]:
 
 
 def _zeros(cell: Sequence[Any], start: float, stop: float) -> list[Any]:
-    """Places from ``start`` to ``stop``, in order: all zeros of a polynomial there, and for those that it lacks any others.
+    """Places from ``start`` to ``stop``, in order: all zeros of a polynomial there, and for those
+    that it lacks any others.
 
-    Up to a parabola in closed form; of a higher degree between the zeros of its derivative, where it is monotonic.
+    Up to a parabola in closed form; of a higher degree between the zeros of its derivative, where
+    it is monotonic.
     """
     if len(cell) == 2:
         return [_within(-cell[0] / ca.SX(cell[1]), start, stop)]

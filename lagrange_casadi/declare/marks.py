@@ -13,7 +13,9 @@ _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_O
 
 
 def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
-    """What makes an operation a kink where it passes zero, or a whole number; and whether it is open there."""
+    """What makes an operation a kink where it passes zero, or a whole number; and whether it is
+    open there.
+    """
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
         yield (y - x if operation == ca.OP_LT else x - y), False, False
@@ -50,11 +52,15 @@ def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, boo
         # Its cut is where the first is zero and the second negative.
         yield x, False, False
         yield x * x + y * y, False, True
-    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (y.is_constant() and float(y) >= 0.0 and float(y).is_integer()):
+    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (
+        y.is_constant() and float(y) >= 0.0 and float(y).is_integer()
+    ):
         yield x, False, True
 
 
 def _zeros(x: Any) -> Iterator[Any]:
-    """Marks of where something is zero, for a stretch or at a place that it passes; a comparison has marks of its own."""
+    """Marks of where something is zero, for a stretch or at a place that it passes; a comparison
+    has marks of its own.
+    """
     if x.op() not in _TRUTHS:
         yield from (ca.fabs(x), x)

@@ -15,7 +15,9 @@ ALL = "all"
 
 
 def masses_of(mechanism: Mechanism) -> Any:
-    """The masses of its links and point masses, in their order, and last that of all of them [kg], in a column."""
+    """The masses of its links and point masses, in their order, and last that of all of them [kg],
+    in a column.
+    """
     masses = [_mass(body) for body in mechanism.moving]
     return ca.densify(ca.vertcat(*masses, sum(masses)))
 

@@ -1,4 +1,6 @@
-"""How the mass of a link is told: even, by a density, by what it is made of, or by mass, centre and inertia."""
+"""How the mass of a link is told: even, by a density, by what it is made of, or by mass, centre and
+inertia.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,11 @@ def matter_of(
     rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
     beam: Beam | None = None,
 ) -> Density | RigidMass:
-    """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and the expression.
+    """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and
+    the expression.
 
-    ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one moment.
+    ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one
+    moment.
 
     Raises :class:`DeclarationError` for none of the ways, or more than one.
     """
@@ -33,18 +37,27 @@ def matter_of(
     if (mass is None) == (density is None):
         raise DeclarationError(f"{what}: give its mass, or a density")
     if beam is not None and centre is not None:
-        raise DeclarationError(f"{what}: a beam has sections, and where centre and inertia are given there are none")
+        raise DeclarationError(
+            f"{what}: a beam has sections, and where centre and inertia are given there are none"
+        )
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
         raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
     if density is not None:
         if not isinstance(density, Density):
-            raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
+            raise DeclarationError(
+                f"{what}: expected a density of lagrange_casadi.density, got {density!r}"
+            )
         if density.slices is not None and rigid is None:
-            raise DeclarationError(f"{what}: second moments of slices are for links in space; in a plane a link is slender")
+            raise DeclarationError(
+                f"{what}: second moments of slices are for links in space; in a plane a link is"
+                " slender"
+            )
         own = _checked(density, f"{what}: density", checked)
         if density.slices is None:
             return own
-        moments = (_checked(moment, f"{what}: second moments", checked) for moment in density.slices.each)
+        moments = (
+            _checked(moment, f"{what}: second moments", checked) for moment in density.slices.each
+        )
         return replace(own, slices=Slices(*moments))
     if centre is not None:
         if rigid is not None:
@@ -53,12 +66,17 @@ def matter_of(
         if not isinstance(centre, (tuple, list)) or len(centre) != 2:
             raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
         x, y = (checked(f"{what}: centre", c, "m") for c in centre)
-        return RigidMass(checked(f"{what}: mass", mass, "kg"), (x, y), checked(f"{what}: inertia", inertia))
+        return RigidMass(
+            checked(f"{what}: mass", mass, "kg"), (x, y), checked(f"{what}: inertia", inertia)
+        )
     return uniform(checked(f"{what}: mass", mass, "kg"))
 
 
 def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
-    """What a link is made of, its dimensions looked at. Raises :class:`DeclarationError` for what is no beam."""
+    """What a link is made of, its dimensions looked at.
+
+    Raises :class:`DeclarationError` for what is no beam.
+    """
     if beam is None:
         return None
     if not isinstance(beam, Beam):
@@ -72,7 +90,9 @@ def _checked(density: Density, what: str, checked: Callable[..., Expression]) ->
 
 
 def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:
-    """J_ij, the integral of r_i r_j dm, of moments of inertia I [kg m^2] in three rows: tr(I) / 2 - I."""
+    """J_ij, the integral of r_i r_j dm, of moments of inertia I [kg m^2] in three rows: tr(I) / 2 -
+    I.
+    """
     (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertia
     return [
         [(iyy + izz - ixx) / 2, -ixy, -ixz],
@@ -83,4 +103,8 @@ def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:
 
 def inertias(matter: RigidMass) -> list[Expression]:
     """The numbers of its moments of inertia."""
-    return [entry for row in matter.inertia for entry in row] if isinstance(matter.inertia, tuple) else [matter.inertia]
+    return (
+        [entry for row in matter.inertia for entry in row]
+        if isinstance(matter.inertia, tuple)
+        else [matter.inertia]
+    )

@@ -1,4 +1,6 @@
-"""Symbols by which loads and constraints see the motion: of a joint, of a point, or of a link's direction."""
+"""Symbols by which loads and constraints see the motion: of a joint, of a point, or of a link's
+direction.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,8 @@ from .parts import Link, Point
 class Measure:
     """What is measured, the symbols of where it is, and those of their rates and accelerations.
 
-    A joint has its coordinate along an ``axis``, a point its x and y, and in space its z, a link of a plane the angle of its axis.
+    A joint has its coordinate along an ``axis``, a point its x and y, and in space its z, a link of
+    a plane the angle of its axis.
     """
 
     of: Joint | Point | Link
@@ -45,19 +48,29 @@ class Measures:
         """The measure of a point's place."""
         for measure in self.asked:
             known = measure.of
-            if isinstance(known, Point) and known.body is point.body and all(map(operator.is_, known.place, point.place)):
+            if (
+                isinstance(known, Point)
+                and known.body is point.body
+                and all(map(operator.is_, known.place, point.place))
+            ):
                 return measure
-        return self._find(point, tuple(f"{point.body.name}_{component}" for component in self.components))
+        return self._find(
+            point, tuple(f"{point.body.name}_{component}" for component in self.components)
+        )
 
     @property
     def places(self) -> Any:
         """All symbols of coordinates, places and directions, one column."""
-        return ca.vertcat(ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.places))
+        return ca.vertcat(
+            ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.places)
+        )
 
     @property
     def rates(self) -> Any:
         """All symbols of rates and velocities, one column."""
-        return ca.vertcat(ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.rates))
+        return ca.vertcat(
+            ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.rates)
+        )
 
     @property
     def accelerations(self) -> list[Any]:
@@ -69,10 +82,17 @@ class Measures:
         """All symbols of places and rates, one by one."""
         return [symbol for measure in self.asked for symbol in (*measure.places, *measure.rates)]
 
-    def _find(self, of: Joint | Point | Link, names: tuple[str, ...], axis: Axis | None = None) -> Measure:
+    def _find(
+        self, of: Joint | Point | Link, names: tuple[str, ...], axis: Axis | None = None
+    ) -> Measure:
         for measure in self.asked:
-            if measure.of is of and (measure.axis and measure.axis.coordinate) == (axis and axis.coordinate):
+            if measure.of is of and (measure.axis and measure.axis.coordinate) == (
+                axis and axis.coordinate
+            ):
                 return measure
-        places, rates, changes = (tuple(ca.SX.sym(f"{name}{end}") for name in names) for end in ("", "_rate", "_acceleration"))
+        places, rates, changes = (
+            tuple(ca.SX.sym(f"{name}{end}") for name in names)
+            for end in ("", "_rate", "_acceleration")
+        )
         self.asked.append(Measure(of, places, rates, changes, axis))
         return self.asked[-1]

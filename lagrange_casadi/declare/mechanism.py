@@ -1,7 +1,9 @@
-"""The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints and gravity.
+"""The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints
+and gravity.
 
-A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number can tell is checked when a part
-is declared, what depends on the whole when it freezes, and what depends on the parameters' values by :meth:`Mechanism.values`.
+A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number
+can tell is checked when a part is declared, what depends on the whole when it freezes, and what
+depends on the parameters' values by :meth:`Mechanism.values`.
 """
 
 from __future__ import annotations
@@ -57,15 +59,17 @@ from .results import Asked, OwnOutput, Results
 @symbolic
 @dataclass(eq=False)
 class Mechanism(Graphs):
-    """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
+    """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each
+    other and to the ground.
 
-    Gravity is (0, -9.81) m/s^2 unless :meth:`set_gravity` says otherwise. Lengths, masses, places and gravity may be numbers or
-    expressions in the symbols that :meth:`parameter` returns. Loads and constraints may also depend on :attr:`time` [s],
-    :meth:`coordinate`, :meth:`place` and :meth:`direction`; loads and non-holonomic constraints on :meth:`rate` and
-    :meth:`velocity`.
+    Gravity is (0, -9.81) m/s^2 unless :meth:`set_gravity` says otherwise. Lengths, masses, places
+    and gravity may be numbers or expressions in the symbols that :meth:`parameter` returns. Loads
+    and constraints may also depend on :attr:`time` [s], :meth:`coordinate`, :meth:`place` and
+    :meth:`direction`; loads and non-holonomic constraints on :meth:`rate` and :meth:`velocity`.
 
-    Methods that declare raise :class:`.DeclarationError`, which names the part: for a name that is taken, a part of another
-    mechanism, an expression in other symbols, and once a scene has been made. :class:`.Joint` says what joints hold.
+    Methods that declare raise :class:`.DeclarationError`, which names the part: for a name that is
+    taken, a part of another mechanism, an expression in other symbols, and once a scene has been
+    made. :class:`.Joint` says what joints hold.
     """
 
     name: str
@@ -92,7 +96,10 @@ class Mechanism(Graphs):
 
     def __repr__(self) -> str:
         names = ", ".join(body.name for body in self.moving)
-        return f"<Mechanism {self.name}: {names or 'no body yet'}; joints: {', '.join(self.joints) or 'none yet'}>"
+        return (
+            f"<Mechanism {self.name}: {names or 'no body yet'}; joints:"
+            f" {', '.join(self.joints) or 'none yet'}>"
+        )
 
     @property
     def ground(self) -> Ground:
@@ -111,8 +118,12 @@ class Mechanism(Graphs):
 
     @property
     def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
-        """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a joint has several."""
-        return {axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes}
+        """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a
+        joint has several.
+        """
+        return {
+            axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes
+        }
 
     @property
     def space(self) -> bool:
@@ -132,10 +143,22 @@ class Mechanism(Graphs):
     @property
     def symbols(self) -> Any:
         """The parameters' symbols as one column, in the order of declaration."""
-        return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
+        return ca.vertcat(
+            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
+        )
 
-    def parameter(self, name: str, default: Number, unit: str = "1", *, low: Number = -math.inf, high: Number = math.inf) -> Any:
-        """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
+    def parameter(
+        self,
+        name: str,
+        default: Number,
+        unit: str = "1",
+        *,
+        low: Number = -math.inf,
+        high: Number = math.inf,
+    ) -> Any:
+        """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to
+        build lengths and places from.
+        """
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
         default, low, high = (bound(f"parameter '{name}'", x, unit) for x in (default, low, high))
@@ -156,24 +179,33 @@ class Mechanism(Graphs):
     ) -> Link:
         """Declare a link of a length [m].
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`; that of a ``beam`` of
-        :mod:`.beams` alone; or ``mass``, ``centre`` (in the link's axes [m]) and ``inertia`` about the centre [kg m^2], for a body
-        whose sections are not wanted.
+        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`;
+        that of a ``beam`` of :mod:`.beams` alone; or ``mass``, ``centre`` (in the link's axes [m])
+        and ``inertia`` about the centre [kg m^2], for a body whose sections are not wanted.
         """
         self.own.free("link", name, self.bodies)
         what, checked = f"link '{name}'", self.own.expression
         beam = beam_of(what, beam, checked)
         matter = matter_of(what, mass, density, centre, inertia, checked, beam=beam)
-        return cast(Link, self.bodies.setdefault(name, Link(name, checked(f"{what}: length", length, "m"), matter, beam)))
+        return cast(
+            Link,
+            self.bodies.setdefault(
+                name, Link(name, checked(f"{what}: length", length, "m"), matter, beam)
+            ),
+        )
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
-        """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
+        """Declare a mass [kg] without extent, at a point; welded to a link
+        it moves with the link.
+        """
         self.own.free("point mass", name, self.bodies)
         body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass, "kg"))
         return cast(PointMass, self.bodies.setdefault(name, body))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
-        """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground for its origin."""
+        """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground
+        for its origin.
+        """
         return self._joint(name, "revolute", parent, child)
 
     def prismatic(
@@ -185,76 +217,142 @@ class Mechanism(Graphs):
         axis: tuple[Expression, Expression],
         angle: Expression | None = None,
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
+        """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of
+        ``parent``.
 
-        ``angle`` [rad] is the child's direction against the parent's, 0 if it is not given: a note says so where a link lies across
-        ``axis``. The parent carries the line, loaded where the point is at the moment. The coordinate is the place on it [m].
+        ``angle`` [rad] is the child's direction against the parent's, 0 if it is not given: a note
+        says so where a link lies across ``axis``. The parent carries the line, loaded where the
+        point is at the moment. The coordinate is the place on it [m].
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
     def slot(
-        self, name: str, parent: Body | Point, child: Body | Point, *, axis: tuple[Expression, Expression] = (1.0, 0.0)
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: tuple[Expression, Expression] = (1.0, 0.0),
     ) -> Joint:
-        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, in the parent's axes."""
+        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, in the
+        parent's axes.
+        """
         return self._joint(name, "slot", parent, child, axis)
 
-    def weld(self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0) -> Joint:
-        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad, or as text ``"90 deg"``]."""
+    def weld(
+        self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0
+    ) -> Joint:
+        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad, or as
+        text ``"90 deg"``].
+        """
         return self._joint(name, "weld", parent, child, angle=angle)
 
-    def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
-        """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15 deg"``); a mesh has -z1/z2."""
-        told = (("ratio", ratio, "1"), ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"))
-        ratio, offset = (self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in told)
-        return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
+    def gear(
+        self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0
+    ) -> Constraint:
+        """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15
+        deg"``); a mesh has -z1/z2.
+        """
+        told = (
+            ("ratio", ratio, "1"),
+            ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"),
+        )
+        ratio, offset = (
+            self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in told
+        )
+        return self.constraint(
+            name, self.coordinate(second) - ratio * self.coordinate(first) - offset
+        )
 
     def constraint(self, name: str, phi: Any) -> Constraint:
-        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters (paper eq. 5); no slope may jump.
+        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters
+        (paper eq. 5); no slope may jump.
 
-        The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is written in: on a joint's
-        coordinate between the joint's bodies, on a place from the ground.
+        The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is
+        written in: on a joint's coordinate between the joint's bodies, on a place from the ground.
         """
         return self.constraints.setdefault(name, constraint(self.own, name, phi))
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3): an expression that is linear in rates and velocities.
+        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq.
 
-        ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint; the constraint's multiplier then
-        takes the place of the joint's effort.
+        3): an expression that is linear in rates and velocities.
+
+        ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint;
+        the constraint's multiplier then takes the place of the joint's effort.
         """
         return self.rows.setdefault(name, row(self.own, name, expression, replaces))
 
-    def force(self, name: str, point: Body | Point, *, x: Expression = 0.0, y: Expression = 0.0, turning: bool = False) -> Force:
+    def force(
+        self,
+        name: str,
+        point: Body | Point,
+        *,
+        x: Expression = 0.0,
+        y: Expression = 0.0,
+        turning: bool = False,
+    ) -> Force:
         """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
-            raise DeclarationError(f"load '{name}': point mass '{place.body.name}' has no axes for its force to turn with")
+            raise DeclarationError(
+                f"load '{name}': point mass '{place.body.name}' has no axes for its force to turn"
+                " with"
+            )
         if place.body is self.ground:
-            raise DeclarationError(f"load '{name}': a force on the ground moves nothing; name a point of a link or a point mass")
+            raise DeclarationError(
+                f"load '{name}': a force on the ground moves nothing; name a point of a link or a"
+                " point mass"
+            )
         load = Force(name, place, self._load(name, x), self._load(name, y), turning)
         return cast(Force, self.loads.setdefault(name, load))
 
-    def torque(self, name: str, point: Body | Point, value: Expression, *, against: Body | Point | None = None) -> Torque:
-        """Apply a torque [N m], counter-clockwise, to a body at a point, and its opposite to another one (default: the ground).
+    def torque(
+        self,
+        name: str,
+        point: Body | Point,
+        value: Expression,
+        *,
+        against: Body | Point | None = None,
+    ) -> Torque:
+        """Apply a torque [N m], counter-clockwise, to a body at a point, and its opposite to
+        another one (default: the ground).
 
         Where on a link it acts matters to the link's sections only; a link stands for its base.
         """
-        ends = self._load_point(name, point), self._load_point(name, self.ground if against is None else against)
+        ends = (
+            self._load_point(name, point),
+            self._load_point(name, self.ground if against is None else against),
+        )
         for end in ends:
             if not end.body.oriented:
-                raise DeclarationError(f"load '{name}': point mass '{end.body.name}' bears no torque")
+                raise DeclarationError(
+                    f"load '{name}': point mass '{end.body.name}' bears no torque"
+                )
         load = Torque(name, ends[0], self._load(name, value), ends[1])
         self.loads[name] = load
         return load
 
     def line_load(
-        self, name: str, link: Link, *, x: Spread = 0.0, y: Spread = 0.0, between: Between = None, turning: bool = False
+        self,
+        name: str,
+        link: Link,
+        *,
+        x: Spread = 0.0,
+        y: Spread = 0.0,
+        between: Between = None,
+        turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link: a value, a pair for its two ends, or a polynomial as a function of the distance xi [m].
+        """Apply a load [N/m] along a link: a value, a pair for its two ends, or a polynomial as a
+        function of the distance xi [m].
 
-        It acts ``between`` two distances from the base, else along the whole link: :class:`.LineLoad`.
+        It acts ``between`` two distances from the base, else along the whole link:
+        :class:`.LineLoad`.
         """
-        return cast(LineLoad, self.loads.setdefault(name, line_load(self.own, name, link, (x, y), between, turning)))
+        return cast(
+            LineLoad,
+            self.loads.setdefault(name, line_load(self.own, name, link, (x, y), between, turning)),
+        )
 
     def spring(
         self,
@@ -266,23 +364,47 @@ class Mechanism(Graphs):
         length: Expression,
         damping: Expression = 0.0,
     ) -> Spring:
-        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points: :class:`.Spring`."""
+        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two
+        points: :class:`.Spring`.
+        """
         ends = self._load_point(name, first), self._load_point(name, second)
-        numbers = [self._load(name, stiffness), self._load(name, length, "m"), self._load(name, damping)]
+        numbers = [
+            self._load(name, stiffness),
+            self._load(name, length, "m"),
+            self._load(name, damping),
+        ]
         return cast(Spring, self.loads.setdefault(name, Spring(name, *ends, *numbers)))
 
-    def damper(self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression) -> Spring:
+    def damper(
+        self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression
+    ) -> Spring:
         """Put a damper [N s/m] between two points."""
         return self.spring(name, first, second, stiffness=0.0, length=0.0, damping=damping)
 
     def torsion_spring(
-        self, name: str, joint: Joint, *, stiffness: Expression, angle: Expression = 0.0, damping: Expression = 0.0
+        self,
+        name: str,
+        joint: Joint,
+        *,
+        stiffness: Expression,
+        angle: Expression = 0.0,
+        damping: Expression = 0.0,
     ) -> Torque:
-        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
+        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint,
+        whose angle counts turns.
+        """
         if self.own.joint(joint).coordinate != "angle":
-            raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        k, free, c = self._load(name, stiffness), self._load(name, angle, "rad"), self._load(name, damping)
-        return self._turn_back(name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint))
+            raise DeclarationError(
+                f"load '{name}': joint '{joint.name}' has no angle for a torsion spring"
+            )
+        k, free, c = (
+            self._load(name, stiffness),
+            self._load(name, angle, "rad"),
+            self._load(name, damping),
+        )
+        return self._turn_back(
+            name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint)
+        )
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         return self.torque(name, joint.child, value, against=joint.parent)
@@ -301,34 +423,52 @@ class Mechanism(Graphs):
         smooth: Expression | None = None,
         along: str = "",
     ) -> Friction:
-        """Let a joint rub, a pin or a guide, by what it bears; ``along`` one of two coordinates of it: see :class:`.Friction`."""
+        """Let a joint rub, a pin or a guide, by what it bears; ``along`` one of two coordinates of
+        it: see :class:`.Friction`.
+        """
         told = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
         told |= {"static": static, "stribeck": stribeck, "smooth": smooth}
-        return cast(Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, told)))
+        return cast(
+            Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, told))
+        )
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
-        """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what loads see and of `results`."""
+        """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what
+        loads see and of `results`.
+        """
         self.own.free("output", name, self.outputs)
         check_line(f"output '{name}': its unit", unit)
-        expression = ca.SX(self.own.expression(f"output '{name}'", expression, moving=True, found=True))
+        expression = ca.SX(
+            self.own.expression(f"output '{name}'", expression, moving=True, found=True)
+        )
         made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
         self.outputs[name] = OwnOutput(name, expression, unit, made_of)
         return self.outputs[name]
 
     def path(self, name: str, point: Body | Point) -> Path:
-        """Declare a point whose motion a scene may give; outputs NAME_x, NAME_vx, NAME_ax, and of y, are its motion in SI units."""
+        """Declare a point whose motion a scene may give; outputs NAME_x, NAME_vx, NAME_ax, and of
+        y, are its motion in SI units.
+        """
         self.own.free("path", name, self.paths)
         path = Path(name, self.own.point(f"path '{name}'", point))
         if path.point.body is self.ground:
-            raise DeclarationError(f"path '{name}': a point of the ground does not move; name a point of a link or a point mass")
-        for kind, unit, of in (("", "m", self.place), ("v", "m/s", self.velocity), ("a", "m/s^2", self.results.acceleration)):
+            raise DeclarationError(
+                f"path '{name}': a point of the ground does not move; name a point of a link or a"
+                " point mass"
+            )
+        for kind, unit, of in (
+            ("", "m", self.place),
+            ("v", "m/s", self.velocity),
+            ("a", "m/s^2", self.results.acceleration),
+        ):
             for axis, symbol in zip(self.measures.components, of(path.point), strict=True):
                 self.output(f"{name}_{kind}{axis}", symbol, unit=unit)
         self.paths[name] = path
         return path
 
     def coordinate(self, joint: Joint, axis: str = "") -> Any:
-        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on.
+        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from
+        the start of the scene on.
 
         Where a joint has several, ``axis`` names one of them, as ``turn_1``.
         """
@@ -339,37 +479,50 @@ class Mechanism(Graphs):
         return self.measures.joint(*self.own.moving_joint(joint, axis)).rates[0]
 
     def place(self, point: Body | Point) -> tuple[Any, ...]:
-        """The symbols of a point's x and y, and in space z, in ground axes [m], for loads and constraints."""
+        """The symbols of a point's x and y, and in space z, in ground axes [m], for loads and
+        constraints.
+        """
         return self.measures.point(self.own.point("place", point)).places
 
     def velocity(self, point: Body | Point) -> tuple[Any, ...]:
-        """The symbols of a point's velocity in ground axes [m/s], for loads and non-holonomic rows."""
+        """The symbols of a point's velocity in ground axes [m/s], for
+        loads and non-holonomic rows.
+        """
         return self.measures.point(self.own.point("velocity", point)).rates
 
     def direction(self, link: Link) -> Any:
-        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
+        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts
+        turns as a coordinate does.
+        """
         if not isinstance(body := self.own.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
     def set_gravity(self, x: Expression, y: Expression) -> None:
-        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
+        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
+        parameters.
+        """
         self.own.open("set gravity")
         self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
 
     def freeze(self) -> None:
-        """Check the whole and end the declaration. Raises :class:`DeclarationError` for a part that hangs on nothing."""
+        """Check the whole and end the declaration.
+
+        Raises :class:`DeclarationError` for a part that hangs on nothing.
+        """
         if not self.moving:
             raise DeclarationError(f"mechanism '{self.name}' has no link and no point mass")
         check_connected(self.name, self.ground, self.moving, self.joints.values())
         self.frozen = True
 
     def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Every parameter's value, the defaults overridden, checked against the ranges and against what the parts allow.
+        """Every parameter's value, the defaults overridden, checked against the ranges and against
+        what the parts allow.
 
-        Raises :class:`UnknownNameError` for names that are no parameters', :class:`ParameterError` for values that are not finite
-        or out of range, all of them at once, a length that is not positive, a mass or density that is negative, a station outside
-        its link, or a mechanism without any mass.
+        Raises :class:`UnknownNameError` for names that are no parameters', :class:`ParameterError`
+        for values that are not finite or out of range, all of them at once, a length that is not
+        positive, a mass or density that is negative, a station outside its link, or a mechanism
+        without any mass.
         """
         values = parameter_values(self.parameters, overrides)
         demands(self).check(list(values.values()), lambda e: self.number(e, values))
@@ -377,7 +530,9 @@ class Mechanism(Graphs):
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
         """The value of an expression in the parameters."""
-        return value_of(expression, {name: one.symbol for name, one in self.parameters.items()}, values)
+        return value_of(
+            expression, {name: one.symbol for name, one in self.parameters.items()}, values
+        )
 
     def _joint(
         self,
@@ -389,7 +544,9 @@ class Mechanism(Graphs):
         angle: Expression | None = None,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
-        return self.joints.setdefault(name, in_plane(self.own, name, kind, parent, child, axis, angle))
+        return self.joints.setdefault(
+            name, in_plane(self.own, name, kind, parent, child, axis, angle)
+        )
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
         self.own.free("load", name, self.loads)

@@ -1,4 +1,6 @@
-"""What teeth, belts and chains do to the bodies that they couple: forces on their real lines, that one multiplier tells."""
+"""What teeth, belts and chains do to the bodies that they couple: forces on their real lines, that
+one multiplier tells.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ FITTING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Wrench:
-    """A force, and a couple about the place where it is told [m for a force without a unit], in a carrier's axes."""
+    """A force, and a couple about the place where it is told [m for a force without a unit], in a
+    carrier's axes.
+    """
 
     force: Vector = ZERO
     couple: Vector = ZERO
@@ -28,10 +32,11 @@ class Wrench:
 class Mesh:
     """Where two bodies touch, or a belt runs over them; ``carrier`` is the body on which both turn.
 
-    The first bears, at its point ``first``, lambda ``along`` + s ``apart`` + c ``braking``, and the second the opposite. lambda is
-    the multiplier, of either sign; s is never negative; c is what friction takes. ``centre`` is the place of ``first`` in the
-    carrier's axes, and ``reach`` leads from there to ``second``, which may be at a place that moves on its body: it is an
-    expression of coordinates then.
+    The first bears, at its point ``first``, lambda ``along`` + s ``apart`` + c ``braking``, and the
+    second the opposite. lambda is the multiplier, of either sign; s is never negative; c is what
+    friction takes. ``centre`` is the place of ``first`` in the carrier's axes, and ``reach`` leads
+    from there to ``second``, which may be at a place that moves on its body: it is an expression of
+    coordinates then.
     """
 
     first: Point
@@ -46,10 +51,11 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """What friction takes in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with sigma the sign of a rate.
+    """What friction takes in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with
+    sigma the sign of a rate.
 
-    The rate is that of the sum of coordinates of joints, each with its sign, ``turns``. ``symbol`` stands for c until it is found,
-    as a friction's does.
+    The rate is that of the sum of coordinates of joints, each with its sign, ``turns``. ``symbol``
+    stands for c until it is found, as a friction's does.
     """
 
     name: str
@@ -61,7 +67,9 @@ class Loss:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Two numbers of a transmission that must be the same, beside a ``size``; ``words`` tell both, as {got} and {meant}."""
+    """Two numbers of a transmission that must be the same, beside a ``size``; ``words`` tell both,
+    as {got} and {meant}.
+    """
 
     words: str
     got: Expression
@@ -75,11 +83,13 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class Transmission:
-    """What a constraint's multiplier lambda is: the force along the teeth, or the difference of a belt's tensions [N].
+    """What a constraint's multiplier lambda is: the force along the teeth, or the difference of a
+    belt's tensions [N].
 
-    It acts in every one of ``meshes``: several share a load evenly. With it comes s = (|lambda + slack| + |lambda - slack|)/2: of
-    teeth, whose ``slack`` is zero, the size of lambda; of a belt the sum of its tensions, of which none can be negative.
-    ``symbol`` stands for s until it is found. ``loss`` is there where parts rub. ``fits`` say of which numbers the parts must be.
+    It acts in every one of ``meshes``: several share a load evenly. With it comes s = (|lambda +
+    slack| + |lambda - slack|)/2: of teeth, whose ``slack`` is zero, the size of lambda; of a belt
+    the sum of its tensions, of which none can be negative. ``symbol`` stands for s until it is
+    found. ``loss`` is there where parts rub. ``fits`` say of which numbers the parts must be.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Prescribed motions of driven joints: d(t), d'(t), d''(t).
 
-A law is a frozen object with one method, ``graph(t)``, which returns a CasADi expression of the symbol t; rates come by
-automatic differentiation.
+A law is a frozen object with one method, ``graph(t)``, which returns a CasADi expression of the
+symbol t; rates come by automatic differentiation.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from .stretches import Stretch
 class Motion:
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
-    ``span`` is the time the law covers, and ``knots`` are the times between which the second derivative of a spline is linear. Of a
-    motion made of moves ``stretches`` are these, ``period`` is their time
-    where they go on over and over, and ``demands`` are what parameters must hold to.
-    ``told`` says in words what a motion from a file is; ``unit`` is rad or m if texts tell its numbers in that.
+    ``span`` is the time the law covers, and ``knots`` are the times between which the second
+    derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period``
+    is their time where they go on over and over, and ``demands`` are what parameters must hold to.
+    ``told`` says in words what a motion from a file is; ``unit`` is rad or m if texts tell its
+    numbers in that.
     """
 
     graph: Callable[[Any], Any]
@@ -48,22 +49,32 @@ class Motion:
 
     @fitting
     def __call__(self, x: Any) -> Any:
-        """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
+        """The law of an expression in place of the time, as of a joint's coordinate, for
+        constraints and loads.
+        """
         if self.knots:
-            raise DeclarationError("a motion by samples is of the time alone; expected lagrange_casadi.curve(x, y)(EXPRESSION)")
+            raise DeclarationError(
+                "a motion by samples is of the time alone; expected lagrange_casadi.curve(x,"
+                " y)(EXPRESSION)"
+            )
         try:
             expression = ca.SX(x)
         except (NotImplementedError, TypeError, RuntimeError):
-            raise DeclarationError(f"motion: expected a casadi.SX expression, got {shown(x)}") from None
+            raise DeclarationError(
+                f"motion: expected a casadi.SX expression, got {shown(x)}"
+            ) from None
         return self.graph(expression)
 
 
 @public
 def polynomial(*coefficients: Expression) -> Motion:
-    """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols.
+    """c0 + c1 t + c2 t^2 + ...
+
+    (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols.
 
     The value is the joint's coordinate [rad or m] at the time t [s]; a number may be a text, as in
-    ``polynomial("45 deg", "360 deg/s")``. Raises :class:`.DeclarationError` without a coefficient, and for one that is none.
+    ``polynomial("45 deg", "360 deg/s")``. Raises :class:`.DeclarationError` without a coefficient,
+    and for one that is none.
     """
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
@@ -84,8 +95,11 @@ def _per(order: int) -> str:
 
 
 @public
-def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0) -> Motion:
-    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in rad; numbers or symbols.
+def harmonic(
+    mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0
+) -> Motion:
+    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in
+    rad; numbers or symbols.
 
     All but the frequency may be texts, as ``"45 deg"`` or ``"100 mm"``.
     """
@@ -97,9 +111,11 @@ def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, pha
 
 @public
 def expression(law: Callable[[Any], Any]) -> Motion:
-    """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it and of parameters [rad or m].
+    """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it
+    and of parameters [rad or m].
 
-    Its value and rate must not jump. Raises :class:`.DeclarationError` for what is no function; a scene refuses other expressions.
+    Its value and rate must not jump. Raises :class:`.DeclarationError` for what is no function; a
+    scene refuses other expressions.
     """
     if not callable(law):
         raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
@@ -108,17 +124,22 @@ def expression(law: Callable[[Any], Any]) -> Motion:
 
 @public
 def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion:
-    """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times`` [s].
+    """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times``
+    [s].
 
-    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio * angles)``. Numbers may be texts, as
-    ``"20 ms"`` and ``"45 deg"``. It is defined between the first and the last time only.
+    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio *
+    angles)``. Numbers may be texts, as ``"20 ms"`` and ``"45 deg"``. It is defined between the
+    first and the last time only.
 
-    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, for what is not finite, and for
-    parameters that change some values otherwise than others.
+    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase,
+    for what is not finite, and for parameters that change some values otherwise than others.
     """
     unit = ""
     if isinstance(times, list | tuple) and any(isinstance(time, str) for time in times):
-        times = [scalar("motion samples: times", time, symbols_of(time), "parameter", "s") for time in times]
+        times = [
+            scalar("motion samples: times", time, symbols_of(time), "parameter", "s")
+            for time in times
+        ]
     if isinstance(values, list | tuple) and any(isinstance(value, str) for value in values):
         values, unit = coordinates("motion samples: values", ((value, "") for value in values))
     at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)
@@ -136,14 +157,22 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
 
 @symbolic
 def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
-    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the joint's name.
+    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the
+    joint's name.
 
     Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
     """
     t = ca.SX.sym("t")
     rows = [_derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
     stacked = [ca.vertcat(ca.SX(0, 1), *(row[order] for row in rows)) for order in range(3)]
-    return ca.Function("motion", [t, parameters], stacked, ["t", "p"], ["d", "d_rate", "d_acceleration"], {"cse": True})
+    return ca.Function(
+        "motion",
+        [t, parameters],
+        stacked,
+        ["t", "p"],
+        ["d", "d_rate", "d_acceleration"],
+        {"cse": True},
+    )
 
 
 def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth]:
@@ -153,32 +182,49 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth
     """
     t = ca.SX.sym("t")
     looked_at = {joint: law for joint, law in laws.items() if not (law.knots or law.stretches)}
-    found = {joint: Smooth.of(_scalar(joint, law, t, parameters), t, parameters) for joint, law in looked_at.items()}
+    found = {
+        joint: Smooth.of(_scalar(joint, law, t, parameters), t, parameters)
+        for joint, law in looked_at.items()
+    }
     return {joint: smooth for joint, smooth in found.items() if smooth is not None}
 
 
 @symbolic
 def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
-    """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their ends, a row a joint of the laws.
+    """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their
+    ends, a row a joint of the laws.
 
     Below zero where it is between them; None where no law has a curve with ends.
     """
     t = ca.SX.sym("t")
-    found = [[] if law.knots else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
+    found = [
+        [] if law.knots else beyond_ends(_scalar(joint, law, t, parameters))
+        for joint, law in laws.items()
+    ]
     if not any(found):
         return None
     rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
-    return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
+    return ca.Function(
+        "beyond",
+        [t, parameters],
+        [ca.densify(ca.vertcat(*rows))],
+        ["t", "p"],
+        ["beyond"],
+        {"cse": True},
+    )
 
 
 def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:
         value = law.graph(t)
     except Exception as error:
-        raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {told(error)[:240]}") from None
+        raise DeclarationError(
+            f"the motion of joint '{joint}' is no casadi.SX expression of t: {told(error)[:240]}"
+        ) from None
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(
-            f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as casadi.sin, not math's"
+            f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as"
+            " casadi.sin, not math's"
         )
     symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
     return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")

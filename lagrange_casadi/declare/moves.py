@@ -58,15 +58,19 @@ def move(
     jerk: Symbolic | None = None,
     name: str = "",
 ) -> Move:
-    """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text as ``"90 deg"``].
+    """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text
+    as ``"90 deg"``].
 
-    It takes a ``time`` [s], or the shortest within its limits of ``speed``, ``acceleration`` and ``jerk``. With both, it takes the
-    time, and is refused where that breaks a limit. ``law`` is one of ``cycloidal``, ``modified_sine``, ``modified_trapezoid``,
-    ``polynomial_345``, ``polynomial_4567``, ``simple_harmonic``, ``trapezoid`` and ``s_curve``, or has shares of its own, as
-    ``trapezoid(0.25)``. Without one it is ``polynomial_345``, with limits of speed and acceleration the trapezoid that reaches
-    them, with all three limits the S-curve of seven segments that does.
+    It takes a ``time`` [s], or the shortest within its limits of ``speed``, ``acceleration`` and
+    ``jerk``. With both, it takes the time, and is refused where that breaks a limit. ``law`` is one
+    of ``cycloidal``, ``modified_sine``, ``modified_trapezoid``, ``polynomial_345``,
+    ``polynomial_4567``, ``simple_harmonic``, ``trapezoid`` and ``s_curve``, or has shares of its
+    own, as ``trapezoid(0.25)``. Without one it is ``polynomial_345``, with limits of speed and
+    acceleration the trapezoid that reaches them, with all three limits the S-curve of seven
+    segments that does.
 
-    All numbers may be expressions of parameters. Raises :class:`.DeclarationError` for what is no move.
+    All numbers may be expressions of parameters. Raises :class:`.DeclarationError` for what is no
+    move.
     """
     what = f"move '{name}'" if name else "move"
     if (to is None) == (by is None):
@@ -76,7 +80,9 @@ def move(
 
 @public
 def dwell(time: Symbolic | None = None, *, name: str = "") -> Dwell:
-    """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as the period asks for."""
+    """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as
+    the period asks for.
+    """
     return Dwell(_named(name), time)
 
 
@@ -94,16 +100,19 @@ def moves(
     acceleration: Expression | None = None,
     jerk: Expression | None = None,
 ) -> Motion:
-    """A law of motion made of moves and dwells, one after the other, from the place ``start`` [rad or m] at the time ``begin`` [s].
+    """A law of motion made of moves and dwells, one after the other, from the place ``start`` [rad
+    or m] at the time ``begin`` [s].
 
-    Before and after it rests. A ``cyclic`` one goes on over and over, and must come back to its start, or be ``advance`` beyond it,
-    as an indexing table is. ``period`` [s] is the time of all; a dwell without a time fills it up. ``speed``, ``acceleration`` and
-    ``jerk`` are limits of every move that has none of its own.
+    Before and after it rests. A ``cyclic`` one goes on over and over, and must come back to its
+    start, or be ``advance`` beyond it, as an indexing table is. ``period`` [s] is the time of all;
+    a dwell without a time fills it up. ``speed``, ``acceleration`` and ``jerk`` are limits of every
+    move that has none of its own.
 
-    Called with an expression, it is the same law of that: ``lift(m.coordinate(cam))`` rises by the angle of a cam, and its times
-    then are angles. Raises :class:`.DeclarationError` for moves that cannot be: too fast for their limits, a time that is not
-    positive, a cycle that does not close, a period that is not the sum of the times. Where parameters decide, they are refused as
-    others that make a part impossible.
+    Called with an expression, it is the same law of that: ``lift(m.coordinate(cam))`` rises by the
+    angle of a cam, and its times then are angles. Raises :class:`.DeclarationError` for moves that
+    cannot be: too fast for their limits, a time that is not positive, a cycle that does not close,
+    a period that is not the sum of the times. Where parameters decide, they are refused as others
+    that make a part impossible.
     """
     each = _sequence(parts)
     common = Limits(speed, acceleration, jerk)
@@ -126,7 +135,8 @@ def moves(
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
     stretches = tuple(
-        Stretch(name, law, seams[k], seams[k + 1], times[k], at, by) for k, (name, law, _, at, by, _) in enumerate(found)
+        Stretch(name, law, seams[k], seams[k + 1], times[k], at, by)
+        for k, (name, law, _, at, by, _) in enumerate(found)
     )
     far = demands.coordinate("moves: advance", advance)
     length = None
@@ -137,14 +147,24 @@ def moves(
         raise DeclarationError("moves: advance is of a cyclic motion; expected cyclic=True")
     each_demand = tuple(demands.each)
     if len(demands.units) > 1:
-        raise DeclarationError("moves: angles and lengths at once; expected those of one coordinate")
+        raise DeclarationError(
+            "moves: angles and lengths at once; expected those of one coordinate"
+        )
     graph = _graph(stretches, place, length, far, each_demand)
     unit = next(iter(demands.units), "")
     return Motion(graph, stretches=stretches, period=length, demands=each_demand, unit=unit)
 
 
-def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advance: Any, demands: tuple[Demand, ...]) -> Any:
-    """The law as a function of its argument: which stretch it is in is told once, and each law is written once."""
+def _graph(
+    stretches: tuple[Stretch, ...],
+    last: Expression,
+    period: Any,
+    advance: Any,
+    demands: tuple[Demand, ...],
+) -> Any:
+    """The law as a function of its argument: which stretch it is in is told once, and each law is
+    written once.
+    """
     # What cannot be has no value, wherever the law is used.
     held: Any = 1.0
     for demand in demands:
@@ -159,15 +179,20 @@ def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advanc
             middle = begin + period / 2.0
             x = ca.remainder(t - middle, period)
             if _bends(stretches[0]) or _bends(stretches[-1]):
-                # At the seam, as near to one middle as to the next, C takes the one and the other by
-                # turns. The acceleration jumps there: the next cycle begins, however it is evaluated.
+                # At the seam, as near to one middle as to the next, C takes the one and the other
+                # by turns. The acceleration jumps there: the next cycle begins, however it is
+                # evaluated.
                 x = x - period * (x >= period / 2.0)
             x = x + middle
             gone = advance * ca.floor((t - x) / period + 0.5)
-        starts = [stretch.start for stretch in stretches] + ([] if period is not None else [stretches[-1].stop])
+        starts = [stretch.start for stretch in stretches] + (
+            [] if period is not None else [stretches[-1].stop]
+        )
         later = [x >= start for start in starts]
         # A difference of two comparisons, the later of which holds only where the earlier does.
-        inside = [here if k + 1 == len(later) else here - later[k + 1] for k, here in enumerate(later)]
+        inside = [
+            here if k + 1 == len(later) else here - later[k + 1] for k, here in enumerate(later)
+        ]
         places = [stretch.at for stretch in stretches]
         if period is None:
             at = [(x < starts[0], places[0]), *zip(inside, [*places, last], strict=True)]
@@ -176,10 +201,14 @@ def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advanc
             inside[0] = x < starts[1] if len(starts) > 1 else ca.SX(1)
             at = list(zip(inside, places, strict=True))
         going = [(here, s) for here, s in zip(inside, stretches, strict=False) if s.law is not None]
-        share = (x - _chosen((here, s.start) for here, s in going)) * _chosen((here, 1.0 / s.time) for here, s in going)
+        share = (x - _chosen((here, s.start) for here, s in going)) * _chosen(
+            (here, 1.0 / s.time) for here, s in going
+        )
         value = _chosen(at) + gone
         for law in dict.fromkeys(s.law for _, s in going if s.law is not None):
-            value = value + _chosen((here, s.by) for here, s in going if s.law is law) * law.shape(share)
+            value = value + _chosen((here, s.by) for here, s in going if s.law is law) * law.shape(
+                share
+            )
         return value * held
 
     return graph
@@ -194,7 +223,9 @@ def _bends(stretch: Stretch) -> bool:
 
 
 def _chosen(rows: Any) -> Any:
-    """Of values, each with its condition of which one holds at most, the one that does; zero where none does."""
+    """Of values, each with its condition of which one holds at most, the one that does; zero where
+    none does.
+    """
     total: Any = 0.0
     for here, value in rows:
         if not (isinstance(value, float) and value == 0.0):
@@ -217,7 +248,9 @@ class _Sum:
 
 @dataclass(frozen=True)
 class _Demanded:
-    """Demands that are found: one of numbers is held at once, those that parameters decide are kept; and units of texts."""
+    """Demands that are found: one of numbers is held at once, those that parameters decide are
+    kept; and units of texts.
+    """
 
     each: list[Demand]
     units: set[str]
@@ -243,9 +276,13 @@ def _sequence(parts: Sequence[object]) -> list[Move | Dwell]:
     names = [part.name for part in each if part.name]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise DeclarationError(f"moves: two parts are called '{twice}'; expected names of their own, or none")
+        raise DeclarationError(
+            f"moves: two parts are called '{twice}'; expected names of their own, or none"
+        )
     if not any(isinstance(part, Move) for part in each):
-        raise DeclarationError("moves: nothing but dwells; expected a move, or for what stands still polynomial(PLACE)")
+        raise DeclarationError(
+            "moves: nothing but dwells; expected a move, or for what stands still polynomial(PLACE)"
+        )
     return each
 
 
@@ -264,7 +301,9 @@ def _expression(what: str, value: Any, unit: str = "1") -> Any:
     return plain(scalar(what, value, symbols_of(value), "parameter", unit))
 
 
-def _way(what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded) -> tuple[Expression, Expression]:
+def _way(
+    what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded
+) -> tuple[Expression, Expression]:
     """How far a move goes, and where it ends."""
     if part.by is not None:
         by = demands.coordinate(f"{what}: by", part.by)
@@ -275,14 +314,24 @@ def _way(what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded
     return _Sum(to).then(negative), to
 
 
-def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Demanded) -> tuple[RestLaw, Expression]:
+def _timed(
+    what: str, part: Move, by: Expression, common: Limits, demands: _Demanded
+) -> tuple[RestLaw, Expression]:
     """The law of a move and its time, with what its limits demand."""
     limits = _limits(what, part.limits if part.limits.told else common, demands)
     if not limits.told and part.time is None:
         raise DeclarationError(f"{what}: expected a time, or limits of speed, acceleration or jerk")
     size = ca.fabs(ca.SX(by))
     if limits.told and part.time is None:
-        demands.add(Demand(size, True, lambda _: f"{what}: it goes nowhere, so that limits give it no time; expected a dwell"))
+        demands.add(
+            Demand(
+                size,
+                True,
+                lambda _: (
+                    f"{what}: it goes nowhere, so that limits give it no time; expected a dwell"
+                ),
+            )
+        )
     told = frozenset(limits.told)
     named = part.law if part.law is not None else "polynomial_345"
     own = part.law is None or part.law in ("trapezoid", "s_curve")
@@ -293,7 +342,10 @@ def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Dema
     else:
         law = rest_law(what, named)
     if "jerk" in told and isinstance(law.jerk, float) and math.isinf(law.jerk):
-        raise DeclarationError(f"{what}: accelerations of the law {law.name} jump, so no limit of jerk holds; expected another law")
+        raise DeclarationError(
+            f"{what}: accelerations of the law {law.name} jump, so no limit of jerk holds; expected"
+            " another law"
+        )
     if not limits.told:
         return law, _expression(f"{what}: time", part.time, "s")
     least = plain(law.least_time(by, limits))
@@ -302,9 +354,16 @@ def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Dema
     time = _expression(f"{what}: time", part.time, "s")
 
     def refusal(number: Evaluator) -> str:
-        broken = ", ".join(f"{name} {readable(number(limit))}" for name, limit in limits.told.items())
-        asked, needed = f"{readable(abs(number(by)))} in {readable(number(time))} s", f"{number(least):.6g} s or more"
-        return f"{what}: {asked} by the law {law.name} breaks its limits ({broken}): it takes {needed}"
+        broken = ", ".join(
+            f"{name} {readable(number(limit))}" for name, limit in limits.told.items()
+        )
+        asked, needed = (
+            f"{readable(abs(number(by)))} in {readable(number(time))} s",
+            f"{number(least):.6g} s or more",
+        )
+        return (
+            f"{what}: {asked} by the law {law.name} breaks its limits ({broken}): it takes {needed}"
+        )
 
     demands.add(Demand(time - (1.0 - _FORGIVEN) * least, False, refusal))
     return law, time
@@ -318,25 +377,38 @@ def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
     return Limits(**found)
 
 
-def _filled(parts: list[Move | Dwell], times: list[Any], period: Any, demands: _Demanded) -> list[Expression]:
+def _filled(
+    parts: list[Move | Dwell], times: list[Any], period: Any, demands: _Demanded
+) -> list[Expression]:
     """The times of all parts, the dwell that has none filled up."""
-    known = [None if time is None else _expression(f"{_what(parts[k], k)}: time", time, "s") for k, time in enumerate(times)]
+    known = [
+        None if time is None else _expression(f"{_what(parts[k], k)}: time", time, "s")
+        for k, time in enumerate(times)
+    ]
     lacking = [k for k, time in enumerate(known) if time is None]
     told = [time for time in known if time is not None]
     if period is None:
         if lacking:
-            raise DeclarationError(f"{_what(parts[lacking[0]], lacking[0])}: expected a time, or a period of the moves to fill up")
+            raise DeclarationError(
+                f"{_what(parts[lacking[0]], lacking[0])}: expected a time, or a period of the moves"
+                " to fill up"
+            )
         return told
     whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*told)
     if len(lacking) > 1:
-        raise DeclarationError(f"moves: {len(lacking)} dwells have no time; at most one can fill up the period")
+        raise DeclarationError(
+            f"moves: {len(lacking)} dwells have no time; at most one can fill up the period"
+        )
     if not lacking:
         gap = ca.fabs(ca.SX(whole) - total)
         demands.add(
             Demand(
                 _FORGIVEN * ca.fabs(ca.SX(whole)) - gap,
                 False,
-                lambda n: f"moves: the times add up to {readable(n(total))} s, but the period is {readable(n(whole))} s",
+                lambda n: (
+                    f"moves: the times add up to {readable(n(total))} s, but the period is"
+                    f" {readable(n(whole))} s"
+                ),
             )
         )
         return told
@@ -346,7 +418,8 @@ def _filled(parts: list[Move | Dwell], times: list[Any], period: Any, demands: _
             left,
             True,
             lambda n: (
-                f"moves: the other parts take {readable(n(total))} s, which leaves nothing of the period of {readable(n(whole))} s"
+                f"moves: the other parts take {readable(n(total))} s, which leaves nothing of the"
+                f" period of {readable(n(whole))} s"
             ),
         )
     )
@@ -361,15 +434,22 @@ def _not_positive(what: str, value: Expression, unit: str = "") -> Callable[[Eva
     return lambda number: f"{what} must be positive, got {readable(number(value))}{unit}"
 
 
-def _demand_closure(start: Expression, end: Expression, advance: Expression, demands: _Demanded) -> None:
+def _demand_closure(
+    start: Expression, end: Expression, advance: Expression, demands: _Demanded
+) -> None:
     gap = ca.fabs(ca.SX(end) - start - advance)
     size = ca.fabs(ca.SX(start)) + ca.fabs(ca.SX(end)) + ca.fabs(ca.SX(advance))
 
     def refusal(number: Evaluator) -> str:
-        beyond = "" if isinstance(advance, float) and advance == 0.0 else f", {readable(number(advance))} beyond it"
+        beyond = (
+            ""
+            if isinstance(advance, float) and advance == 0.0
+            else f", {readable(number(advance))} beyond it"
+        )
         return (
-            f"moves: a cyclic motion must end where it starts, at {readable(number(start))}{beyond}, but it ends at "
-            f"{readable(number(end))}; expected a move back, or advance={readable(number(end) - number(start))}"
+            "moves: a cyclic motion must end where it starts, at"
+            f" {readable(number(start))}{beyond}, but it ends at {readable(number(end))}; expected"
+            f" a move back, or advance={readable(number(end) - number(start))}"
         )
 
     demands.add(Demand(_FORGIVEN * size - gap, False, refusal))

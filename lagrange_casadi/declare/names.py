@@ -7,7 +7,22 @@ from collections.abc import Iterable, Mapping
 from ..errors import DeclarationError
 from .expressions import check_name
 from .joints import Joint
-from .parts import Body, Constraint, Force, Friction, Ground, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
+from .parts import (
+    Body,
+    Constraint,
+    Force,
+    Friction,
+    Ground,
+    LineLoad,
+    Link,
+    Load,
+    Parameter,
+    Path,
+    PointMass,
+    Row,
+    Spring,
+    Torque,
+)
 from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {
@@ -31,10 +46,14 @@ Part = Parameter | Body | Joint | Load | Constraint | Row | OwnOutput | Path
 
 
 def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[str, Part]]) -> None:
-    """Raise :class:`DeclarationError` for what cannot be a name, or is that of one of the other parts."""
+    """Raise :class:`DeclarationError` for what cannot be a name, or is that of one of the other
+    parts.
+    """
     check_name(kind, name)
     for part in (parts[name] for parts in others if name in parts):
         bearer = next(_WORDS[known] for known in type(part).__mro__ if known in _WORDS)
         if bearer in (f"a {kind}", f"an {kind}"):
             raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{mechanism}'")
-        raise DeclarationError(f"{kind} '{name}': the name is taken by {bearer} of mechanism '{mechanism}'")
+        raise DeclarationError(
+            f"{kind} '{name}': the name is taken by {bearer} of mechanism '{mechanism}'"
+        )

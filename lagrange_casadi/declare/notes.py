@@ -17,17 +17,26 @@ _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
 
 
-def notes(t: Array, outputs: Mapping[Output, Array], description: Description, resting: npt.NDArray[np.bool_]) -> Iterator[str]:
-    """More drives than motions; slender links that slide across their axes, as nobody said; where a joint that rubs is ``resting``;
-    joints in gimbal lock, whose turns are not told; and each joint whose point slides beyond the end of a link that has sections,
-    and how far it goes.
+def notes(
+    t: Array,
+    outputs: Mapping[Output, Array],
+    description: Description,
+    resting: npt.NDArray[np.bool_],
+) -> Iterator[str]:
+    """More drives than motions; slender links that slide across their axes, as nobody said; where a
+    joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each joint
+    whose point slides beyond the end of a link that has sections, and how far it goes.
 
-    As far as efforts, the motion of the joint, or the sections of the link, are among the outputs: those that are determined.
+    As far as efforts, the motion of the joint, or the sections of the link, are among the outputs:
+    those that are determined.
     """
     drives = drives_of(description)
     moved = len(motions_of(description)) - len(description["rows"])
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
-        told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
+        told = (
+            f"{len(drives)} drives ({', '.join(drives)}) make {moved}"
+            f" motion{'s' if moved > 1 else ''}"
+        )
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
     yield from _across(description)
     if resting.any():
@@ -37,88 +46,137 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
             yield (
-                f"joint '{name}' is in gimbal lock at t = {near:.6g} s: two of its turns, and all their rates, are not told; other "
-                "instants, or another axis and second, tell them"
+                f"joint '{name}' is in gimbal lock at t = {near:.6g} s: two of its turns, and all"
+                " their rates, are not told; other instants, or another axis and second, tell them"
             )
         body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
         if not ways or "density" not in body:
             continue
         ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))
         if ratio is None and ways.keys() <= outputs.keys():
-            ratio = (joint["parent"]["x"] + sum(way * outputs[motion] for motion, way in ways.items())) / body["length"]
+            ratio = (
+                joint["parent"]["x"] + sum(way * outputs[motion] for motion, way in ways.items())
+            ) / body["length"]
         if ratio is None:
             continue
         away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
         if away.size:
             low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
-                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
-                f"{high:.4g}): beyond its ends it loads the link as through a bracket"
+                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s"
+                f" (xi/l from {low:.4g} to {high:.4g}): beyond its ends it loads the link as"
+                " through a bracket"
             )
 
 
 def drawing_notes(description: Description) -> Iterator[str]:
-    """What was moved because a drawing rounds it, and by how much: to ends of links and right angles, and so that loops close."""
+    """What was moved because a drawing rounds it, and by how much: to ends of links and right
+    angles, and so that loops close.
+    """
     snapped = description.get("snapped", {})
-    for k, what, exact, unit in ((0, "axes", "at right angles", "rad"), (1, "places", "ends of links", "m")):
+    for k, what, exact, unit in (
+        (0, "axes", "at right angles", "rad"),
+        (1, "places", "ends of links", "m"),
+    ):
         if moved := {part: by[k] for part, by in snapped.items() if by[k]}:
-            yield f"{what} of {', '.join(moved)} are taken as {exact}, moved by up to {max(moved.values()):.2g} {unit}"
+            yield (
+                f"{what} of {', '.join(moved)} are taken as {exact}, moved by up to"
+                f" {max(moved.values()):.2g} {unit}"
+            )
     if rounded := description.get("rounded"):
         angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
         yield (
-            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are taken as parallel or coincident, "
-            f"moved by up to {angle:.2g} rad and {distance:.2g} m"
+            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are"
+            f" taken as parallel or coincident, moved by up to {angle:.2g} rad and {distance:.2g} m"
         )
 
 
 def _across(description: Description) -> Iterator[str]:
-    """Each slender link that slides in a direction that is not its axis, where nothing was said of how it lies."""
+    """Each slender link that slides in a direction that is not its axis, where nothing was said of
+    how it lies.
+    """
     for name in description.get("unturned", ()):
         joint = description["joints"][name]
         space = in_space(description)
-        along, axis = (joint["triad"][0], joint["turned"][0]) if space else ([*joint["axis"], 0.0], [1.0, 0.0, 0.0])
+        along, axis = (
+            (joint["triad"][0], joint["turned"][0])
+            if space
+            else ([*joint["axis"], 0.0], [1.0, 0.0, 0.0])
+        )
         off = math.atan2(np.linalg.norm(np.cross(along, axis)), abs(np.dot(along, axis)))
         if off <= ROUNDED or _is_carrier(description, joint["child"]["body"]):
             continue
         if space:
             ways = "turned= says how it lies"
         else:
-            ways = f'angle="{math.degrees(math.atan2(along[1], along[0])):.6g} deg" lays it along, angle=0 says that it is meant'
+            ways = (
+                f'angle="{math.degrees(math.atan2(along[1], along[0])):.6g} deg" lays it along,'
+                " angle=0 says that it is meant"
+            )
         yield (
-            f"link '{joint['child']['body']}' slides along joint '{name}' at {math.degrees(off):.3g} deg to its axis, for the "
-            f"joint's axis does not turn it: {ways}"
+            f"link '{joint['child']['body']}' slides along joint '{name}' at"
+            f" {math.degrees(off):.3g} deg to its axis, for the joint's axis does not turn it:"
+            f" {ways}"
         )
 
 
 def _is_carrier(description: Description, link: str) -> bool:
-    """Whether a link has no mass, and joins and bears all at one place: then how it lies matters to nothing."""
+    """Whether a link has no mass, and joins and bears all at one place: then how it lies matters to
+    nothing.
+    """
     ends = [joint[end] for joint in description["joints"].values() for end in ("parent", "child")]
     loaded = [point for load in description["loads"].values() for point in load["points"]]
-    places = [point for point in [*ends, *loaded, *description.get("paths", {}).values()] if point["body"] == link]
-    return description["bodies"][link]["mass"] == 0.0 and all(place == places[0] for place in places)
+    places = [
+        point
+        for point in [*ends, *loaded, *description.get("paths", {}).values()]
+        if point["body"] == link
+    ]
+    return description["bodies"][link]["mass"] == 0.0 and all(
+        place == places[0] for place in places
+    )
 
 
 def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np.bool_]) -> str:
     """When a joint that rubs is at rest, as it is at some instants, and which frictions are."""
-    open_ = [o.part for o, values in outputs.items() if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()]
+    open_ = [
+        o.part
+        for o, values in outputs.items()
+        if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()
+    ]
     frictions = f" ({', '.join(open_)})" if open_ else ""
     first, last = t[np.flatnonzero(resting)[[0, -1]]]
-    when = f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s, last at t = {last:.6g} s"
+    when = (
+        f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s,"
+        f" last at t = {last:.6g} s"
+    )
     left = "open there, and NaN: it is left out of peaks, means and strength"
     return f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is {left}"
 
 
 def _along(name: str, joint: Description) -> dict[Output, float]:
-    """How far a joint's point goes along its parent's axis, by the motions that move it; nothing where it does not slide."""
+    """How far a joint's point goes along its parent's axis, by the motions that move it; nothing
+    where it does not slide.
+    """
     if "coordinates" not in joint:
-        return {Output("motion", name): joint["axis"][0]} if joint["kind"] in ("prismatic", "slot") else {}
+        return (
+            {Output("motion", name): joint["axis"][0]}
+            if joint["kind"] in ("prismatic", "slot")
+            else {}
+        )
     each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
-    found = {Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"]) for (own, kind), axis in each}
+    found = {
+        Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"])
+        for (own, kind), axis in each
+    }
     return {motion: way for motion, way in found.items() if way}
 
 
 def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None:
     """The second of a joint's three turns, where the first is not told because of gimbal lock."""
     turns = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
-    first, second = (outputs.get(Output("motion", name)) for name in turns[:2]) if len(turns) == 3 else (None, None)
+    first, second = (
+        (outputs.get(Output("motion", name)) for name in turns[:2])
+        if len(turns) == 3
+        else (None, None)
+    )
     return second if first is None else None

@@ -1,4 +1,6 @@
-"""What a declaration is given, looked at: parts of the mechanism's own, expressions of its own symbols, names that are free."""
+"""What a declaration is given, looked at: parts of the mechanism's own, expressions of its own
+symbols, names that are free.
+"""
 
 from __future__ import annotations
 
@@ -19,21 +21,37 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Ownership:
-    """What belongs to a mechanism. Methods return what they were given, and raise :class:`.DeclarationError` for anything else."""
+    """What belongs to a mechanism.
+
+    Methods return what they were given, and raise :class:`.DeclarationError` for anything else.
+    """
 
     mechanism: Mechanism
 
     def point(self, what: str, place: Body | Point) -> Point:
         """A point of a body: of a link its base, of any other its origin."""
-        point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0) if isinstance(place, Body) else place
+        point = (
+            place.base
+            if isinstance(place, Link)
+            else Point(place, 0.0, 0.0)
+            if isinstance(place, Body)
+            else place
+        )
         if not isinstance(point, Point):
-            raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
+            raise DeclarationError(
+                f"{what}: expected a link, a point mass, the ground or a point of one, got"
+                f" {place!r}"
+            )
         if self.mechanism.bodies.get(point.body.name) is not point.body:
-            raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'")
+            raise DeclarationError(
+                f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'"
+            )
         place_of = f"{what}: place on '{point.body.name}'"
         x, y, z = (self.expression(place_of, number, "m") for number in point.place)
         if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
-            raise DeclarationError(f"{place_of}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
+            raise DeclarationError(
+                f"{place_of}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism"
+            )
         found, moved = on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
         self.snapped(what, distance=moved)
         return found
@@ -45,7 +63,9 @@ class Ownership:
         return found
 
     def snapped(self, what: str, *, angle: float = 0.0, distance: float = 0.0) -> None:
-        """Note by how much an axis [rad] or a place [m] of a part is taken as the exact one that a drawing rounded."""
+        """Note by how much an axis [rad] or a place [m] of a part is taken as the exact one that a
+        drawing rounded.
+        """
         if (angle or distance) and not self.mechanism.frozen:
             most = self.mechanism.snapped.get(what, (0.0, 0.0))
             self.mechanism.snapped[what] = max(most[0], angle), max(most[1], distance)
@@ -55,29 +75,47 @@ class Ownership:
         joints = self.mechanism.joints
         if not isinstance(joint, Joint) or joints.get(joint.name) is not joint:
             raise DeclarationError(
-                f"expected a joint of mechanism '{self.mechanism.name}', got {joint!r}; joints: {', '.join(joints)}"
+                f"expected a joint of mechanism '{self.mechanism.name}', got {joint!r}; joints:"
+                f" {', '.join(joints)}"
             )
         return joint
 
     def moving_joint(self, joint: Joint, name: str = "") -> tuple[Joint, Axis]:
-        """A joint that has a coordinate, and the axis of that name; it needs none where the joint has one axis."""
+        """A joint that has a coordinate, and the axis of that name; it needs none where the joint
+        has one axis.
+        """
         axes = {axis.name: axis for axis in self.joint(joint).axes}
         if not axes:
             raise DeclarationError(f"joint '{joint.name}' has no coordinate")
         if name not in axes:
             valid = ", ".join(axes) if len(axes) > 1 else "it has one coordinate, without a name"
-            raise DeclarationError(f"joint '{joint.name}' has no coordinate '{name}'; valid: {valid}")
+            raise DeclarationError(
+                f"joint '{joint.name}' has no coordinate '{name}'; valid: {valid}"
+            )
         return joint, axes[name]
 
-    def expression(self, what: str, value: Expression, unit: str = "1", *, moving: bool = False, found: bool = False) -> Expression:
-        """A finite float, or an SX scalar in parameters; if ``moving`` in time and state too; if ``found`` in results too.
+    def expression(
+        self,
+        what: str,
+        value: Expression,
+        unit: str = "1",
+        *,
+        moving: bool = False,
+        found: bool = False,
+    ) -> Expression:
+        """A finite float, or an SX scalar in parameters; if ``moving`` in time and state too; if
+        ``found`` in results too.
 
         A number in a ``unit`` may be a text, as ``"100 mm"``.
         """
         mechanism = self.mechanism
         own = [parameter.symbol for parameter in mechanism.parameters.values()]
         own += [mechanism.time, *mechanism.measures.symbols] if moving else []
-        own += [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)] if found else []
+        own += (
+            [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)]
+            if found
+            else []
+        )
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
         return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'", unit)
@@ -85,17 +123,28 @@ class Ownership:
     def at_defaults(self, expression: Expression) -> float:
         """The value of an expression in the parameters, with their defaults."""
         parameters = self.mechanism.parameters
-        return self.mechanism.number(expression, {name: parameter.default for name, parameter in parameters.items()})
+        return self.mechanism.number(
+            expression, {name: parameter.default for name, parameter in parameters.items()}
+        )
 
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""
         m = self.mechanism
         self.open(f"add {kind} '{name}'")
-        # Files and scenes know joints, loads, constraints, rows and paths by their names alone, beside those of links.
+        # Files and scenes know joints, loads, constraints, rows and paths by their names alone,
+        # beside those of links.
         acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
-        check_free(kind, name, m.name, (m.bodies, *acting) if any(table is other for other in acting) else (table,))
+        check_free(
+            kind,
+            name,
+            m.name,
+            (m.bodies, *acting) if any(table is other for other in acting) else (table,),
+        )
 
     def open(self, what: str) -> None:
         """Raise where nothing can be changed any more."""
         if self.mechanism.frozen:
-            raise DeclarationError(f"cannot {what}: mechanism '{self.mechanism.name}' is frozen, a scene has been made of it")
+            raise DeclarationError(
+                f"cannot {what}: mechanism '{self.mechanism.name}' is frozen, a scene has been made"
+                " of it"
+            )

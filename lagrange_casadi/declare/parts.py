@@ -1,4 +1,6 @@
-"""The parts of a mechanism, frozen: parameters, bodies and their points, loads, constraints and non-holonomic rows."""
+"""The parts of a mechanism, frozen: parameters, bodies and their points, loads, constraints and
+non-holonomic rows.
+"""
 
 from __future__ import annotations
 
@@ -39,11 +41,16 @@ class Parameter:
             raise ParameterError(found)
 
     def number(self, value: Any) -> float:
-        """A value as a number, see :func:`.units.number`. Raises :class:`.NumberError` for what is none; it may be infinite."""
+        """A value as a number, see :func:`.units.number`.
+
+        Raises :class:`.NumberError` for what is none; it may be infinite.
+        """
         return number(value, self.unit, finite=False)
 
     def fault(self, value: Any) -> str:
-        """What is wrong with a value, in words; nothing where it is a finite number within ``[low, high]``."""
+        """What is wrong with a value, in words; nothing where it is a finite number within ``[low,
+        high]``.
+        """
         try:
             found = self.number(value)
         except NumberError:
@@ -51,9 +58,10 @@ class Parameter:
         if not math.isfinite(found):
             return f"parameter '{self.name}' must be a finite number, got {found}"
         if not self.low <= found <= self.high:
+            unit = "" if self.unit == "1" else " " + self.unit
             return (
-                f"parameter '{self.name}' = {readable(found, self.low, self.high)}{'' if self.unit == '1' else ' ' + self.unit} "
-                f"is out of its range [{readable(self.low, found)}, {readable(self.high, found)}]"
+                f"parameter '{self.name}' = {readable(found, self.low, self.high)}{unit}"
+                f" is out of its range [{readable(self.low, found)}, {readable(self.high, found)}]"
             )
         return ""
 
@@ -72,7 +80,9 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A place on a body, in the body's own axes [m]; ``end`` where it is the base or the tip of a link."""
+    """A place on a body, in the body's own axes [m]; ``end`` where it is the base or the tip of a
+    link.
+    """
 
     body: Body
     x: Expression
@@ -98,7 +108,8 @@ class Ground(Body):
 
 @dataclass(frozen=True, eq=False)
 class RigidMass:
-    """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it [kg m^2].
+    """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it
+    [kg m^2].
 
     In space the moments of inertia are a matrix, three rows of three, on the link's axes.
     """
@@ -113,10 +124,11 @@ class RigidMass:
 class Link(Body):
     """A link: its axis runs from its base (station 0) to its tip (station ``length``).
 
-    Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known as a whole only
-    (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of, where that is told. ``outline`` are the corners of
-    what it is drawn as, in its own axes [m]. ``beside`` is the direction that was declared for its y axis in space, of length 1 and
-    in ground axes.
+    Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known
+    as a whole only (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of,
+    where that is told. ``outline`` are the corners of what it is drawn as, in its own axes [m].
+    ``beside`` is the direction that was declared for its y axis in space, of length 1 and in ground
+    axes.
     """
 
     length: Expression
@@ -136,7 +148,9 @@ class Link(Body):
         return Point(self, self.length, 0.0, "tip")
 
     def at(self, x: Symbolic, y: Symbolic = 0.0, z: Symbolic = 0.0) -> Point:
-        """The place at station ``x`` along the axis and ``y``, in space ``z`` too, beside it [m]."""
+        """The place at station ``x`` along the axis and ``y``, in space
+        ``z`` too, beside it [m].
+        """
         return Point(self, x, y, z=z)
 
 
@@ -154,7 +168,9 @@ class PointMass(Body):
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A point of a body whose place, velocity and acceleration are outputs, and whose motion may be given."""
+    """A point of a body whose place, velocity and acceleration are outputs, and whose motion may be
+    given.
+    """
 
     name: str
     point: Point
@@ -186,7 +202,8 @@ class Force:
 class Torque:
     """A torque [N m] on a body at a point, and the opposite on another one, or on the ground.
 
-    ``value`` is that about z; in space ``across`` are those about x and y, and where ``turning`` all are on the body's own axes.
+    ``value`` is that about z; in space ``across`` are those about x and y, and where ``turning``
+    all are on the body's own axes.
     """
 
     name: str
@@ -209,7 +226,9 @@ class Torque:
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """A spring and damper between two points: its tension is stiffness (distance - length) + damping (distance)'."""
+    """A spring and damper between two points: its tension is stiffness (distance - length) +
+    damping (distance)'.
+    """
 
     name: str
     first: Point
@@ -226,10 +245,12 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class LineLoad:
-    """A load [N/m] along a link, ``between`` two distances from its base [m]: a polynomial of the place.
+    """A load [N/m] along a link, ``between`` two distances from its base [m]: a polynomial of the
+    place.
 
-    ``x``, ``y``, ``z`` are coefficients of rising powers of (end - xi)/(end - start), as many of each: where it ends the first of
-    them acts, where it begins their sum. In ground axes, or where ``turning`` in the link's own.
+    ``x``, ``y``, ``z`` are coefficients of rising powers of (end - xi)/(end - start), as many of
+    each: where it ends the first of them acts, where it begins their sum. In ground axes, or where
+    ``turning`` in the link's own.
     """
 
     name: str
@@ -274,19 +295,22 @@ POSITIVE = ("radius", "length", "stribeck", "smooth")
 
 @dataclass(frozen=True, eq=False)
 class Friction:
-    """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol`` stands for it until it is found.
+    """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol``
+    stands for it until it is found.
 
-    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple along the coordinate is::
+    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple
+    along the coordinate is::
 
-        -sigma mu radius |R| - viscous v                    in a pin that bears the force R,
-        -sigma mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its line and the moment M.
+        -sigma mu radius |R| - viscous v                    in a pin that bears the force R, -sigma
+        mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its
+        line and the moment M.
 
-    A spherical joint rubs as a pin about the axis about which its child turns on its parent at the moment: v is the size of their
-    relative angular velocity, which is never negative.
+    A spherical joint rubs as a pin about the axis about which its child turns on its parent at the
+    moment: v is the size of their relative angular velocity, which is never negative.
 
-    ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2), by the speed of sliding [m/s].
-    In a joint that slides and turns at once, ``beside`` is its other coordinate: sigma is then the share of the speed of sliding
-    that is along this one.
+    ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2),
+    by the speed of sliding [m/s]. In a joint that slides and turns at once, ``beside`` is its other
+    coordinate: sigma is then the share of the speed of sliding that is along this one.
     """
 
     name: str
@@ -329,10 +353,13 @@ Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Phi(q, t) = 0 in joint coordinates (paper eq. 5). Of a ``transmission`` the multiplier acts where its parts touch.
+    """Phi(q, t) = 0 in joint coordinates (paper eq.
 
-    Phi is differentiated twice, so its slopes must not jump; of a cam those of its ``lift`` alone, at the
-    cam's angle: off the contact those of phi may jump as the normal turns, on it that counts for nothing.
+    5). Of a ``transmission`` the multiplier acts where its parts touch.
+
+    Phi is differentiated twice, so its slopes must not jump; of a cam those of its ``lift`` alone,
+    at the cam's angle: off the contact those of phi may jump as the normal turns, on it that counts
+    for nothing.
     """
 
     name: str
@@ -343,7 +370,10 @@ class Constraint:
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq. 3), in place of one drive's effort."""
+    """A non-holonomic row A(q) q' + b = 0 in joint coordinates and rates (paper eq.
+
+    3), in place of one drive's effort.
+    """
 
     name: str
     expression: Any

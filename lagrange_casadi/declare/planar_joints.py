@@ -18,7 +18,10 @@ def in_plane(
     axis: tuple[Expression, Expression] | None,
     angle: Expression | None,
 ) -> Joint:
-    """A joint between points of two bodies. Raises :class:`DeclarationError` for one that cannot be."""
+    """A joint between points of two bodies.
+
+    Raises :class:`DeclarationError` for one that cannot be.
+    """
     what = f"joint '{name}'"
     start, end = own.point(what, parent), own.point(what, child)
     if start.body is end.body:
@@ -28,6 +31,10 @@ def in_plane(
             f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
             f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
         )
-    unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
+    unit = (
+        (1.0, 0.0)
+        if axis is None
+        else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
+    )
     turn = 0.0 if angle is None else own.expression(f"{what}: angle", angle, "rad")
     return Joint(name, kind, start, end, unit, turn, turn_given=angle is not None)

@@ -1,4 +1,6 @@
-"""What makes parts possible: one function of the parameters, which :func:`.evaluate`, sweeps and exported C all ask."""
+"""What makes parts possible: one function of the parameters, which :func:`.evaluate`, sweeps and
+exported C all ask.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ Evaluator = Callable[[Any], float]
 
 @dataclass(frozen=True, eq=False)
 class Demand:
-    """A value that must be finite and not negative, nor zero where ``positive``; ``refusal`` says in words what is wrong."""
+    """A value that must be finite and not negative, nor zero where ``positive``; ``refusal`` says
+    in words what is wrong.
+    """
 
     value: Expression
     positive: bool
@@ -61,11 +65,15 @@ class Demands:
         values = self.function(self.symbols)
         order = sorted(range(len(self.each)), key=lambda k: not self.each[k].positive)
         ordered = ca.densify(ca.vertcat(ca.SX(0, 1), *(values[k] for k in order)))
-        function = ca.Function("margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True})
+        function = ca.Function(
+            "margins", [self.symbols], [ordered], ["p"], ["margins"], {"cse": True}
+        )
         return Margins(function, sum(demand.positive for demand in self.each))
 
     def check(self, p: Sequence[float], number: Evaluator) -> None:
-        """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first demand that is not met."""
+        """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first
+        demand that is not met.
+        """
         values = self.function(list(p)).full().ravel()
         strict = np.array([demand.positive for demand in self.each], bool)
         refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
@@ -75,7 +83,9 @@ class Demands:
 
 @dataclass(frozen=True, eq=False)
 class Margins(Graphs):
-    """What parameters must keep positive, ``positive`` numbers of ``function(p)``, and then what must not be negative."""
+    """What parameters must keep positive, ``positive`` numbers of ``function(p)``, and then what
+    must not be negative.
+    """
 
     function: Any
     positive: int
@@ -97,7 +107,9 @@ class Margins(Graphs):
 
 @symbolic
 def demands(mechanism: Mechanism, precision: Precision = "double") -> Demands:
-    """What a mechanism's parts demand: of lengths, masses, densities, stations; what a precision rounds is forgiven."""
+    """What a mechanism's parts demand: of lengths, masses, densities, stations; what a precision
+    rounds is forgiven.
+    """
     return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
 
 
@@ -133,7 +145,9 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
             found += _of_station(f"load '{load.name}'", point, precision, space=mechanism.space)
     for constraint in mechanism.constraints.values():
         if constraint.transmission is not None:
-            found += [_of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits]
+            found += [
+                _of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits
+            ]
     return Demands(mechanism.symbols, tuple(found))
 
 
@@ -142,15 +156,26 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
     for body in mechanism.moving:
         matter = body.mass
         made = (
-            [c for of in (matter, *(matter.slices.each if matter.slices else ())) for cell in of.cells for c in cell]
+            [
+                c
+                for of in (matter, *(matter.slices.each if matter.slices else ()))
+                for cell in of.cells
+                for c in cell
+            ]
             if isinstance(matter, Density)
-            else [matter.mass, *matter.centre, *inertias(matter)]
-            if isinstance(matter, RigidMass)
-            else [matter]
+            else (
+                [matter.mass, *matter.centre, *inertias(matter)]
+                if isinstance(matter, RigidMass)
+                else [matter]
+            )
         )
         link = isinstance(body, Link)
         beam = body.beam if isinstance(body, Link) else None
-        made += [] if beam is None else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
+        made += (
+            []
+            if beam is None
+            else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
+        )
         told = [*([body.length] if isinstance(body, Link) else []), *made]
         yield f"{'link' if link else 'point mass'} '{body.name}'", told
     for joint in mechanism.joints.values():
@@ -158,7 +183,13 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
         at_points = [number for point in load.points for number in point.place]
-        own = load.between if isinstance(load, LineLoad) else load.numbers.values() if isinstance(load, Friction) else at_points
+        own = (
+            load.between
+            if isinstance(load, LineLoad)
+            else load.numbers.values()
+            if isinstance(load, Friction)
+            else at_points
+        )
         yield f"load '{load.name}'", [*own]
     yield "gravity", [*mechanism.gravity]
 
@@ -178,20 +209,32 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
         return []
 
     def told(number: Evaluator) -> str:
-        return f"load '{load.name}': it acts between {readable(number(start))} and {readable(number(end))} m"
+        return (
+            f"load '{load.name}': it acts between {readable(number(start))} and"
+            f" {readable(number(end))} m"
+        )
 
     def beyond(number: Evaluator) -> str:
-        return f"{told(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
+        return (
+            f"{told(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
+        )
 
-    margins = (start + END[precision] * link.length, (link.length - end) + END[precision] * link.length)
-    rising = Demand(load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins")
+    margins = (
+        start + END[precision] * link.length,
+        (link.length - end) + END[precision] * link.length,
+    )
+    rising = Demand(
+        load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins"
+    )
     return [*(Demand(margin, False, beyond) for margin in margins), rising]
 
 
 def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
     """That two numbers of a transmission are the same."""
     apart = max(FITTING, END[precision]) * fit.size - ca.fabs(ca.SX(fit.got - fit.meant))
-    return Demand(apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}")
+    return Demand(
+        apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}"
+    )
 
 
 def _of_friction(friction: Friction) -> Iterator[Demand]:
@@ -200,16 +243,21 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
         positive, value = word in POSITIVE, number
         least = "positive" if positive else "at least 0"
 
-        def refusal(evaluated: Evaluator, value: Any = value, told: str = f"{word} must be {least}") -> str:
+        def refusal(
+            evaluated: Evaluator, value: Any = value, told: str = f"{word} must be {least}"
+        ) -> str:
             return f"friction '{friction.name}': {told}, got {readable(evaluated(value))}"
 
         if isinstance(number, ca.SX):
             yield Demand(number, positive, refusal)
     if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
         steep = (
-            f"friction '{friction.name}': mu times the lead of a radian must be less than radius, else no couple drives the screw"
+            f"friction '{friction.name}': mu times the lead of a radian must be less than radius,"
+            " else no couple drives the screw"
         )
-        yield Demand(friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep)
+        yield Demand(
+            friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep
+        )
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
@@ -219,7 +267,13 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     if isinstance(body, Link):
         found += _of_beam(what, body)
         length = body.length
-        found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {readable(n(length))} m"))
+        found.append(
+            Demand(
+                length,
+                True,
+                lambda n: f"{what}: length must be positive, got {readable(n(length))} m",
+            )
+        )
         if isinstance(body.mass, Density):
             base, tip, _ = body.mass.ends(length)
             slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
@@ -227,29 +281,50 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     matter = body.mass
     mass = matter.mass if isinstance(matter, RigidMass) else matter
     assert not isinstance(mass, Density)
-    found.append(Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"))
+    found.append(
+        Demand(
+            mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"
+        )
+    )
     if isinstance(matter, RigidMass):
         if isinstance(matter.inertia, tuple):
             return mass, [*found, *_of_inertia(what, matter)]
         inertia = matter.inertia
-        found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"))
+        found.append(
+            Demand(
+                inertia,
+                False,
+                lambda n: (
+                    f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"
+                ),
+            )
+        )
     return mass, found
 
 
 def _of_beam(what: str, link: Link) -> list[Demand]:
-    """That dimensions of its cross-section are some; between two breaks they are linear, and so are their demands."""
+    """That dimensions of its cross-section are some; between two breaks they are linear, and so are
+    their demands.
+    """
 
     def demand(kind: str, value: Expression, words: str) -> Demand:
-        return Demand(value, True, lambda n: f"{what}: {words} of its {kind} must be positive, got {readable(n(value))}")
+        return Demand(
+            value,
+            True,
+            lambda n: f"{what}: {words} of its {kind} must be positive, got {readable(n(value))}",
+        )
 
     shapes = () if link.beam is None else link.beam.course.shapes()
-    return [demand(shape.kind, value, words) for shape in shapes for value, words in shape.demands()]
+    return [
+        demand(shape.kind, value, words) for shape in shapes for value, words in shape.demands()
+    ]
 
 
 def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
     """That moments of inertia are those of some mass: no principal second moment of it is negative.
 
-    So it is where no minor on the diagonal of the matrix of second moments is, each beside its largest terms.
+    So it is where no minor on the diagonal of the matrix of second moments is, each beside its
+    largest terms.
     """
     moments = [[ca.SX(entry) for entry in row] for row in second_moments(matter.inertia)]
     told = "x, y and z"
@@ -257,8 +332,8 @@ def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
     def refusal(number: Evaluator) -> str:
         x, y, z = (readable(number(matter.inertia[k][k])) for k in range(3))
         return (
-            f"{what}: no body has these moments of inertia: about {told} they are {x}, {y}, {z} kg m^2, and of principal moments "
-            "each is at most the sum of the other two"
+            f"{what}: no body has these moments of inertia: about {told} they are {x}, {y}, {z} kg"
+            " m^2, and of principal moments each is at most the sum of the other two"
         )
 
     found = []
@@ -269,11 +344,21 @@ def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
     return found
 
 
-def _of_density(what: str, density: Density, length: Expression, precision: Precision) -> list[Demand]:
-    """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not finite where a term is not."""
+def _of_density(
+    what: str, density: Density, length: Expression, precision: Precision
+) -> list[Demand]:
+    """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not
+    finite where a term is not.
+    """
     if density.even:
         mass = density.cells[0][0] * (length if density.per_length else 1.0)
-        return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg")]
+        return [
+            Demand(
+                mass,
+                False,
+                lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg",
+            )
+        ]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
     places = [lowest(cell, a, b) for a, b, cell in spans]
     place, value = places[0]
@@ -283,25 +368,43 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
 
     def refusal(number: Evaluator) -> str:
         got = number(value) / (1.0 if density.per_length else number(length))
-        return f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l = {number(place):.6g}"
+        return (
+            f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l ="
+            f" {number(place):.6g}"
+        )
 
     sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
-    return [Demand(own + END[precision] * size, False, refusal) for (_, own), size in zip(places, sizes, strict=True)]
+    return [
+        Demand(own + END[precision] * size, False, refusal)
+        for (_, own), size in zip(places, sizes, strict=True)
+    ]
 
 
 def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
-    """That second moments of slices are those of some mass: neither yy, nor zz, nor yy zz - yz yz is negative anywhere."""
+    """That second moments of slices are those of some mass: neither yy, nor zz, nor yy zz - yz yz
+    is negative anywhere.
+    """
 
     def refusal(_: Evaluator) -> str:
-        return f"{what}: no slice has these second moments: yy, zz and yy zz - yz yz must not be negative anywhere along the link"
+        return (
+            f"{what}: no slice has these second moments: yy, zz and yy zz - yz yz must not be"
+            " negative anywhere along the link"
+        )
 
     found = []
     for start, stop in itertools.pairwise(slices.breaks):
         yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
-        product = [a - b for a, b in itertools.zip_longest(_product(yy, zz), _product(yz, yz), fillvalue=ca.SX(0))]
+        product = [
+            a - b
+            for a, b in itertools.zip_longest(
+                _product(yy, zz), _product(yz, yz), fillvalue=ca.SX(0)
+            )
+        ]
         for cell in (yy, zz, product) if any(not nil(c) for c in yz) else (yy, zz):
             size = sum(ca.fabs(ca.SX(c)) for c in cell)
-            found.append(Demand(lowest(cell, start, stop)[1] + END[precision] * size, False, refusal))
+            found.append(
+                Demand(lowest(cell, start, stop)[1] + END[precision] * size, False, refusal)
+            )
     return found
 
 
@@ -321,8 +424,14 @@ def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
     def refusal(number: Evaluator) -> str:
         mass = number(total)
         if mass == 0.0:
-            return f"mechanism '{name}' is massless: at least one link or point mass needs a mass, or a load"
-        return f"mechanism '{name}': its whole mass must be finite and positive, got {readable(mass)} kg"
+            return (
+                f"mechanism '{name}' is massless: at least one link or point mass needs a mass, or"
+                " a load"
+            )
+        return (
+            f"mechanism '{name}': its whole mass must be finite and positive, got"
+            f" {readable(mass)} kg"
+        )
 
     return Demand(total, not loaded, refusal)
 
@@ -334,10 +443,19 @@ def _surely_positive(mass: Expression) -> bool:
 
 
 def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
-    """That directions in space that parameters set are some, and at right angles where they are told apart."""
+    """That directions in space that parameters set are some, and at right angles where they are
+    told apart.
+    """
     what = f"joint '{joint.name}'"
     own = _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
-    return [*own, *(_of_pair(f"{what}: turned", *joint.turned, precision) if joint.turned is not None else [])]
+    return [
+        *own,
+        *(
+            _of_pair(f"{what}: turned", *joint.turned, precision)
+            if joint.turned is not None
+            else []
+        ),
+    ]
 
 
 def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
@@ -345,8 +463,16 @@ def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> 
     if not isinstance(cosine, ca.SX) or cosine.is_constant():
         return []
     return [
-        Demand(dot(first, first) + dot(second, second), True, lambda _: f"{what}: its axes must not be of length zero"),
-        Demand(max(RIGHT, END[precision]) - ca.fabs(cosine), False, lambda number: not_right(what, number(cosine))),
+        Demand(
+            dot(first, first) + dot(second, second),
+            True,
+            lambda _: f"{what}: its axes must not be of length zero",
+        ),
+        Demand(
+            max(RIGHT, END[precision]) - ca.fabs(cosine),
+            False,
+            lambda number: not_right(what, number(cosine)),
+        ),
     ]
 
 
@@ -355,14 +481,18 @@ def _of_station(what: str, point: Any, precision: Precision, *, space: bool) -> 
 
     def refusal(number: Evaluator) -> str:
         x, length, link = number(point.x), number(point.body.length), point.body.name
-        there = f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to {readable(length, x)} m"
+        there = (
+            f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to"
+            f" {readable(length, x)} m"
+        )
         end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")
         if not math.isfinite(beyond):
             return f"{what}: {there}"
         tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
         weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
         return (
-            f"{what}: {there}; what lies beyond an end is a link of its own: {tail}; {weld}; and tail.tip in place of the station"
+            f"{what}: {there}; what lies beyond an end is a link of its own: {tail}; {weld}; and"
+            " tail.tip in place of the station"
         )
 
     return [Demand(margin, False, refusal) for margin in margins(point, precision)]

@@ -13,7 +13,10 @@ from .times import TURNS
 
 
 def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[str, float]:
-    """Return rough directions of links and coordinates of joints [rad, m] by name. Raises what a :class:`.Scene` does."""
+    """Return rough directions of links and coordinates of joints [rad, m] by name.
+
+    Raises what a :class:`.Scene` does.
+    """
     coordinates = mechanism.coordinates
     places = [*(() if mechanism.space else mechanism.links), *coordinates]
     for name in posture:

@@ -1,4 +1,6 @@
-"""An expression as a polynomial of one of its symbols: followed by its operations, so that nothing is taken for one by chance."""
+"""An expression as a polynomial of one of its symbols: followed by its operations, so that nothing
+is taken for one by chance.
+"""
 
 from __future__ import annotations
 
@@ -21,20 +23,29 @@ class _NoPolynomialError(Exception):
 
 
 def powers(expression: Any, symbol: Any, replaced: Polynomial) -> Polynomial | None:
-    """Coefficients of an expression for a polynomial that is put in for ``symbol``; or None where it is none of that symbol.
+    """Coefficients of an expression for a polynomial that is put in for ``symbol``; or None where
+    it is none of that symbol.
 
-    Only operations that give polynomials of polynomials are followed: a piece that changes at a place along ``symbol``, or a
-    function of it, is no polynomial.
+    Only operations that give polynomials of polynomials are followed: a piece that changes at a
+    place along ``symbol``, or a function of it, is no polynomial.
     """
-    others = [other for other in ca.symvar(expression) if other.element_hash() != symbol.element_hash()]
-    function = ca.Function("along", [symbol, ca.vertcat(ca.SX(0, 1), *others)], [ca.densify(expression)])
+    others = [
+        other for other in ca.symvar(expression) if other.element_hash() != symbol.element_hash()
+    ]
+    function = ca.Function(
+        "along", [symbol, ca.vertcat(ca.SX(0, 1), *others)], [ca.densify(expression)]
+    )
     operations: dict[int, Callable[..., Polynomial]] = {
-        step.operation: _alone(step.operation) for step in steps(function) if step.operation not in _NOT_COMPUTED
+        step.operation: _alone(step.operation)
+        for step in steps(function)
+        if step.operation not in _NOT_COMPUTED
     }
     operations |= _POLYNOMIAL
     inputs = [[replaced], [(other,) for other in others]]
     try:
-        found: Polynomial = interpret(function, inputs, Arithmetic(lambda value: (ca.SX(value),), operations))[0][0]
+        found: Polynomial = interpret(
+            function, inputs, Arithmetic(lambda value: (ca.SX(value),), operations)
+        )[0][0]
     except (_NoPolynomialError, DeclarationError):
         return None
     return _trimmed(found)
@@ -68,7 +79,9 @@ def _trimmed(polynomial: Sequence[Any]) -> Polynomial:
 
 def _plus(a: Polynomial, b: Polynomial) -> Polynomial:
     longer, shorter = (a, b) if len(a) >= len(b) else (b, a)
-    return _trimmed([*(x + y for x, y in zip(longer, shorter, strict=False)), *longer[len(shorter) :]])
+    return _trimmed(
+        [*(x + y for x, y in zip(longer, shorter, strict=False)), *longer[len(shorter) :]]
+    )
 
 
 def _negative(a: Polynomial) -> Polynomial:

@@ -1,8 +1,10 @@
-"""When the motion of a drive is at given coordinates: laws of motion inverted, for many values of the parameters at once.
+"""When the motion of a drive is at given coordinates: laws of motion inverted, for many values of
+the parameters at once.
 
-Where the rate does not depend on time, the time follows by one subtraction and one division. Any other law is followed from a time
-at which it is known, by steps in which the coordinate changes little, until it passes what is looked for; Newton's method, held
-between the two last steps, then finds the time to its last bits. A law that turns back on its way is not inverted.
+Where the rate does not depend on time, the time follows by one subtraction and one division. Any
+other law is followed from a time at which it is known, by steps in which the coordinate changes
+little, until it passes what is looked for; Newton's method, held between the two last steps, then
+finds the time to its last bits. A law that turns back on its way is not inverted.
 """
 
 from __future__ import annotations
@@ -26,7 +28,9 @@ _FIRST = 1e-6
 """Seconds of the first step from where a law rests with neither rate nor acceleration."""
 
 _STEPS, _HALVINGS = 5000, 80
-"""How many steps a motion is followed at most, and by how many halvings a time is known where it turns back."""
+"""How many steps a motion is followed at most, and by how many halvings a time is known where it
+turns back.
+"""
 
 _NEWTON, _TRIALS = 60, 200
 """How often a time is bettered by Newton's method, and in all; the rest are halvings."""
@@ -57,10 +61,12 @@ class Missed(enum.IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """The stretch of time in which motions go from one coordinate to another, for n values of the parameters, each (n,).
+    """The stretch of time in which motions go from one coordinate to another, for n values of the
+    parameters, each (n,).
 
-    ``first`` and ``last`` are its ends [s], NaN where ``missed`` says why there is none; ``t`` and ``d`` then are a time and the
-    coordinate at which that is seen. ``sense`` is the sign of the way.
+    ``first`` and ``last`` are its ends [s], NaN where ``missed`` says why there is none; ``t`` and
+    ``d`` then are a time and the coordinate at which that is seen. ``sense`` is the sign of the
+    way.
     """
 
     first: Array
@@ -73,9 +79,11 @@ class Way:
 
 @dataclass(frozen=True, eq=False)
 class Reaching:
-    """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within ``span`` [s].
+    """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within
+    ``span`` [s].
 
-    ``steady`` tells that its rate does not depend on time, ``varies`` that the law depends on parameters.
+    ``steady`` tells that its rate does not depend on time, ``varies`` that the law depends on
+    parameters.
     """
 
     law: Any
@@ -95,7 +103,9 @@ class Reaching:
         return cls(law, steady, bool(p.numel()) and bool(ca.depends_on(d, p)), span)
 
     def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
-        """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each (n, k)."""
+        """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each
+        (n, k).
+        """
         count = t.shape[1]
         moments, known = t.ravel(), np.repeat(p, count, axis=0)
         found = np.empty((3, moments.size))
@@ -105,7 +115,9 @@ class Reaching:
             many = moments[some].size
             filled = np.resize(moments[some], size), np.resize(known[some], (size, p.shape[1]))
             with np.errstate(all="ignore"):
-                found[:, some] = [row.full().ravel()[:many] for row in law(filled[0][None], filled[1].T)]
+                found[:, some] = [
+                    row.full().ravel()[:many] for row in law(filled[0][None], filled[1].T)
+                ]
         return found[0].reshape(t.shape), found[1].reshape(t.shape), found[2].reshape(t.shape)
 
     @functools.cached_property
@@ -120,8 +132,9 @@ class Reaching:
     def way(self, start: Array, stop: Array, p: Array, around: Array, *, looks: int) -> Way:
         """When the motion goes from ``start`` to ``stop``, (n,), all the way in one direction.
 
-        ``p`` is (n, parameters). A law that is not steady is followed from the times ``around`` (n,) [s], or from where it is
-        defined; that it does not turn back is looked at ``looks`` times.
+        ``p`` is (n, parameters). A law that is not steady is followed from the times ``around``
+        (n,) [s], or from where it is defined; that it does not turn back is looked at ``looks``
+        times.
         """
         sense = np.sign(stop - start)
         if self.steady:
@@ -130,12 +143,21 @@ class Reaching:
         found = []
         for k in range(0, len(p), size):
             some = slice(k, k + size)
-            found.append(self._followed(start[some], stop[some], sense[some], p[some], around[some], looks))
+            found.append(
+                self._followed(start[some], stop[some], sense[some], p[some], around[some], looks)
+            )
         fields = ("first", "last", "sense", "missed", "t", "d")
-        return Way(*(np.concatenate([np.zeros(0), *(getattr(way, name) for way in found)]) for name in fields))
+        return Way(
+            *(
+                np.concatenate([np.zeros(0), *(getattr(way, name) for way in found)])
+                for name in fields
+            )
+        )
 
     def times(self, way: Way, targets: Array, p: Array) -> Array:
-        """The times (n, k) at which the motion is at ``targets`` (n, k), from the start of a way to its end; NaN without one."""
+        """The times (n, k) at which the motion is at ``targets`` (n, k), from the start of a way to
+        its end; NaN without one.
+        """
         if self.steady:
             zero = np.zeros((len(p), 1))
             d, rate, _ = self.at(zero, p)
@@ -146,7 +168,9 @@ class Reaching:
         there = np.flatnonzero(way.missed == Missed.REACHED)
         for k in range(0, there.size, size):
             some = there[k : k + size]
-            found[some] = self._between(way.first[some], way.last[some], way.sense[some, None], targets[some], p[some])
+            found[some] = self._between(
+                way.first[some], way.last[some], way.sense[some, None], targets[some], p[some]
+            )
         return found
 
     def _steady(self, start: Array, stop: Array, sense: Array, p: Array) -> Way:
@@ -158,10 +182,19 @@ class Reaching:
         missed = np.where(sense * rate < 0.0, Missed.OTHER_WAY, missed)
         missed = np.where(rate == 0.0, Missed.STANDS_STILL, missed).astype(np.int8)
         bad = missed != Missed.REACHED
-        return Way(np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, zero[:, 0], d)
+        return Way(
+            np.where(bad, np.nan, first), np.where(bad, np.nan, last), sense, missed, zero[:, 0], d
+        )
 
-    def _followed(self, start: Array, stop: Array, sense: Array, p: Array, around: Array, looks: int) -> Way:
-        ends, missed, t, d = [], np.zeros(len(p), np.int8), np.full(len(p), np.nan), np.full(len(p), np.nan)
+    def _followed(
+        self, start: Array, stop: Array, sense: Array, p: Array, around: Array, looks: int
+    ) -> Way:
+        ends, missed, t, d = (
+            [],
+            np.zeros(len(p), np.int8),
+            np.full(len(p), np.nan),
+            np.full(len(p), np.nan),
+        )
         for target in (start, stop):
             end, why, at, there = self._met(target, np.abs(stop - start), sense, p, around)
             ends.append(end)
@@ -184,7 +217,9 @@ class Reaching:
     def _met(
         self, target: Array, way: Array, sense: Array, p: Array, around: Array
     ) -> tuple[Array, npt.NDArray[np.int8], Array, Array]:
-        """When the motion that goes through where it is at ``around`` is at a target; why not, and where that is seen."""
+        """When the motion that goes through where it is at ``around`` is at a target; why not, and
+        where that is seen.
+        """
         low, high = self.span
         here = np.clip(around, low, high)
         d, rate, bend = (row[:, 0] for row in self.at(here[:, None], p))
@@ -201,14 +236,22 @@ class Reaching:
             if not going.size:
                 break
             with np.errstate(over="ignore"):
-                now, was = np.clip(here[going] + onward[going] * step[going], low, high), here[going]
+                now, was = (
+                    np.clip(here[going] + onward[going] * step[going], low, high),
+                    here[going],
+                )
             found, speed, bent = (row[:, 0] for row in self.at(now[:, None], p[going]))
             ahead = onward[going] * sense[going]
             passed = ahead * (found - target[going]) >= 0.0
-            turned = ~passed & ((ahead * (found - d[going]) < -rounding[going]) | (sense[going] * speed < 0.0))
+            turned = ~passed & (
+                (ahead * (found - d[going]) < -rounding[going]) | (sense[going] * speed < 0.0)
+            )
             lost = ~np.isfinite(found) | ~np.isfinite(now)
             ended = ~passed & (now == was)
-            before[going], after[going] = np.where(passed, was, before[going]), np.where(passed, now, after[going])
+            before[going], after[going] = (
+                np.where(passed, was, before[going]),
+                np.where(passed, now, after[going]),
+            )
             there[going] = passed & ~lost
             if turned.any():
                 some = turned & ~lost
@@ -219,9 +262,16 @@ class Reaching:
             # A target at which the motion rests is met where it comes to rest.
             met = (turned & near) | ((ended | lost) & stays)
             place = np.where(turned, seen[going], was)
-            before[going], after[going] = np.where(met, place, before[going]), np.where(met, place, after[going])
+            before[going], after[going] = (
+                np.where(met, place, before[going]),
+                np.where(met, place, after[going]),
+            )
             there[going] |= met
-            why = np.where(lost, Missed.NEVER, np.where(ended, Missed.ENDS, np.where(turned, Missed.TURNS_BACK, Missed.REACHED)))
+            why = np.where(
+                lost,
+                Missed.NEVER,
+                np.where(ended, Missed.ENDS, np.where(turned, Missed.TURNS_BACK, Missed.REACHED)),
+            )
             missed[going] = np.where(there[going], Missed.REACHED, why)
             seen[going] = np.where(turned, seen[going], now)
             at[going] = np.where(turned, at[going], found)
@@ -230,7 +280,9 @@ class Reaching:
                 step[going] = _step(speed, bent, share[going], 2.0 * step[going])
         missed[~there & (missed == Missed.REACHED)] = Missed.NEVER
         begin, end = np.minimum(before, after), np.maximum(before, after)
-        time = self._solved(target[:, None], begin[:, None], end[:, None], begin[:, None], sense[:, None], p)[:, 0]
+        time = self._solved(
+            target[:, None], begin[:, None], end[:, None], begin[:, None], sense[:, None], p
+        )[:, 0]
         first_way = (missed == Missed.TURNS_BACK) & (seen == np.clip(around, low, high))
         missed[first_way] = Missed.OTHER_WAY
         return np.where(missed == Missed.REACHED, time, np.nan), missed, seen, at
@@ -252,23 +304,33 @@ class Reaching:
         grid[:, -1] = last
         values = sense * self.at(grid, p)[0]
         values = np.maximum.accumulate(values, axis=1)
-        place = np.stack([np.searchsorted(row, u) for row, u in zip(values, sense * targets, strict=True)])
+        place = np.stack(
+            [np.searchsorted(row, u) for row, u in zip(values, sense * targets, strict=True)]
+        )
         place = np.clip(place, 1, count - 1)
         rows = np.arange(len(p))[:, None]
         lower, upper = grid[rows, place - 1], grid[rows, place]
         rise = values[rows, place] - values[rows, place - 1]
         with np.errstate(all="ignore"):
-            share = np.clip(np.nan_to_num((sense * targets - values[rows, place - 1]) / rise), 0.0, 1.0)
+            share = np.clip(
+                np.nan_to_num((sense * targets - values[rows, place - 1]) / rise), 0.0, 1.0
+            )
         found = self._solved(targets, lower, upper, lower + share * (upper - lower), sense, p)
         found[:, 0], found[:, -1] = first, last
         d, rate, _ = self.at(found, p)
         off = np.abs(d - targets) - np.abs(rate) * 4 * np.spacing(np.abs(found))
-        sound = off <= _ROUNDING * np.maximum(np.abs(values).max(axis=1, keepdims=True), np.abs(targets))
+        sound = off <= _ROUNDING * np.maximum(
+            np.abs(values).max(axis=1, keepdims=True), np.abs(targets)
+        )
         found[~(sound.all(axis=1) & (np.diff(found) > 0.0).all(axis=1))] = np.nan
         return found
 
-    def _solved(self, targets: Array, lower: Array, upper: Array, t: Array, sense: Array, p: Array) -> Array:
-        """The times at targets between others, all (n, k): Newton's method, and halving where that leaves them or takes long."""
+    def _solved(
+        self, targets: Array, lower: Array, upper: Array, t: Array, sense: Array, p: Array
+    ) -> Array:
+        """The times at targets between others, all (n, k): Newton's method, and halving where that
+        leaves them or takes long.
+        """
         count = targets.shape[1]
         rows = np.repeat(np.arange(len(p)), count)
         sign, aim = np.broadcast_to(sense, targets.shape).ravel(), targets.ravel()
@@ -278,13 +340,23 @@ class Reaching:
             d, rate, _ = (row[:, 0] for row in self.at(now[going, None], p[rows[going]]))
             miss = sign[going] * (d - aim[going])
             better = np.abs(miss) < least[going]
-            best[going], least[going] = np.where(better, now[going], best[going]), np.where(better, np.abs(miss), least[going])
-            low[going], high[going] = np.where(miss <= 0.0, now[going], low[going]), np.where(miss >= 0.0, now[going], high[going])
+            best[going], least[going] = (
+                np.where(better, now[going], best[going]),
+                np.where(better, np.abs(miss), least[going]),
+            )
+            low[going], high[going] = (
+                np.where(miss <= 0.0, now[going], low[going]),
+                np.where(miss >= 0.0, now[going], high[going]),
+            )
             with np.errstate(all="ignore"):
                 new = now[going] - miss / (sign[going] * rate)
             halve = ~((new >= low[going]) & (new <= high[going])) | (trial >= _NEWTON)
             new = np.where(halve, low[going] + (high[going] - low[going]) / 2, new)
-            stays = (miss == 0.0) | ~np.isfinite(miss) | (np.abs(new - now[going]) <= 2 * np.spacing(np.abs(new)))
+            stays = (
+                (miss == 0.0)
+                | ~np.isfinite(miss)
+                | (np.abs(new - now[going]) <= 2 * np.spacing(np.abs(new)))
+            )
             now[going] = new
             going = going[~stays]
             if not going.size:

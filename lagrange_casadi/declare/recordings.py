@@ -1,4 +1,6 @@
-"""Motions that a controller has recorded or will play: columns of a CSV file, in its units, smoothed, as one smooth curve."""
+"""Motions that a controller has recorded or will play: columns of a CSV file, in its units,
+smoothed, as one smooth curve.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ _FOURTH = 70.0
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Values over time as a file has them, times in s, values in their ``unit``, and how they are called."""
+    """Values over time as a file has them, times in s, values in their ``unit``, and how they are
+    called.
+    """
 
     name: str
     unit: str
@@ -68,29 +72,34 @@ def read_samples(
     Parameters
     ----------
     path
-        The file. Columns are parted by semicolons, tabs or commas; where they are not parted by commas, a comma may be the decimal
-        mark, in all numbers or in none. Lines that begin with ``#`` are passed over.
+        The file. Columns are parted by semicolons, tabs or commas; where they are not parted by
+        commas, a comma may be the decimal mark, in all numbers or in none. Lines that begin with
+        ``#`` are passed over.
     value, time
-        The columns of the values and of the times: by their name in the first line, or by their number, from 1.
+        The columns of the values and of the times: by their name in the first line, or by their
+        number, from 1.
     unit, time_unit
-        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``; ``s``, ``ms`` or ``us``.
+        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``; ``s``,
+        ``ms`` or ``us``.
     smoothing
-        The noise of the values, in their unit: the law is the least bent curve whose distance from them, in the root mean square,
-        is so much. Zero passes through all of them; ``"estimated"`` takes the noise from their fourth differences, which is right
-        where times are even and noise is all that changes from one value to the next.
+        The noise of the values, in their unit: the law is the least bent curve whose distance from
+        them, in the root mean square, is so much. Zero passes through all of them; ``"estimated"``
+        takes the noise from their fourth differences, which is right where times are even and noise
+        is all that changes from one value to the next.
     points
-        The curve is taken at so many even times, first and last included, and the law goes smoothly through these.
+        The curve is taken at so many even times, first and last included, and the law goes smoothly
+        through these.
     periodic, period, advance
-        Whether it goes on over and over. The last row then says again what the first says, or is ``advance`` beyond it [unit]. A
-        file that leaves out that row needs the ``period`` [time unit].
+        Whether it goes on over and over. The last row then says again what the first says, or is
+        ``advance`` beyond it [unit]. A file that leaves out that row needs the ``period`` [time
+        unit].
     ratio, offset, stretch
-        Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values, and takes ``stretch`` times as
-        long.
+        Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values,
+        and takes ``stretch`` times as long.
 
-    Notes
-    -----
-    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a line that is no row of numbers,
-    times that do not rise, and ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
+    Notes ----- Raises :class:`.PathError` for a file that cannot be read,
+    :class:`.DeclarationError` for a line that is no row of numbers, times that do not rise, and
+    ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
     """
     path = Path(path)
     units = ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit"))
@@ -105,9 +114,13 @@ def read_samples(
     scales = [scalar(f"{path.name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
     recording = _read(path, time, value, unit, _TIMES[time_unit])
     if periodic or period is not None:
-        recording = _closed(recording, None if period is None else period * _TIMES[time_unit], advance)
+        recording = _closed(
+            recording, None if period is None else period * _TIMES[time_unit], advance
+        )
     elif advance:
-        raise DeclarationError(f"{path.name}: advance is of a periodic motion; expected periodic=True")
+        raise DeclarationError(
+            f"{path.name}: advance is of a periodic motion; expected periodic=True"
+        )
     noise = _noise(recording, smoothing)
     return _law(recording, noise, points, periodic or period is not None, advance, scales, told_in)
 
@@ -121,7 +134,9 @@ def _finite(what: str, value: object) -> None:
 
 
 def _is_meant(cell: str) -> bool:
-    """Whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``, or digits of another script."""
+    """Whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``, or
+    digits of another script.
+    """
     endless = cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
     return endless or (any(map(str.isdigit, cell)) and not any(map(str.isalpha, cell)))
 
@@ -134,7 +149,10 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
     if meant := [cell for cell in unread if _is_meant(cell)]:
         raise DeclarationError(f"{first.where}: expected a finite number, got {meant[0]!r}")
     headed = bool(unread)
-    wanted = [_column(path.name, column, first.cells if headed else (), len(first.cells)) for column in (time, value)]
+    wanted = [
+        _column(path.name, column, first.cells if headed else (), len(first.cells))
+        for column in (time, value)
+    ]
     found: list[list[float]] = []
     for row in rows if headed else chain([first], rows):
         cells = [row.cells[column] for column in wanted]
@@ -143,10 +161,14 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
             if math.isnan(found_number):
                 raise DeclarationError(f"{row.where}: expected a finite number, got {cell!r}")
         if found and not numbers[0] > found[-1][0]:
-            raise DeclarationError(f"{row.where}: times must rise, but {cells[0]} follows {found[-1][0]:g}")
+            raise DeclarationError(
+                f"{row.where}: times must rise, but {cells[0]} follows {found[-1][0]:g}"
+            )
         found.append(numbers)
     if len(found) < _LEAST:
-        raise DeclarationError(f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}")
+        raise DeclarationError(
+            f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}"
+        )
     t, values = np.array(found).T
     return Recording(path.name, unit, t * second, values)
 
@@ -154,10 +176,14 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
 def _column(place: str, column: str | int, heads: Sequence[str], many: int) -> int:
     if isinstance(column, str):
         if heads.count(column) != 1:
-            raise UnknownNameError("column", column, heads or [f"the numbers 1 to {many}"], place=place)
+            raise UnknownNameError(
+                "column", column, heads or [f"the numbers 1 to {many}"], place=place
+            )
         return heads.index(column)
     if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= many:
-        raise DeclarationError(f"{place}: column {column!r} is none of the {many} there are, numbered from 1")
+        raise DeclarationError(
+            f"{place}: column {column!r} is none of the {many} there are, numbered from 1"
+        )
     return column - 1
 
 
@@ -170,17 +196,23 @@ def _closed(recording: Recording, period: float | None, advance: float) -> Recor
     if not t[-1] < end:
         lasts = f"its rows last {t[-1] - t[0]:.6g} s, but the period is {period:.6g} s"
         raise DeclarationError(f"{recording.name}: {lasts}; expected the rows of one period")
-    return Recording(recording.name, recording.unit, np.append(t, end), np.append(values, values[0] + advance))
+    return Recording(
+        recording.name, recording.unit, np.append(t, end), np.append(values, values[0] + advance)
+    )
 
 
 def _noise(recording: Recording, smoothing: float | str) -> float:
     """The noise that is to be smoothed away, in the unit of the values."""
     if smoothing == "estimated":
         return float(np.sqrt(np.mean(np.diff(recording.values, 4) ** 2) / _FOURTH))
-    if isinstance(smoothing, bool) or not isinstance(smoothing, (int, float)) or not 0.0 <= smoothing < math.inf:
+    if (
+        isinstance(smoothing, bool)
+        or not isinstance(smoothing, (int, float))
+        or not 0.0 <= smoothing < math.inf
+    ):
         raise DeclarationError(
-            f"{recording.name}: smoothing must be the noise [{recording.unit}], a number that is not negative, or 'estimated', "
-            f"got {smoothing!r}"
+            f"{recording.name}: smoothing must be the noise [{recording.unit}], a number that is"
+            f" not negative, or 'estimated', got {smoothing!r}"
         )
     return float(smoothing)
 
@@ -203,8 +235,9 @@ def _law(
         if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
             beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
             raise DeclarationError(
-                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it is off by {gap:.6g} "
-                f"{recording.unit}; expected advance, or the period of rows that do not close"
+                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it is"
+                f" off by {gap:.6g} {recording.unit}; expected advance, or the period of rows that"
+                " do not close"
             )
         level[-1] = level[0]
     found = _curve(recording.name, t, level, periodic, noise)
@@ -226,8 +259,13 @@ def _law(
 
     every = f", taken at {points} even times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
-    told = f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g} s{', over and over' if periodic else ''}"
-    return Motion(graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=told_in)
+    told = (
+        f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
+        f" s{', over and over' if periodic else ''}"
+    )
+    return Motion(
+        graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=told_in
+    )
 
 
 def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:

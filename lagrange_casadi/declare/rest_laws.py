@@ -1,8 +1,10 @@
-"""Laws of moves from rest to rest: the share of the way over the share of the time, of the literature on cams and servo drives.
+"""Laws of moves from rest to rest: the share of the way over the share of the time, of the
+literature on cams and servo drives.
 
-A law is s(u) with u from 0 to 1, s(0) = 0, s(1) = 1, at rest at both ends, and the same backwards: s(1 - u) = 1 - s(u). A move over
-a way h in a time T has the largest speed ``speed`` h/T, acceleration ``acceleration`` h/T^2 and jerk ``jerk`` h/T^3. R. L. Norton,
-*Cam Design and Manufacturing Handbook*, 2nd edition, 2009, chapter 3; VDI 2143, part 1.
+A law is s(u) with u from 0 to 1, s(0) = 0, s(1) = 1, at rest at both ends, and the same backwards:
+s(1 - u) = 1 - s(u). A move over a way h in a time T has the largest speed ``speed`` h/T,
+acceleration ``acceleration`` h/T^2 and jerk ``jerk`` h/T^3. R. L. Norton, *Cam Design and
+Manufacturing Handbook*, 2nd edition, 2009, chapter 3; VDI 2143, part 1.
 """
 
 from __future__ import annotations
@@ -24,10 +26,12 @@ _CUBE = 1.0 / 3.0
 
 @dataclass(frozen=True, eq=False)
 class RestLaw:
-    """A law from rest to rest, ``shape(u)``, and its largest ``speed``, ``acceleration`` and ``jerk``, for one way in one time.
+    """A law from rest to rest, ``shape(u)``, and its largest ``speed``, ``acceleration`` and
+    ``jerk``, for one way in one time.
 
-    ``jerk`` is infinite where accelerations jump. ``begins`` are acceleration and jerk where the law begins; at its end they are
-    the same with the opposite sign, and the same. ``inner`` are places u within it at which they jump, each with by how much.
+    ``jerk`` is infinite where accelerations jump. ``begins`` are acceleration and jerk where the
+    law begins; at its end they are the same with the opposite sign, and the same. ``inner`` are
+    places u within it at which they jump, each with by how much.
     """
 
     name: str
@@ -55,7 +59,9 @@ class RestLaw:
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """What a move must keep to: the largest speed, acceleration and jerk, in rad or m and s; None is no limit."""
+    """What a move must keep to: the largest speed, acceleration and jerk, in rad or m and s; None
+    is no limit.
+    """
 
     speed: Expression | None = None
     acceleration: Expression | None = None
@@ -70,7 +76,8 @@ class Limits:
 
 @public
 def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
-    """Constant acceleration, constant speed, constant deceleration: speeding up takes ``share`` of the time, 1/2 at most.
+    """Constant acceleration, constant speed, constant deceleration: speeding up takes ``share`` of
+    the time, 1/2 at most.
 
     Raises :class:`.DeclarationError` for a number that is no such share.
     """
@@ -78,7 +85,9 @@ def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
     top, steep = 1.0 / (1.0 - share), 1.0 / (share * (1.0 - share))
 
     def shape(u: Any) -> Any:
-        return _both_halves(u, lambda w: _before(w, share, steep * w * w / 2.0, top * (w - share / 2.0)))
+        return _both_halves(
+            u, lambda w: _before(w, share, steep * w * w / 2.0, top * (w - share / 2.0))
+        )
 
     inner = ((share, (-steep, 0.0)), (1.0 - share, (-steep, 0.0)))
     return RestLaw("trapezoid", top, steep, math.inf, shape, (steep, 0.0), inner)
@@ -86,8 +95,8 @@ def trapezoid(share: Symbolic = _CUBE) -> RestLaw:
 
 @public
 def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
-    """The S-curve of seven segments: speeding up takes ``share`` of the time, 1/2 at most; over ``rounding`` of that the
-    acceleration changes.
+    """The S-curve of seven segments: speeding up takes ``share`` of the time, 1/2 at most; over
+    ``rounding`` of that the acceleration changes.
 
     Raises :class:`.DeclarationError` for numbers that are no such shares.
     """
@@ -98,9 +107,11 @@ def s_curve(share: Symbolic = _CUBE, rounding: Symbolic = 0.5) -> RestLaw:
 
 
 def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
-    """The S-curve of the shortest time within all three limits: fewer than seven segments where a limit is not reached.
+    """The S-curve of the shortest time within all three limits: fewer than seven segments where a
+    limit is not reached.
 
-    With a top speed v, acceleration a and jerk j it is a rectangle of h/v seconds, averaged over v/a and over j/a seconds.
+    With a top speed v, acceleration a and jerk j it is a rectangle of h/v seconds, averaged over
+    v/a and over j/a seconds.
     """
     assert limits.speed is not None
     assert limits.acceleration is not None
@@ -110,14 +121,18 @@ def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
     most = ca.fmin(most, (size * jerk * jerk / 2.0) ** _CUBE)
     ramp = most * most / jerk
     # The speed at which the way is used up by speeding up and slowing down.
-    top = ca.fmin(ca.SX(limits.speed), 2.0 * most * size / (ramp + ca.sqrt(ramp * ramp + 4.0 * most * size)))
+    top = ca.fmin(
+        ca.SX(limits.speed), 2.0 * most * size / (ramp + ca.sqrt(ramp * ramp + 4.0 * most * size))
+    )
     each = size / top, top / most, most / jerk
     whole = each[0] + each[1] + each[2]
     return _seven(*(plain(part / whole) for part in each))
 
 
 def trapezoid_within(way: Expression, limits: Limits) -> RestLaw:
-    """The trapezoid of speed of the shortest time within a speed and an acceleration; a triangle where the speed is not reached."""
+    """The trapezoid of speed of the shortest time within a speed and an acceleration; a triangle
+    where the speed is not reached.
+    """
     assert limits.speed is not None
     assert limits.acceleration is not None
     size = ca.fabs(ca.SX(way))
@@ -126,7 +141,9 @@ def trapezoid_within(way: Expression, limits: Limits) -> RestLaw:
 
 
 def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
-    """Of the shares of the time that the rectangle of speed and its two averages take, the longest first; their sum is one."""
+    """Of the shares of the time that the rectangle of speed and its two averages take, the longest
+    first; their sum is one.
+    """
     top = 1.0 / first
     steep = top / second
     sharp = steep / third
@@ -151,7 +168,9 @@ def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
 
 
 def _refuse_share(what: str, share: object, most: float) -> None:
-    if not isinstance(share, ca.SX) and not (isinstance(share, (int, float)) and 0.0 < share <= most):
+    if not isinstance(share, ca.SX) and not (
+        isinstance(share, (int, float)) and 0.0 < share <= most
+    ):
         raise DeclarationError(f"{what} must be above 0 and at most {most:g}, got {share!r}")
 
 
@@ -162,7 +181,9 @@ def _both_halves(u: Any, half: Callable[[Any], Any]) -> Any:
 
 
 def _before(x: Any, place: Any, first: Any, then: Any) -> Any:
-    """One value before a place and another from there on; by two comparisons, for C tells a number from its negation."""
+    """One value before a place and another from there on; by two comparisons, for C tells a number
+    from its negation.
+    """
     return ca.if_else(x < place, first, 0.0) + ca.if_else(x >= place, then, 0.0)
 
 
@@ -245,11 +266,17 @@ LAWS = (*_LAWS, *_SHAPED)
 
 
 def rest_law(what: str, law: object) -> RestLaw:
-    """A law by its name, or one of :func:`trapezoid` and :func:`s_curve`. Raises :class:`DeclarationError`, naming ``what``."""
+    """A law by its name, or one of :func:`trapezoid` and :func:`s_curve`.
+
+    Raises :class:`DeclarationError`, naming ``what``.
+    """
     if isinstance(law, RestLaw):
         return law
     if not isinstance(law, str):
-        raise DeclarationError(f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got {law!r}")
+        raise DeclarationError(
+            f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got"
+            f" {law!r}"
+        )
     if law in _SHAPED:
         return _SHAPED[law]()
     if law not in _LAWS:

@@ -1,4 +1,7 @@
-"""Symbols by which a user's own outputs see what is found: accelerations, and forces. Loads and constraints cannot see them."""
+"""Symbols by which a user's own outputs see what is found: accelerations, and forces.
+
+Loads and constraints cannot see them.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """A result that an output is made of, and the symbol that stands for it; of a section force the ratio xi/l."""
+    """A result that an output is made of, and the symbol that stands for it; of a section force the
+    ratio xi/l.
+    """
 
     output: Output
     symbol: Any
@@ -31,12 +36,16 @@ class Asked:
     @property
     def wanted(self) -> str:
         """What is to be wanted for it."""
-        return "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
+        return (
+            "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class OwnOutput:
-    """An output of the user's own: an expression of time, parameters, measures and results, and its unit."""
+    """An output of the user's own: an expression of time, parameters, measures and results, and its
+    unit.
+    """
 
     name: str
     expression: Any
@@ -45,7 +54,9 @@ class OwnOutput:
 
 
 class Force(NamedTuple):
-    """The symbols of a force in ground axes [N], and of its moment [N m], which is 0 where there is none."""
+    """The symbols of a force in ground axes [N], and of its moment [N m], which is 0 where there is
+    none.
+    """
 
     fx: Any
     fy: Any
@@ -53,7 +64,9 @@ class Force(NamedTuple):
 
 
 class SpatialForce(NamedTuple):
-    """The symbols of a force in space, in ground axes [N], and of its moment [N m], which is 0 where there is none."""
+    """The symbols of a force in space, in ground axes [N], and of its moment [N m], which is 0
+    where there is none.
+    """
 
     fx: Any
     fy: Any
@@ -75,7 +88,9 @@ class SpatialSectionForces(NamedTuple):
 
 
 class Rubbed(NamedTuple):
-    """The symbols of friction along a joint's coordinate, on the child [N or N m], and of the power that it takes [W]."""
+    """The symbols of friction along a joint's coordinate, on the child [N or N m], and of the power
+    that it takes [W].
+    """
 
     along: Any
     loss: Any
@@ -91,15 +106,19 @@ class SectionForces(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """What :meth:`.Mechanism.output` may be made of beside what loads see: symbols of accelerations and forces, in SI units.
+    """What :meth:`.Mechanism.output` may be made of beside what loads see: symbols of accelerations
+    and forces, in SI units.
 
-    Methods raise :class:`.DeclarationError` for a part of another mechanism, or one that has no such result.
+    Methods raise :class:`.DeclarationError` for a part of another mechanism, or one that has no
+    such result.
     """
 
     mechanism: Mechanism
 
     def acceleration(self, of: Joint | Body | Point) -> Any:
-        """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground axes [m/s^2]."""
+        """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground
+        axes [m/s^2].
+        """
         measures, own = self.mechanism.measures, self.mechanism.own
         if isinstance(of, Joint):
             return measures.joint(*own.moving_joint(of)).accelerations[0]
@@ -110,19 +129,26 @@ class Results:
         return self._ask(Output("effort", self.mechanism.own.moving_joint(joint)[1].coordinate))
 
     def reaction(self, joint: Joint) -> Force | SpatialForce:
-        """The symbols of a joint's reaction: what its parent does to its child, without the drive's effort."""
+        """The symbols of a joint's reaction: what its parent does to its child, without the drive's
+        effort.
+        """
         joint = self.mechanism.own.joint(joint)
         return self._force("reaction", joint.name, moment=joint.bears_moment)
 
     def load(self, load: Load) -> Force | SpatialForce:
         """The symbols of what a load does to the body of its first point."""
-        return self._force("load", self._own("load", load, self.mechanism.loads.values()), moment=True)
+        return self._force(
+            "load", self._own("load", load, self.mechanism.loads.values()), moment=True
+        )
 
     def friction(self, friction: Friction) -> Rubbed:
         """The symbols of a friction and of the power that it takes."""
         rubbing = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
         name = self._own("friction", friction, rubbing)
-        return Rubbed(self._ask(Output("friction", name, "along")), self._ask(Output("friction", name, "loss")))
+        return Rubbed(
+            self._ask(Output("friction", name, "along")),
+            self._ask(Output("friction", name, "loss")),
+        )
 
     def multiplier(self, of: Constraint | Row) -> Any:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
@@ -130,31 +156,47 @@ class Results:
         return self._ask(Output("multiplier", self._own("constraint", of, own)))
 
     def section(self, link: Link, ratio: Expression) -> SectionForces | SpatialSectionForces:
-        """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a station, on its tip's side.
+        """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a
+        station, on its tip's side.
 
         The ratio is a number, or an expression of parameters.
         """
         mechanism = self.mechanism
         body = mechanism.own.point("section", link).body
         if not isinstance(body, Link) or not isinstance(body.mass, Density):
-            raise DeclarationError(f"section: {no_sections(body.name, link=isinstance(body, Link), links=mechanism.links)}")
+            raise DeclarationError(
+                "section:"
+                f" {no_sections(body.name, link=isinstance(body, Link), links=mechanism.links)}"
+            )
         ratio = mechanism.own.expression(f"section of '{body.name}': ratio", ratio)
         if not isinstance(ratio, ca.SX) and not 0.0 <= ratio <= 1.0:
-            raise DeclarationError(f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}")
-        forces = (self._ask(Output("section", body.name, member), ratio) for member in table_of(mechanism.space).sections)
+            raise DeclarationError(
+                f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}"
+            )
+        forces = (
+            self._ask(Output("section", body.name, member), ratio)
+            for member in table_of(mechanism.space).sections
+        )
         return SpatialSectionForces(*forces) if mechanism.space else SectionForces(*forces)
 
     def _force(self, group: str, part: str, *, moment: bool) -> Force | SpatialForce:
         space = self.mechanism.space
-        forces = [self._ask(Output(group, part, member)) for member in force_members(space, moment=False)]
+        forces = [
+            self._ask(Output(group, part, member)) for member in force_members(space, moment=False)
+        ]
         moments = force_members(space)[len(forces) :]
-        found = [*forces, *(self._ask(Output(group, part, member)) if moment else 0.0 for member in moments)]
+        found = [
+            *forces,
+            *(self._ask(Output(group, part, member)) if moment else 0.0 for member in moments),
+        ]
         return SpatialForce(*found) if space else Force(*found)
 
     def _ask(self, output: Output, ratio: Expression | None = None) -> Any:
         asked = self.mechanism.asked
         for one in asked:
-            same = one.ratio is ratio or (isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio)
+            same = one.ratio is ratio or (
+                isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio
+            )
             if one.output == output and same:
                 return one.symbol
         asked.append(Asked(output, ca.SX.sym(str(output)), ratio))
@@ -163,8 +205,14 @@ class Results:
     def _own(self, kind: str, part: Any, own: Iterable[Any]) -> str:
         parts = list(own)
         if isinstance(part, str) and part in [one.name for one in parts]:
-            raise DeclarationError(f"expected the {kind} itself, as its declaration returned it, got its name '{part}'")
+            raise DeclarationError(
+                f"expected the {kind} itself, as its declaration returned it, got its name '{part}'"
+            )
         if not any(part is one for one in parts):
             name = getattr(part, "name", part)
-            raise UnknownNameError(f"{kind} of mechanism '{self.mechanism.name}'", str(name), [one.name for one in parts])
+            raise UnknownNameError(
+                f"{kind} of mechanism '{self.mechanism.name}'",
+                str(name),
+                [one.name for one in parts],
+            )
         return str(part.name)

@@ -17,7 +17,9 @@ _SAME = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
-    """A row that is shift + scale n_i; where it holds no parameters, the ``numbers`` themselves, with no shift and no scale."""
+    """A row that is shift + scale n_i; where it holds no parameters, the ``numbers`` themselves,
+    with no shift and no scale.
+    """
 
     numbers: Sequence[float]
     scale: Any = None
@@ -27,9 +29,12 @@ class Scaled:
     def of(cls, what: str, row: Any) -> Scaled:
         """A row of numbers or of expressions in parameters.
 
-        Raises :class:`DeclarationError`, naming ``what``, for expressions that are not one scale times numbers, plus one shift.
+        Raises :class:`DeclarationError`, naming ``what``, for expressions that are not one scale
+        times numbers, plus one shift.
         """
-        if not isinstance(row, ca.SX) and (isinstance(row, str) or not hasattr(row, "__len__") or not getattr(row, "shape", (1,))):
+        if not isinstance(row, ca.SX) and (
+            isinstance(row, str) or not hasattr(row, "__len__") or not getattr(row, "shape", (1,))
+        ):
             raise DeclarationError(f"{what}: expected a row of numbers, got {row!r}")
         entries = ca.vertsplit(ca.vec(row)) if isinstance(row, ca.SX) else row
         if not any(isinstance(entry, ca.SX) and not entry.is_constant() for entry in entries):
@@ -45,7 +50,8 @@ class Scaled:
             alike = np.abs(off - numbers[:, None] * off[last]) <= _SAME * np.abs(values).max(axis=0)
         if not alike.all():
             raise DeclarationError(
-                f"{what}: parameters must scale and shift all of them alike; expected NUMBER*(one expression) + (another), or a "
-                "motion.expression of lagrange_casadi.curve(times, values)"
+                f"{what}: parameters must scale and shift all of them alike; expected NUMBER*(one"
+                " expression) + (another), or a motion.expression of lagrange_casadi.curve(times,"
+                " values)"
             )
         return cls(numbers.tolist(), column[last] - column[0], column[0])

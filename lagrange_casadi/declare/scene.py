@@ -34,14 +34,17 @@ from .wanted_names import SENSITIVITY, among, others
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
-"""What is told of links that have a beam: it follows from their sections, which are wanted with it."""
+"""What is told of links that have a beam: it follows from their sections,
+which are wanted with it.
+"""
 
 
 @dataclass(frozen=True)
 class Wanted:
     """Outputs by kind, each in the order of declaration whatever the order of wanting.
 
-    ``stressed``, ``used`` and ``bent`` are links whose stress, utilisation and deflection are wanted at every instant.
+    ``stressed``, ``used`` and ``bent`` are links whose stress, utilisation and deflection are
+    wanted at every instant.
     """
 
     effort: bool
@@ -58,17 +61,21 @@ class Wanted:
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
-        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``friction:NAME``,
-        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``,
-        ``deflection:LINK``.
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``,
+        ``load:NAME``, ``friction:NAME``, ``section:LINK``, ``output:NAME``, ``all``; and of links
+        with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``, ``deflection:LINK``.
 
-        A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
-        with it. ``sensitivity`` and ``sensitivity:PARAMETER`` are of the other outputs that are wanted, and ``all`` is without.
+        A kind alone, as ``section``, is all that the mechanism has of it. What an output of the
+        user's own is made of is wanted with it. ``sensitivity`` and ``sensitivity:PARAMETER`` are
+        of the other outputs that are wanted, and ``all`` is without.
         """
         every = outputs(mechanism)
         choices = [*every, *kinds(every)]
         if (told := texts(names)) is None:
-            raise DeclarationError(f"wanted: expected a list of output names, got {shown(names)}; valid: {', '.join(choices)}")
+            raise DeclarationError(
+                f"wanted: expected a list of output names, got {shown(names)}; valid:"
+                f" {', '.join(choices)}"
+            )
         names = told
         for name in names:
             if name not in choices:
@@ -76,9 +83,15 @@ class Wanted:
                 raise UnknownNameError("output", name, choices)
             _check_material(mechanism, name)
         if names and not others(names):
-            raise DeclarationError(f"output '{names[0]}': sensitivities are of other outputs; want some too, as effort")
+            raise DeclarationError(
+                f"output '{names[0]}': sensitivities are of other outputs; want some too, as effort"
+            )
         chosen = set(every if "all" in names else names)
-        own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
+        own = (
+            output
+            for name, output in mechanism.outputs.items()
+            if chosen & {"output", f"output:{name}"}
+        )
         chosen |= {asked.wanted for output in own for asked in output.made_of}
         beams = _made_of_something(mechanism)
         chosen |= {f"section:{link}" for kind in STRENGTH for link in among(kind, beams, names)}
@@ -100,7 +113,9 @@ class Wanted:
     @property
     def forces(self) -> bool:
         """Whether any force is wanted that equilibrium gives."""
-        return bool(self.effort or self.reactions or self.multipliers or self.frictions or self.sections)
+        return bool(
+            self.effort or self.reactions or self.multipliers or self.frictions or self.sections
+        )
 
 
 def outputs(mechanism: Mechanism) -> list[str]:
@@ -108,8 +123,14 @@ def outputs(mechanism: Mechanism) -> list[str]:
     reactions = [f"reaction:{joint}" for joint in mechanism.joints]
     multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
     loads = [f"load:{name}" for name in mechanism.loads]
-    frictions = [f"friction:{name}" for name, load in mechanism.loads.items() if isinstance(load, Friction)]
-    sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
+    frictions = [
+        f"friction:{name}" for name, load in mechanism.loads.items() if isinstance(load, Friction)
+    ]
+    sections = [
+        f"section:{name}"
+        for name, link in mechanism.links.items()
+        if isinstance(link.mass, Density)
+    ]
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
@@ -119,34 +140,53 @@ def outputs(mechanism: Mechanism) -> list[str]:
 
 
 def _check_material(mechanism: Mechanism, name: str) -> None:
-    """Raise :class:`.DeclarationError` where a material lacks a number that what is wanted of a link needs."""
+    """Raise :class:`.DeclarationError` where a material lacks a number that what is wanted of a
+    link needs.
+    """
     kind, _, link = name.partition(":")
     if kind not in STRENGTH or link not in mechanism.links:
         return
     beam = mechanism.links[link].beam
     assert beam is not None
-    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance"), "deflection": ("elasticity",)}
+    needs = {
+        "safety": ("elasticity", "yield_strength"),
+        "life": ("ultimate", "endurance"),
+        "deflection": ("elasticity",),
+    }
     beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
 
 
 def _made_of_something(mechanism: Mechanism) -> list[str]:
     """The links that have sections and a beam."""
-    return [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
+    return [
+        name
+        for name, link in mechanism.links.items()
+        if isinstance(link.mass, Density) and link.beam is not None
+    ]
 
 
 def kinds(names: Sequence[str]) -> list[str]:
-    """Choose the kinds of output of which there are any among names, beside the efforts and the motion; each can be wanted."""
-    return [kind for kind in (*_KINDS, *STRENGTH, SENSITIVITY) if any(name.startswith(f"{kind}:") for name in names)]
+    """Choose the kinds of output of which there are any among names, beside the efforts and the
+    motion; each can be wanted.
+    """
+    return [
+        kind
+        for kind in (*_KINDS, *STRENGTH, SENSITIVITY)
+        if any(name.startswith(f"{kind}:") for name in names)
+    ]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
     if name in (*_KINDS, *STRENGTH, SENSITIVITY):
-        raise DeclarationError(f"output '{name}': mechanism '{mechanism.name}' has none; valid: {', '.join(outputs(mechanism))}")
+        raise DeclarationError(
+            f"output '{name}': mechanism '{mechanism.name}' has none; valid:"
+            f" {', '.join(outputs(mechanism))}"
+        )
     if kind in STRENGTH and part in mechanism.links:
         raise DeclarationError(
-            f"output '{name}': link '{part}' has no beam, which says what it is made of; links with one: "
-            f"{', '.join(_made_of_something(mechanism)) or 'none'}"
+            f"output '{name}': link '{part}' has no beam, which says what it is made of; links with"
+            f" one: {', '.join(_made_of_something(mechanism)) or 'none'}"
         )
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
@@ -157,44 +197,51 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
 @fitting
 @dataclass(frozen=True, eq=False)
 class Scene(Graphs):
-    """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and of section ratios.
+    """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and
+    of section ratios.
 
     Parameters
     ----------
     mechanism
         The mechanism; it freezes here.
     motion
-        The law of every driven joint, by the joint's name. Or the laws of x and y of a path's point [m], by the path's name, or of
-        x, y and angle of a link's base and axis, by the link's name; these need ``drives``.
+        The law of every driven joint, by the joint's name. Or the laws of x and y of a path's point
+        [m], by the path's name, or of x, y and angle of a link's base and axis, by the link's name;
+        these need ``drives``.
     wanted
-        Output names, see :func:`outputs`, or kinds, as ``section`` for those of all links. Only these are derived, compiled and
-        evaluated.
+        Output names, see :func:`outputs`, or kinds, as ``section`` for those of all links. Only
+        these are derived, compiled and evaluated.
     t, xi
-        Grids of time [s] and of the ratio xi/l: start, stop, count. Those of time may be expressions of parameters.
+        Grids of time [s] and of the ratio xi/l: start, stop, count. Those of time may be
+        expressions of parameters.
     over
-        Instants in equal steps of a driven coordinate, in place of ``t``: the joint's name, start, stop [rad, or text such as
-        ``"720 deg"``; or m] and count; start and stop may be expressions of parameters, and are in the order of time. The times
-        follow from the joint's motion, which must not turn back on the way. Where the motion's rate depends on time, the stretch
-        counts that goes through the start of ``t``.
+        Instants in equal steps of a driven coordinate, in place of ``t``: the joint's name, start,
+        stop [rad, or text such as ``"720 deg"``; or m] and count; start and stop may be expressions
+        of parameters, and are in the order of time. The times follow from the joint's motion, which
+        must not turn back on the way. Where the motion's rate depends on time, the stretch counts
+        that goes through the start of ``t``.
     posture
-        Rough directions of links and coordinates of joints at the first instant [rad, or text as ``"350 deg"``; m], by name, to
-        choose between the ways in which a loop can be assembled.
+        Rough directions of links and coordinates of joints at the first instant [rad, or text as
+        ``"350 deg"``; m], by name, to choose between the ways in which a loop can be assembled.
     assembly
-        Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
+        Values of parameters with which loops are first assembled, in place of the defaults. The way
+        to assemble is chosen there.
     drives
-        The joints whose efforts make the motion; by default those whose motion is given. Of more drives than are needed, the
-        efforts are those of the least sum of squares, each times its joint's weight: a mapping gives weights by joint, numbers or
-        expressions of parameters; a list gives each the weight 1.
+        The joints whose efforts make the motion; by default those whose motion is given. Of more
+        drives than are needed, the efforts are those of the least sum of squares, each times its
+        joint's weight: a mapping gives weights by joint, numbers or expressions of parameters; a
+        list gives each the weight 1.
     elastic
-        Whether least strain energy tells the forces that equilibrium leaves open, by the beams of links: of all, or of those that
-        are named, and others are rigid. Forces that go through a link without a beam stay open.
+        Whether least strain energy tells the forces that equilibrium leaves open, by the beams of
+        links: of all, or of those that are named, and others are rigid. Forces that go through a
+        link without a beam stay open.
     rounding
-        How far axes [rad] and places [of its size] in space may be off where loops do not close as declared, 0 to 1e-3.
+        How far axes [rad] and places [of its size] in space may be off where loops do not close as
+        declared, 0 to 1e-3.
 
-    Notes
-    -----
-    Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
-    and :class:`.ParameterError` where the default parameters make a part impossible.
+    Notes ----- Raises :class:`.DeclarationError` for what does not fit the mechanism,
+    :class:`.UnknownNameError` for names it does not have, and :class:`.ParameterError` where the
+    default parameters make a part impossible.
     """
 
     mechanism: Mechanism
@@ -212,23 +259,35 @@ class Scene(Graphs):
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
             raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
-        for what, mapping in (("motion", self.motion), ("posture", self.posture), ("assembly", self.assembly)):
+        for what, mapping in (
+            ("motion", self.motion),
+            ("posture", self.posture),
+            ("assembly", self.assembly),
+        ):
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
             object.__setattr__(self, what, MappingProxyType(dict(mapping)))
         guides = [name for name in self.laws if name not in self.mechanism.coordinates]
         if guides and self.drives is None:
             raise DeclarationError(
-                f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints that make it by drives=[...]"
+                f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints"
+                " that make it by drives=[...]"
             )
-        object.__setattr__(self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture)))
+        object.__setattr__(
+            self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture))
+        )
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
-                    f"non-holonomic constraint '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion"
+                    f"non-holonomic constraint '{row.name}' replaces the drive of joint"
+                    f" '{row.replaces}', which has no motion"
                 )
         if self.drives is not None:
-            object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
+            object.__setattr__(
+                self,
+                "drives",
+                MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)),
+            )
         object.__setattr__(self, "elastic", giving(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
@@ -242,13 +301,17 @@ class Scene(Graphs):
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
         self.checked(numbers)
-        object.__setattr__(self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
+        object.__setattr__(
+            self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly})
+        )
         if not timing.shared:
             self.span  # noqa: B018 - it refuses what has no instants
 
     @symbolic_property
     def laws(self) -> Mapping[str, Motion]:
-        """The laws of motion by joint, those of the guides of points and poses too (:mod:`.guiding`)."""
+        """The laws of motion by joint, those of the guides of points and poses too
+        (:mod:`.guiding`).
+        """
         return MappingProxyType(laws_of(self.mechanism, self.motion))
 
     @symbolic_property
@@ -263,22 +326,39 @@ class Scene(Graphs):
 
     @property
     def needs_drives(self) -> tuple[str, ...]:
-        """The joints whose motion needs an effort: those with a motion, but for what non-holonomic constraints replace."""
+        """The joints whose motion needs an effort: those with a motion, but for what non-holonomic
+        constraints replace.
+        """
         replaced = {row.replaces for row in self.mechanism.rows.values()}
         return tuple(name for name in self.laws if name not in replaced)
 
     @property
     def weights(self) -> Mapping[str, Expression] | None:
-        """The drives' weights by joint, in the order of the joints; None where efforts are where the motion is given."""
+        """The drives' weights by joint, in the order of the joints; None where efforts are where
+        the motion is given.
+        """
         return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
-        (start, stop), motion, wanted = self.t[:2], ", ".join(self.motion) or "nothing", ", ".join(self.wanted)
-        asked = f"from {start} to {stop} s" if self.over is None else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
-        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {self.timing().count} instants {asked}>"
+        (start, stop), motion, wanted = (
+            self.t[:2],
+            ", ".join(self.motion) or "nothing",
+            ", ".join(self.wanted),
+        )
+        asked = (
+            f"from {start} to {stop} s"
+            if self.over is None
+            else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
+        )
+        return (
+            f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted},"
+            f" {self.timing().count} instants {asked}>"
+        )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a drawing at the first instant, where it can be assembled, and the parts."""
+        """What a notebook shows: a drawing at the first instant, where it can be assembled, and the
+        parts.
+        """
         return str(method("Scene._repr_html_")(self))
 
     @public
@@ -290,11 +370,13 @@ class Scene(Graphs):
         wanted: Outputs | None = None,
         live: bool = False,
     ) -> None:
-        """Evaluate the scene, and write a page that shows it in a browser; with ``live`` one that evaluates other parameters.
+        """Evaluate the scene, and write a page that shows it in a browser; with ``live`` one that
+        evaluates other parameters.
 
-        ``parameters`` and ``wanted`` are those of :func:`.evaluate`; motion is always wanted. Raises what that raises, and
-        :meth:`.Solution.report`; with ``live`` :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError`
-        where there is no parameter to change.
+        ``parameters`` and ``wanted`` are those of :func:`.evaluate`; motion is always wanted.
+        Raises what that raises, and :meth:`.Solution.report`; with ``live``
+        :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError` where
+        there is no parameter to change.
         """
         method("Scene.report")(self, path, parameters, wanted, live)
 
@@ -315,12 +397,17 @@ class Scene(Graphs):
 
     @fitting
     def wants(self, names: Sequence[str] | None = None) -> Wanted:
-        """Read names of outputs, its own wanted ones or others. Raises what :meth:`.Wanted.of` does."""
+        """Read names of outputs, its own wanted ones or others.
+
+        Raises what :meth:`.Wanted.of` does.
+        """
         return Wanted.of(self.mechanism, self.wanted if names is None else names)
 
     @public
     def values(self, parameters: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Return the values of all parameters, the defaults but for those given: see :meth:`.Mechanism.values`."""
+        """Return the values of all parameters, the defaults but for those given: see
+        :meth:`.Mechanism.values`.
+        """
         return self.mechanism.values(parameters)
 
     @fitting
@@ -336,8 +423,16 @@ class Scene(Graphs):
         Raises :class:`.DeclarationError` where both are given, and for what cannot be.
         """
         if t is not None and over is not None:
-            raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
-        return Timing.of(self.guided, self.laws, self.t if t is None else t, self.over if t is None and over is None else over)
+            raise DeclarationError(
+                "t and over exclude each other: instants are in equal steps of time, or of a driven"
+                " coordinate"
+            )
+        return Timing.of(
+            self.guided,
+            self.laws,
+            self.t if t is None else t,
+            self.over if t is None and over is None else over,
+        )
 
     @symbolic_property
     def span(self) -> tuple[float, float]:
@@ -345,34 +440,50 @@ class Scene(Graphs):
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def demands(self, precision: Precision = "double") -> Demands:
-        """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""
-        parts, moved = demands(self.mechanism, precision), [demand for law in self.laws.values() for demand in law.demands]
+        """What the mechanism's parts and the moves of its motion demand of the parameters; what a
+        precision rounds is forgiven.
+        """
+        parts, moved = (
+            demands(self.mechanism, precision),
+            [demand for law in self.laws.values() for demand in law.demands],
+        )
         return Demands(parts.symbols, (*parts.each, *moved)) if moved else parts
 
     @public
     def checked(self, values: Mapping[str, float]) -> None:
-        """Raise :class:`.ParameterError` for values of all parameters with which a part or a move of the motion cannot be."""
+        """Raise :class:`.ParameterError` for values of all parameters with which a part or a move
+        of the motion cannot be.
+        """
         if any(law.demands for law in self.laws.values()):
-            self.demands().check(list(values.values()), lambda expression: self.mechanism.number(expression, values))
+            self.demands().check(
+                list(values.values()), lambda expression: self.mechanism.number(expression, values)
+            )
 
     def timetable(self, name: str, parameters: Mapping[str, float] | None = None) -> Timetable:
-        """The moves and dwells of a joint's motion in numbers, with their largest speeds and what jumps: :class:`.Timetable`.
+        """The moves and dwells of a joint's motion in numbers, with their largest speeds and what
+        jumps: :class:`.Timetable`.
 
-        Raises :class:`.UnknownNameError` for a joint without a motion, :class:`.DeclarationError` for one that is not of moves.
+        Raises :class:`.UnknownNameError` for a joint without a motion, :class:`.DeclarationError`
+        for one that is not of moves.
         """
         if name not in self.laws:
             raise UnknownNameError("driven joint", name, self.laws)
         law, values = self.laws[name], self.values(parameters)
         if not law.stretches:
-            raise DeclarationError(f"the motion of joint '{name}' is not made of moves, so it has no timetable")
+            raise DeclarationError(
+                f"the motion of joint '{name}' is not made of moves, so it has no timetable"
+            )
         self.checked(values)
-        return timetable(law.stretches, law.period, lambda expression: self.mechanism.number(expression, values))
+        return timetable(
+            law.stretches, law.period, lambda expression: self.mechanism.number(expression, values)
+        )
 
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""
         raise PickleError(
-            "a Scene cannot be pickled: its expressions and laws of motion live in this process alone; send a Case from load_case, "
-            "which the other process loads anew, or call there the function that makes the scene"
+            "a Scene cannot be pickled: its expressions and laws of motion live in this process"
+            " alone; send a Case from load_case, which the other process loads anew, or call there"
+            " the function that makes the scene"
         )
 
     def __deepcopy__(self, _memo: object = None) -> Scene:

@@ -1,7 +1,8 @@
 """Shaking force and shaking moment: what the inertia of all bodies does to the frame.
 
-With the momentum P and the moment of momentum H of all bodies, about a point of the ground, they are -P' and -H'. A body is taken
-as points with mass and, for each pair of its axes e_i and e_j, a second moment J_ij that adds J_ij e_i x e_j'' to H'.
+With the momentum P and the moment of momentum H of all bodies, about a point of the ground, they
+are -P' and -H'. A body is taken as points with mass and, for each pair of its axes e_i and e_j, a
+second moment J_ij that adds J_ij e_i x e_j'' to H'.
 """
 
 from __future__ import annotations
@@ -29,15 +30,19 @@ class Shaking(OwnOutput):
 
 
 @public
-def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expression] = ()) -> tuple[OwnOutput, ...]:
+def shaking(
+    mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expression] = ()
+) -> tuple[OwnOutput, ...]:
     """Declare the shaking force and the shaking moment of a mechanism as outputs, and return them.
 
-    They are ``output:NAME_fx``, ``output:NAME_fy`` [N] and ``output:NAME_mz`` [N m], in space also of z, x and y: what the inertia
-    of all bodies does to the frame, in ground axes. The moment is about the point ``about`` of the ground [m], by default the
-    origin. Weights and loads are no part of it. Call it when all bodies are declared: a scene refuses one that came later.
+    They are ``output:NAME_fx``, ``output:NAME_fy`` [N] and ``output:NAME_mz`` [N m], in space also
+    of z, x and y: what the inertia of all bodies does to the frame, in ground axes. The moment is
+    about the point ``about`` of the ground [m], by default the origin. Weights and loads are no
+    part of it. Call it when all bodies are declared: a scene refuses one that came later.
 
-    Source: Berkof and Lowen, *A new method for completely force balancing simple linkages*, J. Eng. Ind. 91 (1969), 21-26.
-    Raises :class:`.DeclarationError` where there are no bodies, or ``about`` is no place.
+    Source: Berkof and Lowen, *A new method for completely force balancing simple linkages*, J. Eng.
+    Ind. 91 (1969), 21-26. Raises :class:`.DeclarationError` where there are no bodies, or ``about``
+    is no place.
     """
     if isinstance(mechanism, type) or not hasattr(mechanism, "moving"):
         raise DeclarationError(f"shaking: expected a Mechanism, got {shown(mechanism)}")
@@ -45,8 +50,12 @@ def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expr
         raise DeclarationError("shaking: declare it after the bodies; there are none")
     axes = mechanism.measures.components
     if not isinstance(about, (tuple, list)) or len(about) not in (0, len(axes)):
-        raise DeclarationError(f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}")
-    centre = [mechanism.own.expression("shaking: about", x, "m") for x in about] or [0.0] * len(axes)
+        raise DeclarationError(
+            f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}"
+        )
+    centre = [mechanism.own.expression("shaking: about", x, "m") for x in about] or [0.0] * len(
+        axes
+    )
     force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for body in mechanism.moving:
         points, moments = _matter(mechanism, body)
@@ -54,19 +63,31 @@ def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expr
             place, acceleration = _spatial(mechanism, point)
             arm = [x - c for x, c in zip(place, [*centre, 0.0], strict=False)]
             force = [f - mass * a for f, a in zip(force, acceleration, strict=True)]
-            moment = [total - mass * part for total, part in zip(moment, _cross(arm, acceleration), strict=True)]
+            moment = [
+                total - mass * part
+                for total, part in zip(moment, _cross(arm, acceleration), strict=True)
+            ]
         for inertia, (start, end), (other_start, other_end) in moments:
             (a, _), (b, _) = _spatial(mechanism, start), _spatial(mechanism, end)
             (_, c), (_, d) = _spatial(mechanism, other_start), _spatial(mechanism, other_end)
-            turned = _cross([y - x for x, y in zip(a, b, strict=True)], [y - x for x, y in zip(c, d, strict=True)])
+            turned = _cross(
+                [y - x for x, y in zip(a, b, strict=True)],
+                [y - x for x, y in zip(c, d, strict=True)],
+            )
             moment = [total - inertia * part for total, part in zip(moment, turned, strict=True)]
     bodies = tuple(body.name for body in mechanism.moving)
     named = {f"f{axis}": (value, "N") for axis, value in zip(axes, force, strict=False)}
-    named |= {f"m{axis}": (value, "N m") for axis, value in zip("xyz", moment, strict=True) if mechanism.space or axis == "z"}
+    named |= {
+        f"m{axis}": (value, "N m")
+        for axis, value in zip("xyz", moment, strict=True)
+        if mechanism.space or axis == "z"
+    }
     found = []
     for member, (value, unit) in named.items():
         own = mechanism.output(f"{name}_{member}", value, unit=unit)
-        mechanism.outputs[own.name] = Shaking(own.name, own.expression, own.unit, own.made_of, bodies)
+        mechanism.outputs[own.name] = Shaking(
+            own.name, own.expression, own.unit, own.made_of, bodies
+        )
         found.append(mechanism.outputs[own.name])
     return tuple(found)
 
@@ -75,16 +96,25 @@ def refuse_late(mechanism: Mechanism) -> None:
     """Raise :class:`.DeclarationError` for a body that was declared after a shaking force."""
     bodies = tuple(body.name for body in mechanism.moving)
     for output in mechanism.outputs.values():
-        late = [name for name in bodies if isinstance(output, Shaking) and name not in output.bodies]
+        late = [
+            name for name in bodies if isinstance(output, Shaking) and name not in output.bodies
+        ]
         if late:
-            raise DeclarationError(f"output '{output.name}': body '{late[0]}' was declared after it; call shaking after all bodies")
+            raise DeclarationError(
+                f"output '{output.name}': body '{late[0]}' was declared after it; call shaking"
+                " after all bodies"
+            )
 
 
 _Pair = tuple[Point, Point]
 
 
-def _matter(mechanism: Mechanism, body: Any) -> tuple[list[tuple[Any, Point]], list[tuple[Any, _Pair, _Pair]]]:
-    """Points with mass that stand for a body, and second moments with the pairs of points that are their axes."""
+def _matter(
+    mechanism: Mechanism, body: Any
+) -> tuple[list[tuple[Any, Point]], list[tuple[Any, _Pair, _Pair]]]:
+    """Points with mass that stand for a body, and second moments with the pairs of points that are
+    their axes.
+    """
     if not isinstance(body, Link):
         return [(body.mass, mechanism.own.point("shaking", body))], []
     if isinstance(body.mass, Density):
@@ -104,7 +134,9 @@ def _matter(mechanism: Mechanism, body: Any) -> tuple[list[tuple[Any, Point]], l
     if not mechanism.space:
         return [(matter.mass, centre)], [(matter.inertia, axes[0], axes[0])]
     inertias = second_moments(matter.inertia)
-    return [(matter.mass, centre)], [(inertias[i][j], axes[i], axes[j]) for i in range(3) for j in range(3)]
+    return [(matter.mass, centre)], [
+        (inertias[i][j], axes[i], axes[j]) for i in range(3) for j in range(3)
+    ]
 
 
 def _spatial(mechanism: Mechanism, point: Point) -> tuple[list[Any], list[Any]]:

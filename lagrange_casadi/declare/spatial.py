@@ -21,10 +21,23 @@ from .line_loads import Between, Spread, line_load
 from .matter import beam_of, matter_of
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import Body, Expression, Force, Ground, LineLoad, Link, Point, PointMass, Row, Torque, Vector
+from .parts import (
+    Body,
+    Expression,
+    Force,
+    Ground,
+    LineLoad,
+    Link,
+    Point,
+    PointMass,
+    Row,
+    Torque,
+    Vector,
+)
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
-"""Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text].
+"""Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it
+carry, by an angle [rad, or text].
 
 Or the directions of the child's x and y axes, in the parent's axes.
 """
@@ -34,18 +47,23 @@ Or the directions of the child's x and y axes, in the parent's axes.
 @symbolic
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
-    """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
+    """A mechanism under declaration whose links lie in space.
 
-    Points are (x, y, z), axes and gravity have three components; gravity is (0, 0, -9.81) m/s^2 unless :meth:`set_gravity` says
-    otherwise. A link's x axis runs from its base to its tip; y and z are the axes of its cross-section.
+    What is common with :class:`.Mechanism` reads the same.
+
+    Points are (x, y, z), axes and gravity have three components; gravity is (0, 0, -9.81) m/s^2
+    unless :meth:`set_gravity` says otherwise. A link's x axis runs from its base to its tip; y and
+    z are the axes of its cross-section.
 
     Where things are is said in one of two ways, joint by joint:
 
-    - *relative*: a joint is between a point of its parent and a point of its child, its ``axis`` in the parent's axes, and
-      ``turned`` says how the child is turned against the parent where the joint's coordinates are zero, by default as both lie
-      in the reference posture, or not at all if one has no place there;
-    - *hard points*: all is said in ground axes, in one reference posture. A link lies ``between`` two places, a joint is ``at`` a
-      place, its ``axis`` in ground axes; coordinates are zero in the reference posture, from where loops are assembled.
+    - *relative*: a joint is between a point of its parent and a point of its child, its ``axis`` in
+      the parent's axes, and ``turned`` says how the child is turned against the parent where the
+      joint's coordinates are zero, by default as both lie in the reference posture, or not at all
+      if one has no place there;
+    - *hard points*: all is said in ground axes, in one reference posture. A link lies ``between``
+      two places, a joint is ``at`` a place, its ``axis`` in ground axes; coordinates are zero in
+      the reference posture, from where loops are assembled.
     """
 
     gravity: Vector = field(default=(0.0, 0.0, -9.81), init=False)
@@ -75,33 +93,50 @@ class SpatialMechanism(Mechanism):
         inertia: Any = None,
         beam: Beam | None = None,
     ) -> Link:
-        """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the reference posture.
+        """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the
+        reference posture.
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of :mod:`.density`, along a slender axis;
-        that of a ``beam`` of :mod:`.beams` alone; or ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three
-        moments or a matrix of three rows, for a body whose sections are not wanted. These are on the link's axes; of a link
-        ``between`` places they are on the ground's, in the reference posture. Its y axis is then the part across the link of the
-        direction ``beside``, by default of the ground's axis that is most across it. The link carries it from there; but a bar,
-        slender and between two spherical joints, spins freely about its line: its y axis is the part across it of ``beside``,
-        fixed in the ground, at every instant, and without ``beside`` no stress is told of one that is not round.
+        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of
+        :mod:`.density`, along a slender axis; that of a ``beam`` of :mod:`.beams` alone; or
+        ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three moments or a
+        matrix of three rows, for a body whose sections are not wanted. These are on the link's
+        axes; of a link ``between`` places they are on the ground's, in the reference posture. Its y
+        axis is then the part across the link of the direction ``beside``, by default of the
+        ground's axis that is most across it. The link carries it from there; but a bar, slender and
+        between two spherical joints, spins freely about its line: its y axis is the part across it
+        of ``beside``, fixed in the ground, at every instant, and without ``beside`` no stress is
+        told of one that is not round.
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
         if (length is None) == (between is None):
-            raise DeclarationError(f"{what}: give its length, or the two places that it lies between")
+            raise DeclarationError(
+                f"{what}: give its length, or the two places that it lies between"
+            )
         if beside is not None and between is None:
-            raise DeclarationError(f"{what}: beside goes with between; a joint tells how a link of a length is turned")
+            raise DeclarationError(
+                f"{what}: beside goes with between; a joint tells how a link of a length is turned"
+            )
         reference, aside = None, None
         if between is not None:
             reference, length, aside = lying(what, between, beside, self.own.expression)
 
         def rigid(centre: Any, inertia: Any) -> tuple[Vector, Any]:
-            place, moments = self._vector(f"{what}: centre", centre, "m"), tensor(what, inertia, self.own.expression)
-            return (place, moments) if reference is None else (reference.local(place), rotated(moments, reference))
+            place, moments = (
+                self._vector(f"{what}: centre", centre, "m"),
+                tensor(what, inertia, self.own.expression),
+            )
+            return (
+                (place, moments)
+                if reference is None
+                else (reference.local(place), rotated(moments, reference))
+            )
 
         beam = beam_of(what, beam, self.own.expression)
         matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid, beam)
-        link = Link(name, self.own.expression(f"{what}: length", length, "m"), matter, beam, beside=aside)
+        link = Link(
+            name, self.own.expression(f"{what}: length", length, "m"), matter, beam, beside=aside
+        )
         self.bodies[name] = link
         if reference is not None:
             self.references[name] = reference
@@ -123,23 +158,39 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its base, the ground for its
-        origin.
+        """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its
+        base, the ground for its origin.
         """
         return self._spatial(name, "revolute", (parent, child), (axis, None), at, turned)
 
     def prismatic(  # type: ignore[override]
-        self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector,
+        at: Any = None,
+        turned: Turns = (),
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning; as in a plane ``axis`` does
-        not turn the child, ``turned`` does.
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without
+        turning; as in a plane ``axis`` does not turn the child, ``turned`` does.
         """
         return self._spatial(name, "prismatic", (parent, child), (axis, None), at, turned)
 
     def cylindrical(
-        self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector,
+        at: Any = None,
+        turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` slide along ``axis`` and turn about it: coordinates ``slide`` and ``turn``."""
+        """Let ``child`` slide along ``axis`` and turn about it:
+        coordinates ``slide`` and ``turn``.
+        """
         return self._spatial(name, "cylindrical", (parent, child), (axis, None), at, turned)
 
     def universal(
@@ -153,8 +204,9 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which it carries itself, at right
-        angles to the first: coordinates ``turn_1`` and ``turn_2``. Both directions are told where the coordinates are zero."""
+        """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which
+        it carries itself, at right angles to the first: coordinates ``turn_1`` and ``turn_2``. Both
+        directions are told where the coordinates are zero."""
         return self._spatial(name, "universal", (parent, child), (axis, second), at, turned)
 
     def spherical(
@@ -168,10 +220,12 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``, ``turn_3``.
+        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``,
+        ``turn_3``.
 
-        They are turns about ``axis``, about ``second``, and about the direction at right angles to both, as those before carry it:
-        by default x, y and z. Where the joint closes a loop it has no coordinates.
+        They are turns about ``axis``, about ``second``, and about the direction at right angles to
+        both, as those before carry it: by default x, y and z. Where the joint closes a loop it has
+        no coordinates.
         """
         return self._spatial(name, "spherical", (parent, child), (axis, second), at, turned)
 
@@ -186,7 +240,9 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its coordinate is the angle."""
+        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its
+        coordinate is the angle.
+        """
         pitch = self.own.expression(f"joint '{name}': lead", lead, "m") / math.tau
         return self._spatial(name, "screw", (parent, child), (axis, None), at, turned, pitch)
 
@@ -201,8 +257,9 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``: coordinates ``slide_1`` along
-        ``second``, ``slide_2`` at right angles to both, and ``turn`` about ``axis``."""
+        """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``:
+        coordinates ``slide_1`` along ``second``, ``slide_2`` at right angles to both, and ``turn``
+        about ``axis``."""
         return self._spatial(name, "planar", (parent, child), (axis, second), at, turned)
 
     def slot(  # type: ignore[override]
@@ -215,12 +272,19 @@ class SpatialMechanism(Mechanism):
         at: Any = None,
         turned: Turns = (),
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and ``child`` turn freely: coordinates
-        ``slide``, and as of a spherical joint. Where the joint closes a loop it has the slide alone."""
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and
+        ``child`` turn freely: coordinates ``slide``, and as of a spherical joint. Where the joint
+        closes a loop it has the slide alone."""
         return self._spatial(name, "slot", (parent, child), (axis, None), at, turned)
 
     def weld(  # type: ignore[override]
-        self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        at: Any = None,
+        turned: Turns = (),
     ) -> Joint:
         """Fix ``child`` to ``parent``."""
         return self._spatial(name, "weld", (parent, child), (None, None), at, turned)
@@ -238,8 +302,9 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Hold nothing: so the motion of a body's pose is given, or a body flies.
 
-        Coordinates ``slide_1`` to ``slide_3`` are the place of the child's point along ``axis``, ``second`` and the direction at
-        right angles to both, by default the parent's x, y and z; ``turn_1`` to ``turn_3`` are turns as of a spherical joint.
+        Coordinates ``slide_1`` to ``slide_3`` are the place of the child's point along ``axis``,
+        ``second`` and the direction at right angles to both, by default the parent's x, y and z;
+        ``turn_1`` to ``turn_3`` are turns as of a spherical joint.
         """
         return self._spatial(name, "free", (parent, child), (axis, second), at, turned)
 
@@ -270,8 +335,8 @@ class SpatialMechanism(Mechanism):
         against: Body | Point | None = None,
         turning: bool = False,
     ) -> Torque:
-        """Apply a torque [N m] to a body at a point, in ground axes, or in the body's own where ``turning``; and its opposite to
-        another body (default: the ground)."""
+        """Apply a torque [N m] to a body at a point, in ground axes, or in the body's own where
+        ``turning``; and its opposite to another body (default: the ground)."""
         load = super().torque(name, point, z, against=against)
         across = (self._load(name, x), self._load(name, y))
         found = Torque(name, load.point, load.value, load.against, across, turning)
@@ -279,12 +344,15 @@ class SpatialMechanism(Mechanism):
         return found
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
-        """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one coordinate."""
+        """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one
+        coordinate.
+        """
         if self.own.joint(replaces).coordinate is None:
             found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
             raise DeclarationError(
-                f"non-holonomic constraint '{name}': it replaces the drive of a joint of one coordinate, and those of joint "
-                f"'{replaces.name}' are {found}; take a chain of joints of one coordinate each"
+                f"non-holonomic constraint '{name}': it replaces the drive of a joint of one"
+                f" coordinate, and those of joint '{replaces.name}' are {found}; take a chain of"
+                " joints of one coordinate each"
             )
         return super().nonholonomic(name, expression, replaces=replaces)
 
@@ -304,18 +372,25 @@ class SpatialMechanism(Mechanism):
         between: Between = None,
         turning: bool = False,
     ) -> LineLoad:
-        """Apply a load [N/m] along a link, as in a plane, in ground axes, or in the link's own where ``turning``."""
+        """Apply a load [N/m] along a link, as in a plane, in ground axes, or in the link's own
+        where ``turning``.
+        """
         self.loads[name] = load = line_load(self.own, name, link, (x, y, z), between, turning)
         return load
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
-        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
+        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in
+        parameters.
+        """
         self.own.open("set gravity")
         self.gravity = self._vector("gravity", (x, y, z))
 
     def direction(self, link: Link) -> Any:
         """Not in space, where a link has no single angle."""
-        raise DeclarationError("direction: a link in space has no single angle; build from place() of its points, or coordinate()")
+        raise DeclarationError(
+            "direction: a link in space has no single angle; build from place() of its points, or"
+            " coordinate()"
+        )
 
     def _spatial(
         self,
@@ -338,32 +413,60 @@ class SpatialMechanism(Mechanism):
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.seen(far), True
         else:
-            start, end, directions, zero = self._at_reference(what, parent, child, at, directions, turned)
+            start, end, directions, zero = self._at_reference(
+                what, parent, child, at, directions, turned
+            )
         if start.body is end.body:
             raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
-        if not start.body.oriented and ((IN_SPACE[kind] and kind not in ("revolute", "spherical")) or kind == "weld"):
+        if not start.body.oriented and (
+            (IN_SPACE[kind] and kind not in ("revolute", "spherical")) or kind == "weld"
+        ):
             raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry an axis; make the other "
-                "body the parent"
+                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to"
+                " carry an axis; make the other body the parent"
             )
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
-        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch, turn_given=placed or bool(turned))
+        joint = Joint(
+            name,
+            kind,
+            start,
+            end,
+            (1.0, 0.0, 0.0),
+            0.0,
+            directions,
+            zero,
+            pitch,
+            turn_given=placed or bool(turned),
+        )
         self.joints[name] = joint
         if placed:
             self.hard.add(name)
         return joint
 
     def _at_reference(
-        self, what: str, parent: Body | Point, child: Body | Point, at: Any, directions: Triad, turned: Turns
+        self,
+        what: str,
+        parent: Body | Point,
+        child: Body | Point,
+        at: Any,
+        directions: Triad,
+        turned: Turns,
     ) -> tuple[Point, Point, Triad, tuple[Vector, Vector]]:
-        """Points, directions and orientation of a joint from where it is in the reference posture."""
+        """Points, directions and orientation of a joint from where it is
+        in the reference posture.
+        """
         if turned:
-            raise DeclarationError(f"{what}: turned goes with points of bodies; at says all in the reference posture")
+            raise DeclarationError(
+                f"{what}: turned goes with points of bodies; at says all in the reference posture"
+            )
         for body in (parent, child):
             if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
                 got = f"a point of '{body.body.name}'" if isinstance(body, Point) else repr(body)
-                raise DeclarationError(f"{what}: at goes with bodies of '{self.name}', whose points follow from it, got {got}")
+                raise DeclarationError(
+                    f"{what}: at goes with bodies of '{self.name}', whose points follow from it,"
+                    f" got {got}"
+                )
         assert isinstance(parent, Body)
         assert isinstance(child, Body)
         place = self._vector(f"{what}: at", at, "m")
@@ -371,14 +474,17 @@ class SpatialMechanism(Mechanism):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
-        start, end = (self.own.point(what, one.point(body, place)) for one, body in ((first, parent), (second, child)))
+        start, end = (
+            self.own.point(what, one.point(body, place))
+            for one, body in ((first, parent), (second, child))
+        )
         return start, end, first.directions(directions), first.seen(second)
 
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:
             raise DeclarationError(
-                f"{what}: '{body.name}' has no place in the reference posture; declare it between two places, or give the "
-                "joint points of its bodies"
+                f"{what}: '{body.name}' has no place in the reference posture; declare it between"
+                " two places, or give the joint points of its bodies"
             )
         return self.references[body.name]
 
@@ -387,6 +493,8 @@ class SpatialMechanism(Mechanism):
 
 
 def reference_posture(mechanism: Mechanism) -> dict[str, float]:
-    """Coordinates where all parts are turned as they were declared to be: zero, of joints that take it from that posture."""
+    """Coordinates where all parts are turned as they were declared to be: zero, of joints that take
+    it from that posture.
+    """
     hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
     return {name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard}

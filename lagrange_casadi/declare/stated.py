@@ -1,4 +1,5 @@
-"""Laws and equations of a mechanism as they were stated, for certificates: functions of what they measure, time and parameters.
+"""Laws and equations of a mechanism as they were stated, for certificates: functions of what they
+measure, time and parameters.
 
 They are made from the declared expressions alone. Nothing here comes from the derivation.
 """
@@ -36,7 +37,9 @@ _WRENCHES = 8
 
 @dataclass(frozen=True)
 class Entry:
-    """One number that is measured: a joint's coordinate, x, y or z of a point of a body, or a link's direction."""
+    """One number that is measured: a joint's coordinate, x, y or z of a point of a body, or a
+    link's direction.
+    """
 
     kind: EntryKind
     part: str
@@ -45,9 +48,11 @@ class Entry:
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """A mesh as numbers: the bodies' names, places in the carrier's axes, and forces and couples for units of lambda and of s.
+    """A mesh as numbers: the bodies' names, places in the carrier's axes, and forces and couples
+    for units of lambda and of s.
 
-    Of its friction, ``loss`` are the arm and the lean, and ``turns`` the coordinates whose rates it follows, with their signs.
+    Of its friction, ``loss`` are the arm and the lean, and ``turns`` the coordinates whose rates it
+    follows, with their signs.
     """
 
     first: str
@@ -65,7 +70,9 @@ class Touch:
 
 @dataclass(frozen=True, eq=False)
 class _Measured:
-    """A number that is measured: its kind and part, the place on a body, and the symbols of its place and rate."""
+    """A number that is measured: its kind and part, the place on a body, and the symbols of its
+    place and rate.
+    """
 
     kind: EntryKind
     part: str
@@ -76,7 +83,9 @@ class _Measured:
 
 @dataclass(frozen=True, eq=False)
 class Entries(Graphs):
-    """Numbers that are measured, by kind and part; ``points(p)`` are their places on bodies, a column each."""
+    """Numbers that are measured, by kind and part; ``points(p)`` are their places on bodies, a
+    column each.
+    """
 
     each: tuple[tuple[EntryKind, str], ...]
     points: Any
@@ -85,12 +94,17 @@ class Entries(Graphs):
     def of(cls, found: Sequence[_Measured], p: Any) -> Entries:
         """Those of symbols."""
         points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*one.point) for one in found))
-        return cls(tuple((one.kind, one.part) for one in found), ca.Function("points", [p], [ca.densify(points)]))
+        return cls(
+            tuple((one.kind, one.part) for one in found),
+            ca.Function("points", [p], [ca.densify(points)]),
+        )
 
     def at(self, p: Sequence[float]) -> tuple[Entry, ...]:
         """The same for values of all parameters."""
         points = self.points(list(p)).full().T.tolist()
-        return tuple(Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True))
+        return tuple(
+            Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True)
+        )
 
     def words(self) -> list[Any]:
         """Return them for JSON."""
@@ -105,11 +119,13 @@ class Entries(Graphs):
 
 @dataclass(frozen=True, eq=False)
 class EquationGraph(Graphs):
-    """A constraint Phi = 0, or a row A q' + b = 0 where ``row``, over what it measures, for any parameters.
+    """A constraint Phi = 0, or a row A q' + b = 0 where ``row``, over what it measures, for any
+    parameters.
 
-    ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its first and second total time
-    derivative; ``slopes(places, rates, t, p)`` what it changes by an entry: by its place, or of a row by its rate.
-    ``meshes`` name the bodies of a transmission, and ``wrenches(p)`` are the numbers of a :class:`Touch`, a column each.
+    ``values(places, rates, accelerations, t, p)`` gives the equation and, of a constraint, its
+    first and second total time derivative; ``slopes(places, rates, t, p)`` what it changes by an
+    entry: by its place, or of a row by its rate. ``meshes`` name the bodies of a transmission, and
+    ``wrenches(p)`` are the numbers of a :class:`Touch`, a column each.
     """
 
     name: str
@@ -127,13 +143,19 @@ class EquationGraph(Graphs):
         row = isinstance(told, Row)
         expression = ca.SX(told.expression if isinstance(told, Row) else told.phi)
         transmission = None if isinstance(told, Row) else told.transmission
-        return cls._over(mechanism, told.name, expression, _seen(mechanism, expression), row, transmission)
+        return cls._over(
+            mechanism, told.name, expression, _seen(mechanism, expression), row, transmission
+        )
 
     @classmethod
     def driven(cls, mechanism: Mechanism, coordinate: str, law: Motion) -> EquationGraph:
-        """A prescribed motion, of a joint, a point or a body, as the equation that what moves is where its law says."""
+        """A prescribed motion, of a joint, a point or a body, as the equation that what moves is
+        where its law says.
+        """
         one = _moved(mechanism, coordinate)
-        return cls._over(mechanism, coordinate, one.place - law.graph(mechanism.time), [one], False, None)
+        return cls._over(
+            mechanism, coordinate, one.place - law.graph(mechanism.time), [one], False, None
+        )
 
     @classmethod
     def _over(
@@ -146,22 +168,37 @@ class EquationGraph(Graphs):
         transmission: Transmission | None,
     ) -> EquationGraph:
         places, rates = _columns(found)
-        accelerations, t, p = ca.SX.sym("accelerations", len(found)), mechanism.time, mechanism.symbols
+        accelerations, t, p = (
+            ca.SX.sym("accelerations", len(found)),
+            mechanism.time,
+            mechanism.symbols,
+        )
         moving, speed = ca.vertcat(places, rates, t), ca.vertcat(rates, accelerations, 1)
         changes = [expression]
         for _ in range(0 if row else 2):
             changes.append(ca.jtimes(changes[-1], moving, speed))
         slopes = ca.densify(ca.jacobian(expression, rates if row else places).T)
         meshes = transmission.meshes if transmission else ()
-        wrenches = ca.horzcat(ca.SX(3 * _WRENCHES + 3, 0), *(_numbers(transmission, mesh) for mesh in meshes if transmission))
-        turns = transmission.loss.turns if transmission is not None and transmission.loss is not None else ()
+        wrenches = ca.horzcat(
+            ca.SX(3 * _WRENCHES + 3, 0),
+            *(_numbers(transmission, mesh) for mesh in meshes if transmission),
+        )
+        turns = (
+            transmission.loss.turns
+            if transmission is not None and transmission.loss is not None
+            else ()
+        )
         return cls(
             name=name,
             row=row,
             entries=Entries.of(found, p),
-            values=ca.Function("values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]),
+            values=ca.Function(
+                "values", [places, rates, accelerations, t, p], [ca.densify(ca.vertcat(*changes))]
+            ),
             slopes=ca.Function("slopes", [places, rates, t, p], [slopes]),
-            meshes=tuple((mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes),
+            meshes=tuple(
+                (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name) for mesh in meshes
+            ),
             turns=tuple((sign, joint.name) for sign, joint in turns),
             wrenches=ca.Function("wrenches", [p], [ca.densify(wrenches)]),
         )
@@ -169,7 +206,10 @@ class EquationGraph(Graphs):
     def at(self, p: tuple[float, ...]) -> Equation:
         """The equation for values of all parameters."""
         touches = (
-            self._touch(names, row) for names, row in zip(self.meshes, self.wrenches(list(p)).full().T.tolist(), strict=True)
+            self._touch(names, row)
+            for names, row in zip(
+                self.meshes, self.wrenches(list(p)).full().T.tolist(), strict=True
+            )
         )
         return Equation(self, p, self.entries.at(p), tuple(touches))
 
@@ -184,10 +224,14 @@ class EquationGraph(Graphs):
         name, row, entries, meshes, turns, *functions = words
         values, slopes, wrenches = map(ca.Function.deserialize, functions)
         names = (tuple(map(tuple, pairs)) for pairs in (meshes, turns))
-        return cls(name, row, Entries.loads(entries), values, slopes, next(names), next(names), wrenches)
+        return cls(
+            name, row, Entries.loads(entries), values, slopes, next(names), next(names), wrenches
+        )
 
     def _touch(self, names: tuple[str, str, str], row: list[float]) -> Touch:
-        centre, reach, *parts = ((row[k], row[k + 1], row[k + 2]) for k in range(0, 3 * _WRENCHES, 3))
+        centre, reach, *parts = (
+            (row[k], row[k + 1], row[k + 2]) for k in range(0, 3 * _WRENCHES, 3)
+        )
         along, apart, braking = ((parts[k], parts[k + 1]) for k in (0, 2, 4))
         slack, arm, lean = row[3 * _WRENCHES :]
         return Touch(*names, centre, reach, along, apart, braking, slack, (arm, lean), self.turns)
@@ -195,7 +239,9 @@ class EquationGraph(Graphs):
 
 @dataclass(frozen=True, eq=False)
 class Equation:
-    """An equation for values ``p`` of all parameters; of a transmission, ``touches`` say how its multiplier acts."""
+    """An equation for values ``p`` of all parameters; of a transmission, ``touches`` say how its
+    multiplier acts.
+    """
 
     graph: EquationGraph
     p: tuple[float, ...]
@@ -213,8 +259,12 @@ class Equation:
         return self.graph.row
 
     def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
-        """The equation over instants and, of a constraint, its derivatives: a row each, from entries (entries, t)."""
-        return np.asarray(self.graph.values(places, rates, accelerations, t[None], list(self.p)).full())
+        """The equation over instants and, of a constraint, its derivatives: a row each, from
+        entries (entries, t).
+        """
+        return np.asarray(
+            self.graph.values(places, rates, accelerations, t[None], list(self.p)).full()
+        )
 
     def slopes_at(self, places: Array, rates: Array, t: Array) -> Array:
         """What it changes by each entry, (entries, t)."""
@@ -223,10 +273,12 @@ class Equation:
 
 @dataclass(frozen=True, eq=False)
 class LoadGraph(Graphs):
-    """The law of a load over what it measures, for any parameters: its numbers are ``values(places, rates, t, p)``.
+    """The law of a load over what it measures, for any parameters: its numbers are ``values(places,
+    rates, t, p)``.
 
-    A force and a torque have three; a spring its stiffness, length and damping; a load along a link the length on which it acts,
-    and three for each power of its polynomial. They are on the body's own axes where ``turning``, else on those of the ground.
+    A force and a torque have three; a spring its stiffness, length and damping; a load along a link
+    the length on which it acts, and three for each power of its polynomial. They are on the body's
+    own axes where ``turning``, else on those of the ground.
     """
 
     name: str
@@ -243,7 +295,13 @@ class LoadGraph(Graphs):
         found = _seen(mechanism, numbers)
         given = [*_columns(found), mechanism.time, mechanism.symbols]
         turning = getattr(load, "turning", False)
-        return cls(load.name, kind, turning, Entries.of(found, mechanism.symbols), ca.Function("values", given, [numbers]))
+        return cls(
+            load.name,
+            kind,
+            turning,
+            Entries.of(found, mechanism.symbols),
+            ca.Function("values", given, [numbers]),
+        )
 
     def at(self, p: tuple[float, ...]) -> LoadLaw:
         """The law for values of all parameters."""
@@ -280,7 +338,9 @@ class LoadLaw:
 
 @dataclass(frozen=True, eq=False)
 class Stated:
-    """All that was stated of a mechanism: its constraints and then its rows, its motions, and the laws of its loads."""
+    """All that was stated of a mechanism: its constraints and then its rows, its motions, and the
+    laws of its loads.
+    """
 
     equations: tuple[EquationGraph, ...]
     motions: tuple[EquationGraph, ...]
@@ -289,17 +349,32 @@ class Stated:
     @classmethod
     @symbolic
     def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Stated:
-        """What is stated of a mechanism whose coordinates, those of guides too, have ``motions``. Friction has a law of its own."""
-        stated: tuple[Constraint | Row, ...] = (*mechanism.constraints.values(), *mechanism.rows.values())
+        """What is stated of a mechanism whose coordinates, those of guides too, have ``motions``.
+
+        Friction has a law of its own.
+        """
+        stated: tuple[Constraint | Row, ...] = (
+            *mechanism.constraints.values(),
+            *mechanism.rows.values(),
+        )
         return cls(
             equations=tuple(EquationGraph.of(mechanism, one) for one in stated),
-            motions=tuple(EquationGraph.driven(mechanism, name, law) for name, law in motions.items()),
-            laws=tuple(LoadGraph.of(mechanism, load) for load in mechanism.loads.values() if not isinstance(load, Friction)),
+            motions=tuple(
+                EquationGraph.driven(mechanism, name, law) for name, law in motions.items()
+            ),
+            laws=tuple(
+                LoadGraph.of(mechanism, load)
+                for load in mechanism.loads.values()
+                if not isinstance(load, Friction)
+            ),
         )
 
     def words(self) -> list[Any]:
         """Return it for JSON."""
-        return [[graph.words() for graph in graphs] for graphs in (self.equations, self.motions, self.laws)]
+        return [
+            [graph.words() for graph in graphs]
+            for graphs in (self.equations, self.motions, self.laws)
+        ]
 
     @classmethod
     def loads(cls, words: Sequence[Any]) -> Stated:
@@ -314,17 +389,25 @@ class Stated:
 
 def _seen(mechanism: Mechanism, expression: Any) -> list[_Measured]:
     """What of all that is measured stands in an expression."""
-    return [one for one in _measured(mechanism) if any(ca.depends_on(expression, symbol) for symbol in (one.place, one.rate))]
+    return [
+        one
+        for one in _measured(mechanism)
+        if any(ca.depends_on(expression, symbol) for symbol in (one.place, one.rate))
+    ]
 
 
 def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
     for measure in mechanism.measures.asked:
         of = measure.of
         if isinstance(of, Point):
-            for component, place, rate in zip(_COMPONENTS, measure.places, measure.rates, strict=False):
+            for component, place, rate in zip(
+                _COMPONENTS, measure.places, measure.rates, strict=False
+            ):
                 yield _Measured(component, of.body.name, of.place, place, rate)
         elif measure.axis is not None:
-            yield _Measured("coordinate", measure.axis.coordinate, _ORIGIN, measure.places[0], measure.rates[0])
+            yield _Measured(
+                "coordinate", measure.axis.coordinate, _ORIGIN, measure.places[0], measure.rates[0]
+            )
         else:
             yield _Measured("direction", of.name, _ORIGIN, measure.places[0], measure.rates[0])
 
@@ -336,12 +419,18 @@ def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
     name, _, what = coordinate.rpartition(".")
     if what == "angle":
         return _Measured("direction", name)
-    point = mechanism.paths[name].point if name in mechanism.paths else Point(mechanism.bodies[name], 0.0, 0.0)
+    point = (
+        mechanism.paths[name].point
+        if name in mechanism.paths
+        else Point(mechanism.bodies[name], 0.0, 0.0)
+    )
     return _Measured("x" if what == "x" else "y", point.body.name, point.place)
 
 
 def _columns(found: Iterable[_Measured]) -> tuple[Any, Any]:
-    places, rates = zip(*((one.place, one.rate) for one in found), strict=True) if found else ((), ())
+    places, rates = (
+        zip(*((one.place, one.rate) for one in found), strict=True) if found else ((), ())
+    )
     return ca.vertcat(ca.SX(0, 1), *places), ca.vertcat(ca.SX(0, 1), *rates)
 
 
@@ -350,13 +439,22 @@ def _told(load: Force | Torque | Spring | LineLoad) -> tuple[LoadKind, Sequence[
     if isinstance(load, Spring):
         return "spring", (load.stiffness, load.length, load.damping)
     if isinstance(load, LineLoad):
-        return "lineload", (load.reach, *(x for power in zip(load.x, load.y, load.z, strict=True) for x in power))
+        return "lineload", (
+            load.reach,
+            *(x for power in zip(load.x, load.y, load.z, strict=True) for x in power),
+        )
     return ("force" if isinstance(load, Force) else "torque"), load.components
 
 
 def _numbers(transmission: Transmission, mesh: Mesh) -> Any:
     """The numbers of a mesh as one column, for :meth:`EquationGraph._touch`."""
     wrenches = (wrench or Wrench() for wrench in (mesh.along, mesh.apart, mesh.braking))
-    vectors = [mesh.centre, mesh.reach, *(vector for wrench in wrenches for vector in (wrench.force, wrench.couple))]
-    loss = (0.0, 0.0) if transmission.loss is None else (transmission.loss.arm, transmission.loss.lean)
+    vectors = [
+        mesh.centre,
+        mesh.reach,
+        *(vector for wrench in wrenches for vector in (wrench.force, wrench.couple)),
+    ]
+    loss = (
+        (0.0, 0.0) if transmission.loss is None else (transmission.loss.arm, transmission.loss.lean)
+    )
     return ca.vertcat(*(ca.SX(x) for vector in vectors for x in vector), transmission.slack, *loss)

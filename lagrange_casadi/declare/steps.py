@@ -18,14 +18,18 @@ _HALVINGS = 64
 """How often a step is halved."""
 
 _WIDEST, _LIMITS = 2048.0, 47
-"""From how many steps away a limit is taken, and at how many distances, each half of the one before."""
+"""From how many steps away a limit is taken, and at how many distances, each half of the one
+before.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which path (``owner``).
+    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which
+    path (``owner``).
 
-    A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the path ends.
+    A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the
+    path ends.
     """
 
     x: Array
@@ -41,18 +45,28 @@ class Steps:
     def of(cls, paths: Array, p: Array) -> Steps:
         """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
         count, symbols, n = paths.shape
-        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths[..., :-1], np.diff(paths)))
+        x, way = (
+            np.moveaxis(rows, 1, 0).reshape(symbols, -1)
+            for rows in (paths[..., :-1], np.diff(paths))
+        )
         number = np.tile(np.arange(n - 1.0), count)
         owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
         return cls(x, way, p.T[:, owner], owner, none, none + 1.0, -number, n - 1.0 - number)
 
     @classmethod
     def through(cls, paths: Array, p: Array) -> Steps:
-        """From all instants on, or where the path rests there, as it came; as far as is asked for. A single one goes anywhere."""
+        """From all instants on, or where the path rests there, as it came; as far as is asked for.
+
+        A single one goes anywhere.
+        """
         count, symbols, n = paths.shape
         ahead = np.diff(paths, append=paths[..., -1:])
         came = np.diff(paths, prepend=paths[..., :1])
-        ways = np.where((ahead != 0.0).any(axis=1, keepdims=True), ahead, came) if n > 1 else np.ones(paths.shape)
+        ways = (
+            np.where((ahead != 0.0).any(axis=1, keepdims=True), ahead, came)
+            if n > 1
+            else np.ones(paths.shape)
+        )
         x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths, ways))
         owner, none = np.repeat(np.arange(count), n), np.zeros(count * n)
         return cls(x, way, p.T[:, owner], owner, none, none, none - np.inf, none + np.inf)
@@ -60,7 +74,9 @@ class Steps:
     @classmethod
     def joined(cls, parts: Sequence[Steps]) -> Steps:
         """Several as one."""
-        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS))
+        return cls(
+            *(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS)
+        )
 
     def some(self, which: Any) -> Steps:
         """Some of the steps."""
@@ -110,13 +126,24 @@ def called(function: Any, *columns: Array) -> Array:
 
 
 def sides_of(function: Any, steps: Steps, middle: Any) -> tuple[Side, Side]:
-    """What a function of places, fixed symbols and ways gives at ever smaller distances before and after a share of each step."""
+    """What a function of places, fixed symbols and ways gives at ever smaller distances before and
+    after a share of each step.
+    """
     far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
-    wide, shape = Steps.joined([steps] * _LIMITS), (function.size1_out(0), _LIMITS, steps.owner.size)
+    wide, shape = (
+        Steps.joined([steps] * _LIMITS),
+        (function.size1_out(0), _LIMITS, steps.owner.size),
+    )
     sides = []
     for way in (-1, 1):
         share = middle + way * far
-        given, there = (wide.at(share.ravel()), wide.p, wide.way), (share >= steps.least) & (share <= steps.most)
-        value, off = (of(function, *given[: function.n_in()]).reshape(shape) for of in (called, running_errors))
+        given, there = (
+            (wide.at(share.ravel()), wide.p, wide.way),
+            (share >= steps.least) & (share <= steps.most),
+        )
+        value, off = (
+            of(function, *given[: function.n_in()]).reshape(shape)
+            for of in (called, running_errors)
+        )
         sides.append(Side(value, off, there & (far > steps.off(64.0, 0.0))))
     return sides[0], sides[1]

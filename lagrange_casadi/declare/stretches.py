@@ -1,4 +1,6 @@
-"""The stretches of a motion made of moves, in numbers: when they are, how fast they go, and where accelerations and jerks jump."""
+"""The stretches of a motion made of moves, in numbers: when they are, how fast they go, and where
+accelerations and jerks jump.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """A move or a dwell of a motion: when it is, from where and how far it goes, and by which law; a dwell has none."""
+    """A move or a dwell of a motion: when it is, from where and how far it goes, and by which law;
+    a dwell has none.
+    """
 
     name: str
     law: RestLaw | None
@@ -29,9 +33,11 @@ class Stretch:
 
 @dataclass(frozen=True)
 class TimedStretch:
-    """A stretch in numbers: from ``start`` to ``stop`` [s], from the place ``at`` by ``by`` [rad or m].
+    """A stretch in numbers: from ``start`` to ``stop`` [s], from the place ``at`` by ``by`` [rad or
+    m].
 
-    ``speed``, ``acceleration`` and ``jerk`` are the largest sizes within it; a jerk is infinite where the acceleration jumps.
+    ``speed``, ``acceleration`` and ``jerk`` are the largest sizes within it; a jerk is infinite
+    where the acceleration jumps.
     """
 
     name: str
@@ -47,7 +53,9 @@ class TimedStretch:
 
 @dataclass(frozen=True)
 class Jump:
-    """A time [s] at which the acceleration jumps, or where that does not the jerk, and by how much; ``where`` says it in words."""
+    """A time [s] at which the acceleration jumps, or where that does not the jerk, and by how much;
+    ``where`` says it in words.
+    """
 
     t: float
     what: str
@@ -57,29 +65,45 @@ class Jump:
 
 @dataclass(frozen=True)
 class Timetable:
-    """The stretches of a motion in numbers, and where it jumps; ``period`` [s] is the time of one cycle, of those that go on."""
+    """The stretches of a motion in numbers, and where it jumps; ``period`` [s] is the time of one
+    cycle, of those that go on.
+    """
 
     stretches: tuple[TimedStretch, ...]
     jumps: tuple[Jump, ...]
     period: float | None
 
 
-def timetable(stretches: Sequence[Stretch], period: Expression | None, number: Evaluator) -> Timetable:
+def timetable(
+    stretches: Sequence[Stretch], period: Expression | None, number: Evaluator
+) -> Timetable:
     """Stretches in numbers, as ``number`` gives the value of an expression."""
     cyclic = period is not None
     return Timetable(
-        tuple(_timed(stretches, number)), tuple(_jumps(stretches, number, cyclic=cyclic)), number(period) if cyclic else None
+        tuple(_timed(stretches, number)),
+        tuple(_jumps(stretches, number, cyclic=cyclic)),
+        number(period) if cyclic else None,
     )
 
 
 def _timed(stretches: Sequence[Stretch], number: Evaluator) -> list[TimedStretch]:
     found = []
     for stretch in stretches:
-        start, stop, time, at, by = map(number, (stretch.start, stretch.stop, stretch.time, stretch.at, stretch.by))
+        start, stop, time, at, by = map(
+            number, (stretch.start, stretch.stop, stretch.time, stretch.at, stretch.by)
+        )
         law, size = stretch.law, abs(by)
-        each = (0.0, 0.0, 0.0) if law is None or not size else tuple(map(number, (law.speed, law.acceleration, law.jerk)))
+        each = (
+            (0.0, 0.0, 0.0)
+            if law is None or not size
+            else tuple(map(number, (law.speed, law.acceleration, law.jerk)))
+        )
         peaks = (peak * size / time**order if size else 0.0 for order, peak in enumerate(each, 1))
-        found.append(TimedStretch(stretch.name, "dwell" if law is None else law.name, start, stop, at, by, *peaks))
+        found.append(
+            TimedStretch(
+                stretch.name, "dwell" if law is None else law.name, start, stop, at, by, *peaks
+            )
+        )
     return found
 
 
@@ -97,13 +121,23 @@ def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> 
             jump = bent * by / time**2, sharpened * by / time**3
             inner.append((number(stretch.start) + share * time, f"within '{stretch.name}'", jump))
     seams = [
-        (number(after.start), f"from '{before.name}' to '{after.name}'", _change(ends[k], begins[k + 1]))
+        (
+            number(after.start),
+            f"from '{before.name}' to '{after.name}'",
+            _change(ends[k], begins[k + 1]),
+        )
         for k, (before, after) in enumerate(itertools.pairwise(stretches))
     ]
     opening = _change(ends[-1] if cyclic else rest, begins[0])
     seams.append((number(stretches[0].start), f"where '{stretches[0].name}' begins", opening))
     if not cyclic:
-        seams.append((number(stretches[-1].stop), f"where '{stretches[-1].name}' ends", _change(ends[-1], rest)))
+        seams.append(
+            (
+                number(stretches[-1].stop),
+                f"where '{stretches[-1].name}' ends",
+                _change(ends[-1], rest),
+            )
+        )
     every = sorted([*seams, *inner])
     sizes = [max((abs(jump[k]) for *_, jump in every), default=0.0) for k in (0, 1)]
     found = []
@@ -116,7 +150,9 @@ def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> 
 
 
 def _places(law: RestLaw, number: Evaluator) -> list[tuple[float, float, float]]:
-    """Where a law jumps within, and by how much; jumps at one place are one, as where no constant acceleration is left."""
+    """Where a law jumps within, and by how much; jumps at one place are one, as where no constant
+    acceleration is left.
+    """
     found: list[tuple[float, float, float]] = []
     for place, change in law.inner:
         share, bent, sharpened = number(place), *map(number, change)

@@ -1,4 +1,5 @@
-"""At which instants a scene is evaluated: in equal steps of time, or of the coordinate of a driven joint.
+"""At which instants a scene is evaluated: in equal steps of time, or of the coordinate of a driven
+joint.
 
 Start and stop may be expressions of the parameters. Then every design has instants of its own.
 """
@@ -30,16 +31,22 @@ from .parts import Expression
 from .reaching import Missed, Reaching, Way
 
 Over = tuple[str, Expression, Expression, int]
-"""Equal steps of the coordinate of a driven joint [rad or m]: its name, start, stop and count; both ends are included."""
+"""Equal steps of the coordinate of a driven joint [rad or m]: its name, start, stop and count; both
+ends are included.
+"""
 
 Times = tuple[Expression, Expression, int]
 """Equal steps of time [s]: start, stop and count; both ends are included."""
 
 Bound = float | str
-"""A number, or a function of the parameters as CasADi writes it down, so that it can be compared and sent."""
+"""A number, or a function of the parameters as CasADi writes it down, so that it can be compared
+and sent.
+"""
 
 TURNS = 4.0 * math.pi
-"""Angles beyond these [rad], without a unit, were meant in degrees: the directions of a posture, and whole numbers over a drive."""
+"""Angles beyond these [rad], without a unit, were meant in degrees: the directions of a posture,
+and whole numbers over a drive.
+"""
 
 _MOST_LOOKS = 1 << 16
 """At so many times at most is a motion looked at, whether it turns back."""
@@ -47,10 +54,11 @@ _MOST_LOOKS = 1 << 16
 
 @dataclass(frozen=True)
 class Timing:
-    """How instants are asked for: ``count`` from ``start`` to ``stop``, of time [s], or of the coordinate of ``joint`` [rad or m].
+    """How instants are asked for: ``count`` from ``start`` to ``stop``, of time [s], or of the
+    coordinate of ``joint`` [rad or m].
 
-    A law of motion that is not steady is followed to that joint's coordinate from the time ``around`` [s]. The coordinate
-    ``slides``, or is an angle.
+    A law of motion that is not steady is followed to that joint's coordinate from the time
+    ``around`` [s]. The coordinate ``slides``, or is an angle.
     """
 
     start: Bound
@@ -61,10 +69,14 @@ class Timing:
     slides: bool = False
 
     @classmethod
-    def of(cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None) -> Timing:
-        """What a user says: ``t``, or where that is given ``over``; ``t`` then says where ``over`` is looked for.
+    def of(
+        cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None
+    ) -> Timing:
+        """What a user says: ``t``, or where that is given ``over``; ``t`` then says where ``over``
+        is looked for.
 
-        Raises :class:`.DeclarationError` for what is neither, :class:`.UnknownNameError` for a joint that is not driven.
+        Raises :class:`.DeclarationError` for what is neither, :class:`.UnknownNameError` for a
+        joint that is not driven.
         """
         if over is None:
             return cls(*_read(mechanism, "t", t))
@@ -74,7 +86,10 @@ class Timing:
             raise UnknownNameError("driven joint in over", over[0], motion)
         slides = mechanism.coordinates[over[0]][1].kind == "slide"
         unit = LENGTH if slides else ANGLE
-        bounds = [_bound(name, bound, unit) for name, bound in zip(("START", "STOP"), over[1:], strict=False)]
+        bounds = [
+            _bound(name, bound, unit)
+            for name, bound in zip(("START", "STOP"), over[1:], strict=False)
+        ]
         start, stop, count = _read(mechanism, "over", (*bounds, over[3]), unit)
         if count < 2:
             raise DeclarationError(f"over: COUNT must be 2 or more, got {count}")
@@ -103,29 +118,45 @@ class Timing:
         return start, stop, around
 
     def bound_slopes(self, p: Array) -> Array:
-        """The derivatives of start and stop by all parameters, at ``p`` (parameters,): (2, parameters)."""
+        """The derivatives of start and stop by all parameters, at ``p`` (parameters,): (2,
+        parameters).
+        """
         found = np.zeros((2, p.size))
         for row, bound in zip(found, (self.start, self.stop), strict=True):
             if isinstance(bound, str):
-                row[:] = ca.densify(_function(bound).factory("slopes", ["p"], ["jac:bound:p"])(p)).full().ravel()
+                row[:] = (
+                    ca.densify(_function(bound).factory("slopes", ["p"], ["jac:bound:p"])(p))
+                    .full()
+                    .ravel()
+                )
         return found
 
     def ends(self, symbols: Any) -> tuple[Any, Any]:
         """Start and stop as expressions of the parameters' symbols."""
-        start, stop = (_function(bound)(symbols) if isinstance(bound, str) else bound for bound in (self.start, self.stop))
+        start, stop = (
+            _function(bound)(symbols) if isinstance(bound, str) else bound
+            for bound in (self.start, self.stop)
+        )
         return start, stop
 
     def words(self, symbols: Any) -> list[Any]:
-        """The same for JSON: start, stop, count, and where there is one the joint and around; expressions as text that tells them
-        apart."""
+        """The same for JSON: start, stop, count, and where there is one the joint and around;
+        expressions as text that tells them apart."""
         bounds = (self.start, self.stop, self.around)
-        start, stop, around = (_text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds)
-        return [start, stop, self.count, self.joint, around] if self.joint else [start, stop, self.count]
+        start, stop, around = (
+            _text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds
+        )
+        return (
+            [start, stop, self.count, self.joint, around]
+            if self.joint
+            else [start, stop, self.count]
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
-    """The coordinate of a driven ``joint`` at instants that are equal steps of it: ``values`` (t,), in ``unit``, rad or m.
+    """The coordinate of a driven ``joint`` at instants that are equal steps of it: ``values`` (t,),
+    in ``unit``, rad or m.
 
     NumPy and figures take it as its values.
     """
@@ -138,7 +169,9 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
         return np.array(self.values, dtype) if copy else np.asarray(self.values, dtype)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any:
-        return getattr(ufunc, method)(*(one.values if isinstance(one, DriveAxis) else one for one in inputs), **keywords)
+        return getattr(ufunc, method)(
+            *(one.values if isinstance(one, DriveAxis) else one for one in inputs), **keywords
+        )
 
     def __len__(self) -> int:
         return len(self.values)
@@ -158,7 +191,9 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
 
     def shown(self, value: float) -> str:
         """A coordinate in words, an angle in degrees."""
-        return f"{self.joint} = {self.drawn(value):.5g} {'deg' if self.unit == ANGLE else self.unit}"
+        return (
+            f"{self.joint} = {self.drawn(value):.5g} {'deg' if self.unit == ANGLE else self.unit}"
+        )
 
     def drawn(self, values: Any) -> Any:
         """Coordinates as figures and lines show them: angles in degrees."""
@@ -174,20 +209,31 @@ class Instants:
 
 
 def even_of(timing: Timing, values: Mapping[str, float]) -> EvenPoints:
-    """Start, stop and count in numbers, for values of all parameters. Raises :class:`.DeclarationError` for what they cannot be."""
+    """Start, stop and count in numbers, for values of all parameters.
+
+    Raises :class:`.DeclarationError` for what they cannot be.
+    """
     start, stop, _ = (float(bound[0]) for bound in timing.bounds(_row(values)))
     if not timing.joint:
         try:
             return checked("t", (start, stop, timing.count))
         except DeclarationError as error:
-            raise DeclarationError(f"{error}{'' if timing.fixed else told_values(values)}") from None
+            raise DeclarationError(
+                f"{error}{'' if timing.fixed else told_values(values)}"
+            ) from None
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
-        raise DeclarationError(f"over: START and STOP must be finite and apart, got {start:g} and {stop:g}{told_values(values)}")
+        raise DeclarationError(
+            f"over: START and STOP must be finite and apart, got {start:g} and"
+            f" {stop:g}{told_values(values)}"
+        )
     return start, stop, timing.count
 
 
 def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
-    """The first and the last instant [s]. Raises :class:`.DeclarationError` where there are none."""
+    """The first and the last instant [s].
+
+    Raises :class:`.DeclarationError` where there are none.
+    """
     start, stop, _ = even_of(timing, values)
     if not timing.joint:
         return start, stop
@@ -196,7 +242,10 @@ def span_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[fl
 
 
 def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Instants:
-    """All instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
+    """All instants for values of all parameters.
+
+    Raises :class:`.DeclarationError` where there are none.
+    """
     even = even_of(timing, values)
     if not timing.joint:
         return Instants(points(even))
@@ -205,14 +254,18 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
     t = Reaching.of(laws, timing.joint).times(way, coordinates[None], _row(values))[0]
     if not np.isfinite(t).all():
         raise DeclarationError(
-            f"over: {timing.count} coordinates of joint '{timing.joint}' from {_shown(timing, even[0])} to "
-            f"{_shown(timing, even[1])} cannot be told apart in time: its motion nearly rests there"
+            f"over: {timing.count} coordinates of joint '{timing.joint}' from"
+            f" {_shown(timing, even[0])} to {_shown(timing, even[1])} cannot be told apart in time:"
+            " its motion nearly rests there"
         )
     return Instants(t, DriveAxis(timing.joint, timing.unit, coordinates))
 
 
 def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
-    """When a drive goes from start to stop. Raises :class:`.DeclarationError` where it does not, and says what it does instead."""
+    """When a drive goes from start to stop.
+
+    Raises :class:`.DeclarationError` where it does not, and says what it does instead.
+    """
     p = _row(values)
     start, stop, around = timing.bounds(p)
     law = Reaching.of(laws, timing.joint)
@@ -221,10 +274,16 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
     if why is Missed.REACHED:
         return way
     joint, told = timing.joint, functools.partial(_shown, timing)
-    asked, where = f"from {told(start[0])} to {told(stop[0])}", f"t = {way.t[0]:.6g} s, at {told(way.d[0])}"
+    asked, where = (
+        f"from {told(start[0])} to {told(stop[0])}",
+        f"t = {way.t[0]:.6g} s, at {told(way.d[0])}",
+    )
     said = {
         Missed.STANDS_STILL: f"stands still, and does not go {asked}",
-        Missed.OTHER_WAY: f"goes the other way than {asked} at t = {way.t[0]:.6g} s; START and STOP are in the order of time",
+        Missed.OTHER_WAY: (
+            f"goes the other way than {asked} at t = {way.t[0]:.6g} s; START and STOP are in the"
+            " order of time"
+        ),
         Missed.TURNS_BACK: f"does not go {asked} all the way: it turns back at {where}",
         Missed.ENDS: f"does not go {asked}: its samples end at {where}",
         Missed.NEVER: f"does not go {asked}",
@@ -240,7 +299,9 @@ def _shown(timing: Timing, value: float) -> str:
 
 
 def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[Bound, Bound, int]:
-    """Start, stop and count, each a number or an expression of parameters; two numbers are looked at as :func:`.checked` does."""
+    """Start, stop and count, each a number or an expression of parameters; two numbers are looked
+    at as :func:`.checked` does.
+    """
     if not isinstance(even, Sequence) or not any(isinstance(bound, ca.SX) for bound in even[:2]):
         if what == "t":
             return checked(what, even, unit)
@@ -251,17 +312,23 @@ def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[
         raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}")
     names = ("START", "STOP")
     symbols = _symbols(mechanism)
-    each = [scalar(f"{what}: {name}", bound, symbols, "parameter", unit) for name, bound in zip(names, even[:2], strict=True)]
+    each = [
+        scalar(f"{what}: {name}", bound, symbols, "parameter", unit)
+        for name, bound in zip(names, even[:2], strict=True)
+    ]
     _, _, count = checked(what, (0.0, 1.0, even[2]))
-    start, stop = (_written(mechanism, bound) if isinstance(bound, ca.SX) else bound for bound in each)
+    start, stop = (
+        _written(mechanism, bound) if isinstance(bound, ca.SX) else bound for bound in each
+    )
     return start, stop, count
 
 
 def _bound(name: str, bound: Any, unit: str) -> Any:
     """A bound of a coordinate, a text as a number.
 
-    Raises :class:`DeclarationError` for a text of another unit, and for an angle beyond two turns that is a whole number without a
-    unit: what turns so often is rarely whole in rad, and was meant in degrees.
+    Raises :class:`DeclarationError` for a text of another unit, and for an angle beyond two turns
+    that is a whole number without a unit: what turns so often is rarely whole in rad, and was meant
+    in degrees.
     """
     try:
         found: Any = bound if isinstance(bound, ca.SX) else number(bound, unit, finite=False)
@@ -270,8 +337,8 @@ def _bound(name: str, bound: Any, unit: str) -> Any:
     told = unit == ANGLE and isinstance(found, float) and not isinstance(bound, str)
     if told and math.isfinite(found) and abs(found) > TURNS and found == round(found):
         raise DeclarationError(
-            f"over: {name}: {found:.6g} rad is {math.degrees(found):.6g} deg, more than two turns; '{found:g} deg' is {found:g} "
-            f"degrees, and '{found:g} rad' as many turns"
+            f"over: {name}: {found:.6g} rad is {math.degrees(found):.6g} deg, more than two turns;"
+            f" '{found:g} deg' is {found:g} degrees, and '{found:g} rad' as many turns"
         )
     return found
 
@@ -289,7 +356,11 @@ def _symbols(mechanism: Mechanism) -> list[Any]:
 
 
 def _written(mechanism: Mechanism, expression: Any) -> str:
-    return str(ca.Function("bound", [mechanism.symbols], [ca.densify(expression)], ["p"], ["bound"], {"cse": True}).serialize())
+    return str(
+        ca.Function(
+            "bound", [mechanism.symbols], [ca.densify(expression)], ["p"], ["bound"], {"cse": True}
+        ).serialize()
+    )
 
 
 @functools.lru_cache(maxsize=64)

@@ -1,4 +1,6 @@
-"""How far a drive turns within the instants that are asked for: whether a cycle is whole, and the same for all parameters."""
+"""How far a drive turns within the instants that are asked for: whether a cycle is whole, and the
+same for all parameters.
+"""
 
 from __future__ import annotations
 
@@ -30,10 +32,12 @@ _PLACES = 6
 
 
 def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
-    """A line where the one drive turns, and makes less than a turn within the instants, or not the same for all parameters.
+    """A line where the one drive turns, and makes less than a turn within the instants, or not the
+    same for all parameters.
 
-    ``p`` is (n, parameters); those for which there are no instants do not count. A drive that swings or comes to rest does not
-    turn. Nothing is said of several drives, whose turns are no cycle, nor where instants are asked for by the drive.
+    ``p`` is (n, parameters); those for which there are no instants do not count. A drive that
+    swings or comes to rest does not turn. Nothing is said of several drives, whose turns are no
+    cycle, nor where instants are asked for by the drive.
     """
     if len(laws.joints) != 1 or timing.joint or timing.count < 2:
         return ""
@@ -53,21 +57,32 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
         return ""
     whole = math.copysign(360.0 * max(1, round(float(most))), turns[0])
     begin = round(math.degrees(float(first[0])), _PLACES) + 0.0
-    asked = f"instants over {joint}={begin:.6g}deg:{begin + whole:.6g}deg:{timing.count} make it whole"
+    asked = (
+        f"instants over {joint}={begin:.6g}deg:{begin + whole:.6g}deg:{timing.count} make it whole"
+    )
     if most - least > _WHOLE * most:
-        return f"drive '{joint}' makes {least:.3g} to {most:.3g} turns, not the same in every design; {asked}"
+        return (
+            f"drive '{joint}' makes {least:.3g} to {most:.3g} turns, not the same in every design;"
+            f" {asked}"
+        )
     return f"drive '{joint}' makes {least:.3g} of a turn; {asked}" if least < 1.0 - _WHOLE else ""
 
 
 def _goes_round(law: Reaching, start: Array, stop: Array, turns: Array, p: Array) -> bool:
-    """Whether a drive goes one way all the time, does not come to rest, and if it is let goes on to a whole turn."""
+    """Whether a drive goes one way all the time, does not come to rest, and if it is let goes on to
+    a whole turn.
+    """
     with np.errstate(all="ignore"):
         longer = (stop - start) * np.maximum(1.0, _BEYOND / np.abs(turns))
-        moments = np.minimum(start[:, None] + longer[:, None] * np.linspace(0.0, 1.0, _LOOKS), law.span[1])
+        moments = np.minimum(
+            start[:, None] + longer[:, None] * np.linspace(0.0, 1.0, _LOOKS), law.span[1]
+        )
         d, rate, _ = law.at(moments, p)
         last = law.at(stop[:, None], p)[1][:, 0]
         way = np.sign(turns)
-        onward = (way[:, None] * rate > -_BACK * np.abs(rate).max(axis=1, keepdims=True)).all(axis=1)
+        onward = (way[:, None] * rate > -_BACK * np.abs(rate).max(axis=1, keepdims=True)).all(
+            axis=1
+        )
         goes_on = way * last >= _GOES_ON * math.tau * np.abs(turns) / (stop - start)
         whole = np.abs(d[:, -1] - d[:, 0]) >= math.tau * (1.0 - _WHOLE)
     return bool((onward & goes_on & whole & (turns != 0.0)).all())

@@ -1,4 +1,6 @@
-"""Names of outputs that are wanted: the parts that they are of, the parameters of sensitivities, and names that are refused."""
+"""Names of outputs that are wanted: the parts that they are of, the parameters of sensitivities,
+and names that are refused.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ SENSITIVITY = "sensitivity"
 
 
 def by_parameters(parameters: Iterable[str], names: Iterable[str]) -> tuple[str, ...]:
-    """Choose the parameters by which sensitivities are among wanted names, in the order of declaration."""
+    """Choose the parameters by which sensitivities are among wanted names, in the order of
+    declaration.
+    """
     asked = {*(texts(names) or ())}
     return tuple(name for name in parameters if asked & {SENSITIVITY, f"{SENSITIVITY}:{name}"})
 
@@ -28,14 +32,23 @@ def among(kind: str, parts: Iterable[str], names: Sequence[str]) -> list[str]:
 
 
 def without_fitted(fitted: Iterable[str], names: Sequence[str], what: str) -> None:
-    """Raise :class:`.DeclarationError` where the safety of a ``fitted`` joint's pin or bearing is among wanted names."""
+    """Raise :class:`.DeclarationError` where the safety of a ``fitted`` joint's pin or bearing is
+    among wanted names.
+    """
     for joint in fitted:
         if f"safety:{joint}" in (texts(names) or ()):
-            raise DeclarationError(f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}")
+            raise DeclarationError(
+                f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}"
+            )
 
 
 def without_life(names: Sequence[str], what: str) -> None:
-    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
+    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single
+    instants.
+    """
     for name in texts(names) or ():
         if name.partition(":")[0] == "life":
-            raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
+            raise DeclarationError(
+                f"output '{name}': {what} tell instants, and a life is that of a whole cycle;"
+                " evaluate it"
+            )

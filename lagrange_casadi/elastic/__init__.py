@@ -1,1 +1,3 @@
-"""Links that give way: forces that equilibrium leaves open, deflections, and natural frequencies."""
+"""Links that give way: forces that equilibrium leaves open,
+deflections, and natural frequencies.
+"""

@@ -1,4 +1,6 @@
-"""A link of a solution as an elastic beam, in numbers: its strains (:mod:`..equations.strains`), and where they are summed."""
+"""A link of a solution as an elastic beam, in numbers: its strains (:mod:`..equations.strains`),
+and where they are summed.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,15 @@ class Compliance:
     def of(cls, member: Member, what: str) -> Compliance:
         """A link as an elastic beam.
 
-        Raises :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant,
-        which ``what`` needs.
+        Raises :class:`.DeclarationError` where its material has no elasticity, or its cross-section
+        in space no torsion constant, which ``what`` needs.
         """
         return cls(member, moduli_of(member.beam, what, space=member.space))
 
     def strains(self, forces: Array, index: npt.NDArray[np.intp], u: Array) -> Array:
-        """The strains of section forces (forces, t, n) at ratios (t, n) in cells ``index`` (t, n): in the order of the forces."""
+        """The strains of section forces (forces, t, n) at ratios (t, n) in cells ``index`` (t, n):
+        in the order of the forces.
+        """
         found = np.empty_like(forces)
         for cell in range(len(self.member.beam.course.cells)):
             here = index == cell
@@ -49,7 +53,9 @@ def sorted_edges(t: Array, marks: list[Array], fixed: list[float]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Gauss's nodes along a link at every instant: ratios ``u``, weights [m], and the cell of the cross-section, each (t, n)."""
+    """Gauss's nodes along a link at every instant: ratios ``u``, weights [m], and the cell of the
+    cross-section, each (t, n).
+    """
 
     u: Array
     weights: Array
@@ -57,21 +63,32 @@ class Nodes:
 
     @classmethod
     def between(cls, edges: Array, breaks: tuple[float, ...], count: int, length: float) -> Nodes:
-        """``count`` nodes between two edges each, of a link with ``breaks`` of its cross-section."""
+        """``count`` nodes between two edges each, of a link with
+        ``breaks`` of its cross-section.
+        """
         x, w = np.polynomial.legendre.leggauss(count)
         low, width = edges[:, :-1, None], np.diff(edges, axis=1)[:, :, None]
         u = (low + width * (x + 1.0) / 2.0).reshape(len(edges), -1)
         weights = (length * width * w / 2.0).reshape(len(edges), -1)
-        index = np.clip(np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2)
+        index = np.clip(
+            np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2
+        )
         return cls(u, weights, index)
 
 
 def nodes(member: Member, more: int = 0) -> Nodes:
-    """Nodes that sum the product of a link's section forces with linear ones exactly; ``more`` than that between two marks.
+    """Nodes that sum the product of a link's section forces with linear ones exactly; ``more`` than
+    that between two marks.
 
-    Of a cross-section that changes it is summed as closely as polynomials give its properties, to 1e-13.
+    Of a cross-section that changes it is summed as closely as polynomials give its properties, to
+    1e-13.
     """
     fixed = [0.0, 1.0, *(cell.high for cell in member.cells[:-1])]
     changing = max(cell.degree for cell in member.cells)
     count = (member.degree + 1 + (changing + 6 if changing else 0)) // 2 + 1 + more
-    return Nodes.between(sorted_edges(member.t, member.marks, fixed), member.beam.course.breaks, count, member.law.length)
+    return Nodes.between(
+        sorted_edges(member.t, member.marks, fixed),
+        member.beam.course.breaks,
+        count,
+        member.law.length,
+    )

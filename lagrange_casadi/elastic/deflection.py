@@ -1,9 +1,11 @@
-"""Deflections of links under their section forces: the elastic curve, and how far the ends move against each other.
+"""Deflections of links under their section forces: the elastic curve, and how far the ends move
+against each other.
 
-Strains are those of :mod:`.compliance`: turn' = M/EI, across' = turn + V/GAs, along' = N/EA, twist' = T/GIt (Timoshenko, *Strength
-of Materials*, part I); in space turn_z' = Mz/EIz and across_y' = turn_z + Vy/GAsy, turn_y' = My/EIy and
-across_z' = -turn_y + Vz/GAsz, for any axes of the cross-section. They are integrated as polynomials between two marks: exactly,
-where the cross-section is constant.
+Strains are those of :mod:`.compliance`: turn' = M/EI, across' = turn + V/GAs, along' = N/EA, twist'
+= T/GIt (Timoshenko, *Strength of Materials*, part I); in space turn_z' = Mz/EIz and across_y' =
+turn_z + Vy/GAsy, turn_y' = My/EIy and across_z' = -turn_y + Vz/GAsz, for any axes of the
+cross-section. They are integrated as polynomials between two marks: exactly, where the
+cross-section is constant.
 """
 
 from __future__ import annotations
@@ -29,13 +31,18 @@ from .compliance import Compliance, sorted_edges
 
 Against = Literal["ends", "base"]
 
-MOVES = {False: ("along", "across", "turn"), True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z")}
+MOVES = {
+    False: ("along", "across", "turn"),
+    True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z"),
+}
 """What is told of a place of a link, in the plane and in space."""
 
 
 @dataclass(frozen=True)
 class DeflectionPeak:
-    """The deflection across a link that is largest in size [m], in the plane with its sign; its time [s] and ratio xi/l."""
+    """The deflection across a link that is largest in size [m], in the plane with its sign; its
+    time [s] and ratio xi/l.
+    """
 
     value: float
     t: float
@@ -47,9 +54,10 @@ class DeflectionPeak:
 class Deflection:
     """How a link bends, stretches and twists, over time and along it.
 
-    ``against`` says from where deflections count. ``ends``: from the straight line between the link's ends as they are. ``base``:
-    from the link's own axes at its base. Stretch and twist count from the base in both. Names are ``along``, ``across`` [m] and
-    ``turn`` [rad], in space ``along``, ``across_y``, ``across_z``, ``twist``, ``turn_y``, ``turn_z``; methods raise
+    ``against`` says from where deflections count. ``ends``: from the straight line between the
+    link's ends as they are. ``base``: from the link's own axes at its base. Stretch and twist count
+    from the base in both. Names are ``along``, ``across`` [m] and ``turn`` [rad], in space
+    ``along``, ``across_y``, ``across_z``, ``twist``, ``turn_y``, ``turn_z``; methods raise
     :class:`.UnknownNameError` for any other.
     """
 
@@ -67,7 +75,10 @@ class Deflection:
         return MOVES[self.member.space]
 
     def __repr__(self) -> str:
-        return f"<Deflection of '{self.member.link}' against its {self.against}: {self.member.t.size} instants>"
+        return (
+            f"<Deflection of '{self.member.link}' against its {self.against}: {self.member.t.size}"
+            " instants>"
+        )
 
     def at(self, name: str, u: Numeric) -> Array:
         """What is told by a name, at a ratio, or at ratios (t, ...), a row an instant."""
@@ -77,12 +88,19 @@ class Deflection:
         if not u.shape:
             u = np.full(self.member.t.size, float(u))
         if len(u) != self.member.t.size or not ((u >= 0.0) & (u <= 1.0)).all():
-            raise DeclarationError(f"deflection: expected ratios xi/l from 0 to 1, a row for each of {self.member.t.size} instants")
+            raise DeclarationError(
+                "deflection: expected ratios xi/l from 0 to 1, a row for each of"
+                f" {self.member.t.size} instants"
+            )
         found = self._at(name, u)
         if self.against == "base" or name in ("along", "twist"):
             return found
         length, ends = self.member.law.length, (-1,) + (1,) * (u.ndim - 1)
-        beside = {"turn": ("across", 1.0), "turn_z": ("across_y", 1.0), "turn_y": ("across_z", -1.0)}
+        beside = {
+            "turn": ("across", 1.0),
+            "turn_z": ("across_y", 1.0),
+            "turn_y": ("across_z", -1.0),
+        }
         if name in beside:
             across, sign = beside[name]
             return np.asarray(found - sign * (self._tips[across] / length).reshape(ends))
@@ -95,7 +113,9 @@ class Deflection:
 
     @property
     def tip(self) -> Mapping[str, Array]:
-        """What is told of the tip, each (t,): against the base how the ends move against each other."""
+        """What is told of the tip, each (t,): against the base how the ends move against each
+        other.
+        """
         one = np.ones((self.member.t.size, 1))
         return {name: self.at(name, one)[:, 0] for name in self.names}
 
@@ -106,13 +126,17 @@ class Deflection:
         return {name: self.at(name, nil)[:, 0] for name in self.names}
 
     def size(self, u: Array) -> Array:
-        """The deflection across the link at ratios (t, ...): in the plane with its sign, in space its size."""
+        """The deflection across the link at ratios (t, ...): in the plane with its sign, in space
+        its size.
+        """
         if not self.member.space:
             return self.at("across", u)
         return np.hypot(self.at("across_y", u), self.at("across_z", u))
 
     def largest(self) -> tuple[Array, Array]:
-        """The deflection across the link that is largest in size at every instant, and its ratio xi/l, both (t,)."""
+        """The deflection across the link that is largest in size at every instant, and its ratio
+        xi/l, both (t,).
+        """
         space = self.member.space
         names = ("across_y", "across_z") if space else ("across",)
 
@@ -120,17 +144,23 @@ class Deflection:
             rises = [self._rising(name, u) for name in names]
             if not space:
                 return rises[0]
-            return np.asarray(sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True)))
+            return np.asarray(
+                sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True))
+            )
 
         degree = (2 if space else 1) * (self._degree + 2)
-        turns = turns_between(slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space)
+        turns = turns_between(
+            slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space
+        )
         places = np.concatenate([self._edges, turns.places.reshape(len(self._edges), -1)], axis=1)
         values = self.size(places)
         best = np.argmax(np.abs(values), axis=1)[:, None]
         return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]
 
     def peak(self) -> DeflectionPeak:
-        """The largest of these, over the instants: along the link exactly, where the cross-section is constant."""
+        """The largest of these, over the instants: along the link exactly, where the cross-section
+        is constant.
+        """
         values, places = self.largest()
         i = int(largest(values))
         return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
@@ -147,14 +177,18 @@ class Deflection:
 
     @cached_property
     def _strains(self) -> dict[str, Array]:
-        """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by the names of section forces."""
+        """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by
+        the names of section forces.
+        """
         member, degree = self.member, self._degree
         x, weights = interpolation(degree)
         low, width = self._edges[:, :-1, None], np.diff(self._edges, axis=1)[:, :, None]
         u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
         breaks = np.array(member.beam.course.breaks)
         index = np.clip(np.searchsorted(breaks[1:-1], u, side="right"), 0, len(breaks) - 2)
-        strains = self.compliance.strains(member.at(u), index, u).reshape(len(member.forces), *width.shape[:2], -1)
+        strains = self.compliance.strains(member.at(u), index, u).reshape(
+            len(member.forces), *width.shape[:2], -1
+        )
         return dict(zip(member.forces, strains @ weights, strict=True))
 
     @cached_property
@@ -197,9 +231,14 @@ class Deflection:
         index = np.sum(places[:, :, None] >= self._edges[:, None, 1:-1], axis=2)
         low = np.take_along_axis(self._edges, index, 1)
         width = np.take_along_axis(self._edges, index + 1, 1) - low
-        x = np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0) - 1.0
+        x = (
+            np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0)
+            - 1.0
+        )
         chosen = np.take_along_axis(coefficients, index[:, :, None], 1)
-        found: Array = np.asarray(chebyshev.chebval(x, np.moveaxis(chosen, -1, 0), tensor=False), float)
+        found: Array = np.asarray(
+            chebyshev.chebval(x, np.moveaxis(chosen, -1, 0), tensor=False), float
+        )
         return found.reshape(u.shape)
 
     @cached_property
@@ -211,16 +250,21 @@ class Deflection:
 def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
     """How a link bends under its section forces, quasi-statically: see :class:`Deflection`.
 
-    By default deflections count from the line between the ends where joints hold both (:func:`..declare.held.ends_of`), else from
-    the link's axes at its base.
+    By default deflections count from the line between the ends where joints hold both
+    (:func:`..declare.held.ends_of`), else from the link's axes at its base.
 
-    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, its material
-    has no elasticity, or there is no formula for the torsion of its cross-section.
+    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its
+    forces are open, its material has no elasticity, or there is no formula for the torsion of its
+    cross-section.
     """
     if against not in (None, "ends", "base"):
-        raise DeclarationError(f"deflection of '{link}': expected against='ends' or 'base', got {against!r}")
+        raise DeclarationError(
+            f"deflection of '{link}': expected against='ends' or 'base', got {against!r}"
+        )
     compliance = Compliance.of(Member.of(solution, link), f"deflection of '{link}'")
-    return Deflection(compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends"))
+    return Deflection(
+        compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends")
+    )
 
 
 def _plus(longer: Array, shorter: Array) -> Array:

@@ -1,8 +1,10 @@
-"""Is rigid inverse dynamics enough for a link: its first bending frequency beside the harmonics of its own bending.
+"""Is rigid inverse dynamics enough for a link: its first bending frequency beside the harmonics of
+its own bending.
 
-The bending moments of rigid links bend the first mode, over a cycle. Each of its harmonics, of frequency f, swings
-1/(1 - (f/f_1)^2) times as far (Timoshenko, Young and Weaver, *Vibration Problems in Engineering*, forced vibration without
-damping). What this changes is by how much the forces of rigid links are off.
+The bending moments of rigid links bend the first mode, over a cycle. Each of its harmonics, of
+frequency f, swings 1/(1 - (f/f_1)^2) times as far (Timoshenko, Young and Weaver, *Vibration
+Problems in Engineering*, forced vibration without damping). What this changes is by how much the
+forces of rigid links are off.
 """
 
 from __future__ import annotations
@@ -35,14 +37,16 @@ _FEWEST = 4
 
 @dataclass(frozen=True)
 class Vibration:
-    """The first bending frequency of a link [Hz], and what it means for forces that were computed with rigid links.
+    """The first bending frequency of a link [Hz], and what it means for forces that were computed
+    with rigid links.
 
-    The frequency is between ``lower``, None where a link can move as a whole, and ``frequency``; for a link with such ``ends``, at
-    base and tip, alone: what hangs on it lowers the frequency. Both are infinite for a link without mass.
-    ``cycle`` is how often a second the span of time is repeated.
-    ``excess`` is the largest difference that swinging makes to bending, over the largest bending; ``harmonic`` the multiple of the
-    cycle that makes most of it. These are None where the span is no cycle, and ``untold`` says why. ``harmonics`` are the
-    amplitudes of bending in the first mode, the mean first, over the largest bending: in space in the plane that swings most.
+    The frequency is between ``lower``, None where a link can move as a whole, and ``frequency``;
+    for a link with such ``ends``, at base and tip, alone: what hangs on it lowers the frequency.
+    Both are infinite for a link without mass. ``cycle`` is how often a second the span of time is
+    repeated. ``excess`` is the largest difference that swinging makes to bending, over the largest
+    bending; ``harmonic`` the multiple of the cycle that makes most of it. These are None where the
+    span is no cycle, and ``untold`` says why. ``harmonics`` are the amplitudes of bending in the
+    first mode, the mean first, over the largest bending: in space in the plane that swings most.
     """
 
     link: str
@@ -57,7 +61,10 @@ class Vibration:
 
     @property
     def enough(self) -> bool | None:
-        """Whether rigid links are enough: bending is off by a tenth at most. None where it cannot be told."""
+        """Whether rigid links are enough: bending is off by a tenth at most.
+
+        None where it cannot be told.
+        """
         return None if self.excess is None else self.excess <= ENOUGH
 
     @property
@@ -78,21 +85,30 @@ class Vibration:
 
 @public
 def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibration:
-    """The first bending frequency of a link between its joints, and whether rigid links are enough for it: see :class:`Vibration`.
+    """The first bending frequency of a link between its joints, and whether rigid links are enough
+    for it: see :class:`Vibration`.
 
-    ``ends`` says how base and tip are held, each "pinned", "clamped", "free" or "guided", which holds the slope alone. By default
-    joints tell, as for columns: a link that is pinned at both ends is; where one end is held, by a weld, a slide or the drive of a
-    pin, nothing holds the other end sideways. In space it is the softer of the two planes of bending.
+    ``ends`` says how base and tip are held, each "pinned", "clamped", "free" or "guided", which
+    holds the slope alone. By default joints tell, as for columns: a link that is pinned at both
+    ends is; where one end is held, by a weld, a slide or the drive of a pin, nothing holds the
+    other end sideways. In space it is the softer of the two planes of bending.
 
-    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, or its material
-    has no elasticity; and for other words than these.
+    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its
+    forces are open, or its material has no elasticity; and for other words than these.
     """
-    if ends is not None and not (isinstance(ends, Sequence) and len(ends) == 2 and all(end in ENDS for end in ends)):
-        raise DeclarationError(f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)}, got {ends!r}")
+    if ends is not None and not (
+        isinstance(ends, Sequence) and len(ends) == 2 and all(end in ENDS for end in ends)
+    ):
+        raise DeclarationError(
+            f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)},"
+            f" got {ends!r}"
+        )
     compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
     held = ends or ends_of(solution.description, link)
     body = solution.description["bodies"][link]
-    planes = [_Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))]
+    planes = [
+        _Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))
+    ]
     softest = min(planes, key=lambda plane: plane.mode.upper)
     lower = None if softest.mode.lower is None else softest.mode.lower / math.tau
     found = Vibration(link, held, softest.mode.upper / math.tau, lower)
@@ -102,13 +118,17 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
         return replace(found, untold=untold)
     cycle = 1.0 / float(t[-1] - t[0])
     pairs = zip(forces, planes, strict=True)
-    swung = [_swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs]
+    swung = [
+        _swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs
+    ]
     excess, harmonic, shares = max(swung, key=lambda one: one[0])
     return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
 
 
 def swinging(solution: Solution) -> Iterator[str]:
-    """In words the links of whose deflections a solution has series, and for which rigid links are not enough."""
+    """In words the links of whose deflections a solution has series, and for which rigid links are
+    not enough.
+    """
     for output in solution.outputs:
         if output.group == "deflection" and solution.determined(output):
             found = vibration(solution, output.part)
@@ -127,13 +147,19 @@ class _Plane:
     def of(cls, compliance: Compliance, body: Description, ends: Ends, number: int) -> _Plane:
         member, density = compliance.member, density_of(body)
         breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
-        axis = np.linalg.eigh(_stiffness(compliance, np.array([0.5]))[..., 0])[1][:, number] if member.space else np.array([1.0])
+        axis = (
+            np.linalg.eigh(_stiffness(compliance, np.array([0.5]))[..., 0])[1][:, number]
+            if member.space
+            else np.array([1.0])
+        )
 
         def stiffness(u: Array) -> Array:
             found = _stiffness(compliance, u.ravel())
             return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
 
-        mode = first_mode(stiffness, lambda u: density.at(u) / body["length"], body["length"], breaks, ends)
+        mode = first_mode(
+            stiffness, lambda u: density.at(u) / body["length"], body["length"], breaks, ends
+        )
         u = np.broadcast_to(mode.u, (member.t.size, mode.u.size))
         names = ("bending_y", "bending_z") if member.space else ("bending",)
         moments = sum(part * member.law.at(name, u) for part, name in zip(axis, names, strict=True))
@@ -145,7 +171,9 @@ class _Plane:
 
 
 def _stiffness(compliance: Compliance, u: Array) -> Array:
-    """Bending stiffness at ratios (n,): in the plane (1, 1, n), in space of the curvatures about y and z, (2, 2, n)."""
+    """Bending stiffness at ratios (n,): in the plane (1, 1, n), in space of the curvatures about y
+    and z, (2, 2, n).
+    """
     member = compliance.member
     breaks = member.beam.course.breaks
     index = np.clip(np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2)
@@ -154,7 +182,9 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
         here = index == cell
         if here.any():
             p = member.cross.properties(cell, u[here])
-            each: Any = [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
+            each: Any = (
+                [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
+            )
             for i, row in enumerate(each):
                 for j, value in enumerate(row):
                     found[i, j, here] = compliance.moduli[0] * value
@@ -173,8 +203,12 @@ def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
     return ""
 
 
-def _swung(force: Array, cycle: float, frequency: float, whole: float) -> tuple[float, int, tuple[float, ...]]:
-    """The largest difference that swinging makes, over the largest bending; the harmonic that makes most of it; and all of them."""
+def _swung(
+    force: Array, cycle: float, frequency: float, whole: float
+) -> tuple[float, int, tuple[float, ...]]:
+    """The largest difference that swinging makes, over the largest bending; the harmonic that makes
+    most of it; and all of them.
+    """
     if whole == 0.0:
         return 0.0, 1, ()
     harmonics = np.fft.rfft(force) / force.size
@@ -187,4 +221,8 @@ def _swung(force: Array, cycle: float, frequency: float, whole: float) -> tuple[
     shares[1:] *= 2.0
     if not np.isfinite(more).all():
         return math.inf, most, tuple(shares.tolist())
-    return float(np.abs(np.fft.irfft(more * force.size, force.size)).max() / whole), most, tuple(shares.tolist())
+    return (
+        float(np.abs(np.fft.irfft(more * force.size, force.size)).max() / whole),
+        most,
+        tuple(shares.tolist()),
+    )

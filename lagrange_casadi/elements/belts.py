@@ -1,15 +1,19 @@
-"""Belts and chains between two pulleys or sprockets, with the tensions of both strands on their bearings.
+"""Belts and chains between two pulleys or sprockets, with the tensions of both strands on their
+bearings.
 
-Half of the strands' sum of tensions is the preload, until the slack strand is slack: then the other bears all. So the sum is the
-larger of twice the preload and of the force that is passed on, and a chain is a belt without preload. Strands are straight and
-have no mass, they do not stretch and do not slip.
+Half of the strands' sum of tensions is the preload, until the slack strand is slack: then the other
+bears all. So the sum is the larger of twice the preload and of the force that is passed on, and a
+chain is a belt without preload. Strands are straight and have no mass, they do not stretch and do
+not slip.
 
-Links of a chain, and a toothed or a V-belt, resist where they bend on to a wheel and off it. What this takes is a force f along the
-pitch circle of each wheel against its turning. The strands then pull a little beside their tangents: across the line of the centres
-the wheels bear (f r1 +- f r2)/distance. Of the power W + f that goes in W - f comes out, whichever drives, so f = W (1 -
+Links of a chain, and a toothed or a V-belt, resist where they bend on to a wheel and off it. What
+this takes is a force f along the pitch circle of each wheel against its turning. The strands then
+pull a little beside their tangents: across the line of the centres the wheels bear (f r1 +- f
+r2)/distance. Of the power W + f that goes in W - f comes out, whichever drives, so f = W (1 -
 efficiency)/(1 + efficiency), with W the difference of the tensions.
 
-Source: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 17: the initial tension is half of the sum of both.
+Source: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 17: the initial
+tension is half of the sum of both.
 """
 
 from __future__ import annotations
@@ -32,7 +36,9 @@ from .ranges import positive, share
 
 @dataclass(frozen=True, eq=False)
 class Belt:
-    """A belt: its ``constraint``, whose multiplier is the difference of its tensions [N], and the ``ratio`` of the rates."""
+    """A belt: its ``constraint``, whose multiplier is the difference of its tensions [N], and the
+    ``ratio`` of the rates.
+    """
 
     constraint: Constraint
     ratio: Expression
@@ -54,24 +60,34 @@ def belt(
 ) -> Belt:
     """Lay a belt or a chain round two pulleys.
 
-    ``first`` and ``second`` are the centres of the pulleys, points on the axes about which revolute joints let their bodies turn,
-    in parallel; ``radii`` those of their pitch circles [m]. ``preload`` is the tension of both strands where nothing is passed on
-    [N]: of a chain nothing. A ``crossed`` belt turns the second pulley the other way round. ``carrier`` is the body on which both
-    turn, by default the one that joints tell; ``offset`` is the way that the first pitch circle is ahead where both coordinates are
-    zero [m]. ``efficiency`` is the share of the power that comes out, of what goes in, whichever pulley drives.
+    ``first`` and ``second`` are the centres of the pulleys, points on the axes about which revolute
+    joints let their bodies turn, in parallel; ``radii`` those of their pitch circles [m].
+    ``preload`` is the tension of both strands where nothing is passed on [N]: of a chain nothing. A
+    ``crossed`` belt turns the second pulley the other way round. ``carrier`` is the body on which
+    both turn, by default the one that joints tell; ``offset`` is the way that the first pitch
+    circle is ahead where both coordinates are zero [m]. ``efficiency`` is the share of the power
+    that comes out, of what goes in, whichever pulley drives.
 
-    The multiplier is the force along the first pulley's pitch circle, positive where it turns this forward. Outputs are NAME_tight
-    and NAME_slack, the tensions of the strands [N]. The slack one is zero where the preload is too small for what is passed on: a
-    chain or toothed belt bears that, a flat belt slips. With an efficiency, NAME_loss is the power that is lost [W], and open where
-    the belt is at rest, as friction in joints is.
+    The multiplier is the force along the first pulley's pitch circle, positive where it turns this
+    forward. Outputs are NAME_tight and NAME_slack, the tensions of the strands [N]. The slack one
+    is zero where the preload is too small for what is passed on: a chain or toothed belt bears
+    that, a flat belt slips. With an efficiency, NAME_loss is the power that is lost [W], and open
+    where the belt is at rest, as friction in joints is.
 
-    Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these points, radii for which the
-    pulleys touch, a preload that is negative, and an efficiency that is none.
+    Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these
+    points, radii for which the pulleys touch, a preload that is negative, and an efficiency that is
+    none.
     """
     what, own = f"belt '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     ends = own.point(what, first), own.point(what, second)
-    one, two = courses_on(mechanism, what, *ends, None if carrier is None else own.point(what, carrier).body, rack=False)
+    one, two = courses_on(
+        mechanism,
+        what,
+        *ends,
+        None if carrier is None else own.point(what, carrier).body,
+        rack=False,
+    )
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
     r1, r2 = (own.expression(f"{what}: radii", radius, "m") for radius in radii)
@@ -80,23 +96,43 @@ def belt(
     if isinstance(tension, float) and tension < 0.0:
         raise DeclarationError(f"{what}: preload must not be negative, got {tension:g} N")
     if isinstance(tension, ca.SX):
-        fits.append(Fit("preload must not be negative, got {got} N", tension, ca.fmax(tension, 0.0), 1.0))
+        fits.append(
+            Fit("preload must not be negative, got {got} N", tension, ca.fmax(tension, 0.0), 1.0)
+        )
     numbers, u, v, away = Numbers(mechanism), one.axis, two.axis, minus(two.place, one.place)
     assert u is not None
     assert v is not None
     beside, scale = dot(away, u), r1 + r2
     if numbers.size(cross(u, v)) > FITTING or abs(numbers.of(beside)) > FITTING * numbers.of(scale):
-        raise DeclarationError(f"{what}: expected pulleys in one plane, which turn about parallel axes")
+        raise DeclarationError(
+            f"{what}: expected pulleys in one plane, which turn about parallel axes"
+        )
     distance, reach = length(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
     if not numbers.of(distance) > numbers.of(reach):
         told = "the sum" if crossed else "the difference"
         raise DeclarationError(
-            f"{what}: its centres are {numbers.of(distance):.6g} m apart, and {told} of its radii is {numbers.of(reach):.6g} m"
+            f"{what}: its centres are {numbers.of(distance):.6g} m apart, and {told} of its radii"
+            f" is {numbers.of(reach):.6g} m"
         )
-    fits.append(Fit("its pulleys are {got} m beside each other along their axes; expected {meant} m", beside, 0.0, scale))
-    fits.append(Fit("its centres are {got} m apart, too near for the radii", distance, ca.fmax(distance, reach), scale))
+    fits.append(
+        Fit(
+            "its pulleys are {got} m beside each other along their axes; expected {meant} m",
+            beside,
+            0.0,
+            scale,
+        )
+    )
+    fits.append(
+        Fit(
+            "its centres are {got} m apart, too near for the radii",
+            distance,
+            ca.fmax(distance, reach),
+            scale,
+        )
+    )
     e = along(away, distance)
-    # The sine of the angle between a strand and the line of the centres, where the strands lead apart.
+    # The sine of the angle between a strand and the line of the centres, where the strands lead
+    # apart.
     lean = (-(r1 + r2) if crossed else r2 - r1) / distance
     across = times(-lean, cross(u, e))
     both = times(root(1 - lean * lean), e)
@@ -111,10 +147,14 @@ def belt(
         sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
         mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
         loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.turns)
-    constraint = mechanism.constraint(name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead)
+    constraint = mechanism.constraint(
+        name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead
+    )
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying), loss))
+    constraint = replace(
+        constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying), loss)
+    )
     mechanism.constraints[name] = constraint
     force = ca.fabs(mechanism.results.multiplier(constraint))
     whole = ca.fmax(2 * tension, force)

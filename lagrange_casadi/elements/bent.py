@@ -1,4 +1,6 @@
-"""Bent bars and bell cranks: straight pieces that are welded to each other, with sections along each."""
+"""Bent bars and bell cranks: straight pieces that are welded to each other, with sections along
+each.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ from ..errors import DeclarationError
 @public
 @dataclass(frozen=True, eq=False)
 class Bent:
-    """A bar of straight ``pieces``, links called NAME_1, NAME_2 and so on, and its ``corners`` from the base to the tip."""
+    """A bar of straight ``pieces``, links called NAME_1, NAME_2 and so on, and its ``corners`` from
+    the base to the tip.
+    """
 
     pieces: tuple[Link, ...]
     corners: tuple[Point, ...]
@@ -38,7 +42,10 @@ class Bent:
     def corner(self, number: int) -> Point:
         """A corner: 0 is the base. Raises :class:`.DeclarationError` for a number of none."""
         if type(number) is not int or not 0 <= number < len(self.corners):
-            raise DeclarationError(f"'{self.pieces[0].name}': corner {number!r} is none of 0 to {len(self.corners) - 1}")
+            raise DeclarationError(
+                f"'{self.pieces[0].name}': corner {number!r} is none of 0 to"
+                f" {len(self.corners) - 1}"
+            )
         return self.corners[number]
 
 
@@ -51,23 +58,32 @@ def bent_bar(
     mass: Expression | None = None,
     per_length: Expression | None = None,
 ) -> Bent:
-    """Declare a bar that runs straight from corner to corner, as a bell crank or a bracket, with sections along every piece.
+    """Declare a bar that runs straight from corner to corner, as a bell crank or a bracket, with
+    sections along every piece.
 
-    ``corners`` are three places or more [m], numbers or expressions of parameters, in axes of the bar's own: (x, y), in space
-    (x, y, z). The bar is even: its ``mass`` [kg], or what it has ``per_length`` [kg/m]. In the plane the direction of its first
-    piece, as in a posture, is that from the first corner to the second. A bell crank turns about its middle corner:
+    ``corners`` are three places or more [m], numbers or expressions of parameters, in axes of the
+    bar's own: (x, y), in space (x, y, z). The bar is even: its ``mass`` [kg], or what it has
+    ``per_length`` [kg/m]. In the plane the direction of its first piece, as in a posture, is that
+    from the first corner to the second. A bell crank turns about its middle corner:
     ``m.revolute("pivot", m.ground, bell.corner(1))``.
 
-    Raises :class:`.DeclarationError` for corners that are no places, or lie on each other, and as declaring links does.
+    Raises :class:`.DeclarationError` for corners that are no places, or lie on each other, and as
+    declaring links does.
     """
     what, size = f"bent bar '{name}'", 3 if mechanism.space else 2
     if not isinstance(corners, Sequence) or len(corners) < 3:
         raise DeclarationError(f"{what}: expected three corners or more; a straight bar is a link")
-    places = [_place(mechanism, f"{what}: corner {k}", corner, size) for k, corner in enumerate(corners)]
+    places = [
+        _place(mechanism, f"{what}: corner {k}", corner, size) for k, corner in enumerate(corners)
+    ]
     if (mass is None) == (per_length is None):
         raise DeclarationError(f"{what}: give its mass, or what it has per_length")
     mass = None if mass is None else mechanism.own.expression(f"{what}: mass", mass, "kg")
-    per_length = None if per_length is None else mechanism.own.expression(f"{what}: per_length", per_length, "kg/m")
+    per_length = (
+        None
+        if per_length is None
+        else mechanism.own.expression(f"{what}: per_length", per_length, "kg/m")
+    )
     ways = [[b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)]
     lengths = [_length(way) for way in ways]
     for k, length in enumerate(lengths):
@@ -99,13 +115,24 @@ def _turn(y: Any, x: Any) -> Any:
     return ca.atan2(y, x) if isinstance(x, ca.SX) or isinstance(y, ca.SX) else math.atan2(y, x)
 
 
-def _weld(mechanism: Mechanism, name: str, first: Link, second: Link, way: Sequence[Any], onward: Sequence[Any]) -> None:
+def _weld(
+    mechanism: Mechanism,
+    name: str,
+    first: Link,
+    second: Link,
+    way: Sequence[Any],
+    onward: Sequence[Any],
+) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""
     if not isinstance(mechanism, SpatialMechanism):
         # By the sine and cosine of the angle between them, so that it is half a turn at most.
-        angle = _turn(way[0] * onward[1] - way[1] * onward[0], way[0] * onward[0] + way[1] * onward[1])
+        angle = _turn(
+            way[0] * onward[1] - way[1] * onward[0], way[0] * onward[0] + way[1] * onward[1]
+        )
         mechanism.weld(name, first.tip, second, angle=angle)
         return
-    (bearing, rise), (next_bearing, next_rise) = ((_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (way, onward))
+    (bearing, rise), (next_bearing, next_rise) = (
+        (_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (way, onward)
+    )
     turns: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
     mechanism.weld(name, first.tip, second, turned=turns)

@@ -1,9 +1,12 @@
-"""Disc cams with the real forces of their contact: translating and swinging followers with a roller, a knife edge or a flat face.
+"""Disc cams with the real forces of their contact: translating and swinging followers with a
+roller, a knife edge or a flat face.
 
-A follower's motion is given as a law of the cam's angle. Where the contact is, and along which normal it acts, follows from that: a
-point A of the follower is at a(theta), and the contact acts along n(theta) through it, with a moment tau(theta) about it where it
-acts beside it. The equation of contact is n . (A - C - a) + tau sin(turn), C the cam's centre and turn how far the follower is from
-where it should be turned. Its multiplier is the force of the contact, on both bodies along its true line of action.
+A follower's motion is given as a law of the cam's angle. Where the contact is, and along which
+normal it acts, follows from that: a point A of the follower is at a(theta), and the contact acts
+along n(theta) through it, with a moment tau(theta) about it where it acts beside it. The equation
+of contact is n . (A - C - a) + tau sin(turn), C the cam's centre and turn how far the follower is
+from where it should be turned. Its multiplier is the force of the contact, on both bodies along its
+true line of action.
 """
 
 from __future__ import annotations
@@ -27,11 +30,13 @@ from .follower import STEEL, largest_pressure, rise_of, stiffness_of
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Where the contact is, by the symbol ``angle`` of the cam [rad], from the cam's centre in ground axes, each (x, y).
+    """Where the contact is, by the symbol ``angle`` of the cam [rad], from the cam's centre in
+    ground axes, each (x, y).
 
-    ``place`` is the follower's point, ``normal`` of length one from the cam to the follower, ``moment`` the arm of the contact
-    about that point, ``contact`` where it touches, ``way`` the direction in which the follower moves there. ``turned`` is the
-    direction of the follower's own axis, None where nothing depends on it; ``roller`` is the radius of its roller.
+    ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
+    ``moment`` the arm of the contact about that point, ``contact`` where it touches, ``way`` the
+    direction in which the follower moves there. ``turned`` is the direction of the follower's own
+    axis, None where nothing depends on it; ``roller`` is the radius of its roller.
     """
 
     angle: Any
@@ -47,10 +52,12 @@ class Design:
 @public
 @dataclass(frozen=True, eq=False)
 class Cam:
-    """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
+    """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its
+    ``design``.
 
-    Outputs are NAME_force [N], positive where the cam pushes, NAME_pressure_angle [rad] between the force and the way of the
-    follower's point, NAME_radius [m] of the cam's profile, positive where that is convex, and with a width NAME_hertz [Pa].
+    Outputs are NAME_force [N], positive where the cam pushes, NAME_pressure_angle [rad] between the
+    force and the way of the follower's point, NAME_radius [m] of the cam's profile, positive where
+    that is convex, and with a width NAME_hertz [Pa].
     """
 
     name: str
@@ -58,13 +65,28 @@ class Cam:
     constraint: Constraint
     design: Design
 
-    def profile(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> CamProfile:
-        """The cam's profile at ``count`` angles of one turn, for parameters' values, in its own axes."""
+    def profile(
+        self, parameters: dict[str, float] | None = None, *, count: Count = 720
+    ) -> CamProfile:
+        """The cam's profile at ``count`` angles of one turn, for parameters' values, in its own
+        axes.
+        """
         design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
         cosine = _dot(design.normal, design.way)
         angle = ca.atan2(ca.fabs(_cross(design.normal, design.way)), cosine)
-        rows = [*_turned(design.contact, -x), *_turned(design.place, -x), angle, curvature(design), progress(design)]
-        function = ca.Function("profile", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, rows)))], {"cse": True})
+        rows = [
+            *_turned(design.contact, -x),
+            *_turned(design.place, -x),
+            angle,
+            curvature(design),
+            progress(design),
+        ]
+        function = ca.Function(
+            "profile",
+            [x, self.mechanism.symbols],
+            [ca.densify(ca.vertcat(*map(ca.SX, rows)))],
+            {"cse": True},
+        )
         return profile_of(self.name, function, list(values.values()), count)
 
 
@@ -89,27 +111,31 @@ def disc_cam(
     Parameters
     ----------
     cam, follower
-        The revolute joint of the cam on the ground, and the joint of the follower on the ground: prismatic for a translating one,
-        whose line leads away from the cam, or revolute for a swinging one.
+        The revolute joint of the cam on the ground, and the joint of the follower on the ground:
+        prismatic for a translating one, whose line leads away from the cam, or revolute for a
+        swinging one.
     lift
-        The follower's rise [m], or its swing [rad] away from the cam, as a function of the cam's angle: a motion of ``moves``, a
-        ``curve``, or any function that takes and returns CasADi's expressions. It must be periodic by a turn and zero at its least.
+        The follower's rise [m], or its swing [rad] away from the cam, as a function of the cam's
+        angle: a motion of ``moves``, a ``curve``, or any function that takes and returns CasADi's
+        expressions. It must be periodic by a turn and zero at its least.
     base_radius
         The radius of the cam's base circle [m].
     point
-        The centre of the follower's roller, or its knife edge; by default the point at which the joint holds it.
+        The centre of the follower's roller, or its knife edge; by default the point at which the
+        joint holds it.
     roller, flat
-        The radius of the roller [m]; a ``flat`` face instead, at right angles to the way of a translating follower, or along the
-        axis of a swinging one, through its pin; a knife edge without both.
+        The radius of the roller [m]; a ``flat`` face instead, at right angles to the way of a
+        translating follower, or along the axis of a swinging one, through its pin; a knife edge
+        without both.
     side
-        1 for a swinging follower that swings counter-clockwise away from the cam, -1 for one that swings clockwise.
+        1 for a swinging follower that swings counter-clockwise away from the cam, -1 for one that
+        swings clockwise.
     width, elastic
-        The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's ratio of both bodies.
+        The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and
+        Poisson's ratio of both bodies.
 
-    Notes
-    -----
-    Raises :class:`.DeclarationError` for joints that are others, a lift that is no function, and a profile that is
-    undercut with the default parameters.
+    Notes ----- Raises :class:`.DeclarationError` for joints that are others, a lift that is no
+    function, and a profile that is undercut with the default parameters.
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
@@ -118,7 +144,9 @@ def disc_cam(
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     make = (
-        (_translating_flat if flat else _translating) if follower.kind == "prismatic" else (_swinging_flat if flat else _swinging)
+        (_translating_flat if flat else _translating)
+        if follower.kind == "prismatic"
+        else (_swinging_flat if flat else _swinging)
     )
     design = make(what, x, rise, layout)
     touched = follower.child if flat and follower.kind == "revolute" else layout.held
@@ -127,9 +155,14 @@ def disc_cam(
     _outputs(made, cam, width, stiffness)
     profile = made.profile()
     if not profile.closes:
-        raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
+        raise DeclarationError(
+            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
+        )
     if profile.undercut.any():
-        raise DeclarationError(f"{what}: {profile.told_undercut}; expected a larger base radius, a smaller roller or a slower lift")
+        raise DeclarationError(
+            f"{what}: {profile.told_undercut}; expected a larger base radius, a smaller roller or a"
+            " slower lift"
+        )
     return made
 
 
@@ -147,11 +180,16 @@ class Layout:
     @property
     def away(self) -> tuple[Any, Any]:
         """From the cam's centre to the place on the ground at which the follower is led."""
-        return self.follower.parent.x - self.cam.parent.x, self.follower.parent.y - self.cam.parent.y
+        return (
+            self.follower.parent.x - self.cam.parent.x,
+            self.follower.parent.y - self.cam.parent.y,
+        )
 
     @property
     def arm(self) -> tuple[Any, Any]:
-        """From the point at which the follower is led to the one that touches, in the follower's axes."""
+        """From the point at which the follower is led to the one that touches, in the follower's
+        axes.
+        """
         return self.held.x - self.follower.child.x, self.held.y - self.follower.child.y
 
 
@@ -166,27 +204,52 @@ def layout_of(
     side: int,
     base: Expression,
 ) -> Layout:
-    """What :func:`disc_cam` is told of a cam and its follower. Raises :class:`.DeclarationError` as that does."""
+    """What :func:`disc_cam` is told of a cam and its follower.
+
+    Raises :class:`.DeclarationError` as that does.
+    """
     own = mechanism.own
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        if own.joint(joint).kind not in kinds or mechanism.space or not isinstance(joint.parent.body, Ground):
+        if (
+            own.joint(joint).kind not in kinds
+            or mechanism.space
+            or not isinstance(joint.parent.body, Ground)
+        ):
             valid = " or ".join(kinds)
-            raise DeclarationError(f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got '{joint.name}'")
+            raise DeclarationError(
+                f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got"
+                f" '{joint.name}'"
+            )
     if flat and (roller is not None or point is not None):
         raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
     if side not in (1, -1):
         raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
     held = follower.child if point is None else own.point(what, point)
     if held.body is not follower.child.body:
-        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
-    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(f"{what}: roller", roller, "m"))
+        raise DeclarationError(
+            f"{what}: its point must be on '{follower.child.body.name}', which joint"
+            f" '{follower.name}' leads"
+        )
+    radius = (
+        0.0
+        if roller is None
+        else _positive(f"{what}: roller", own.expression(f"{what}: roller", roller, "m"))
+    )
     return Layout(
-        cam, follower, held, _positive(f"{what}: base_radius", own.expression(f"{what}: base_radius", base, "m")), radius, side
+        cam,
+        follower,
+        held,
+        _positive(f"{what}: base_radius", own.expression(f"{what}: base_radius", base, "m")),
+        radius,
+        side,
     )
 
 
 def _positive(what: str, radius: Any) -> Any:
-    """A radius; none that parameters make zero or less. Raises :class:`.DeclarationError` for a number of no radius."""
+    """A radius; none that parameters make zero or less.
+
+    Raises :class:`.DeclarationError` for a number of no radius.
+    """
     if isinstance(radius, ca.SX):
         return radius * sound(radius > 0.0)
     if not radius > 0.0:
@@ -227,7 +290,9 @@ def _translating(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     height = ca.sqrt((layout.base + layout.roller) ** 2 - offset * offset) + rise
     place = _sum((offset * aside[0], offset * aside[1]), up, height)
     normal = _pitch_normal(x, place)
-    return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), up, None, layout.roller)
+    return Design(
+        x, place, normal, 0.0, _sum(place, normal, -layout.roller), up, None, layout.roller
+    )
 
 
 def _translating_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
@@ -239,16 +304,26 @@ def _translating_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     beside = ca.jacobian(rise, x)
     contact = _sum((beside * aside[0], beside * aside[1]), up, layout.base + rise)
     moment = _cross(_sum(contact, place, -1.0), up)
-    return Design(x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0)
+    return Design(
+        x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0
+    )
 
 
 def _swinging(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     away, arm = layout.away, layout.arm
-    length, distance, prime = ca.sqrt(ca.SX(_dot(arm, arm))), ca.sqrt(ca.SX(_dot(away, away))), layout.base + layout.roller
-    along, across = _swung(layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance)
+    length, distance, prime = (
+        ca.sqrt(ca.SX(_dot(arm, arm))),
+        ca.sqrt(ca.SX(_dot(away, away))),
+        layout.base + layout.roller,
+    )
+    along, across = _swung(
+        layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance
+    )
     place = _sum(away, along, length)
     normal = _pitch_normal(x, place)
-    return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), across, None, layout.roller)
+    return Design(
+        x, place, normal, 0.0, _sum(place, normal, -layout.roller), across, None, layout.roller
+    )
 
 
 def _swinging_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
@@ -262,10 +337,14 @@ def _swinging_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     return Design(x, away, normal, _cross(arm, normal), _sum(away, arm), normal, along, 0.0)
 
 
-def _swung(layout: Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    """The direction of the arm of a swinging follower, and that in which it swings away from the cam.
+def _swung(
+    layout: Layout, rise: Any, cosine: Any, distance: Any
+) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """The direction of the arm of a swinging follower, and that in which it swings away from the
+    cam.
 
-    On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the cam's centre.
+    On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the
+    cam's centre.
     """
     line = -layout.away[0] / distance, -layout.away[1] / distance
     sine = layout.side * ca.sqrt(1.0 - cosine * cosine)
@@ -274,7 +353,9 @@ def _swung(layout: Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple
     return along, (-layout.side * along[1], layout.side * along[0])
 
 
-def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Any) -> Constraint:
+def _contact(
+    mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Any
+) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     centre = mechanism.place(cam.child)
     place = _sum(mechanism.place(touched), centre, -1.0)
@@ -285,7 +366,9 @@ def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design
         lean = mechanism.direction(cast(Link, touched.body))
         gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
     phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
-    return mechanism.constraints.setdefault(name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn)))
+    return mechanism.constraints.setdefault(
+        name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
+    )
 
 
 def _at(design: Design, angle: Any) -> Design:
@@ -298,19 +381,25 @@ def _at(design: Design, angle: Any) -> Design:
         return put(pair[0]), put(pair[1])
 
     turned = None if design.turned is None else both(design.turned)
-    place, normal, contact, way = map(both, (design.place, design.normal, design.contact, design.way))
+    place, normal, contact, way = map(
+        both, (design.place, design.normal, design.contact, design.way)
+    )
     return Design(angle, place, normal, put(design.moment), contact, way, turned, design.roller)
 
 
 def curvature(design: Design) -> Any:
-    """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is straight."""
+    """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is
+    straight.
+    """
     x = design.angle
     lean = -ca.atan2(design.normal[0], design.normal[1]) - x
     return progress(design) / ca.jacobian(lean, x)
 
 
 def progress(design: Design) -> Any:
-    """How far the contact goes on the cam by its angle [m], counter-clockwise round it: what is not negative is undercut."""
+    """How far the contact goes on the cam by its angle [m], counter-clockwise round it: what is not
+    negative is undercut.
+    """
     x, contact = design.angle, design.contact
     moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0]
     return _cross(design.normal, moved)
@@ -323,10 +412,16 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, stiffness: float) 
     radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
     cosine = _dot(here.normal, here.way)
     mechanism.output(f"{name}_force", force, unit="N")
-    mechanism.output(f"{name}_pressure_angle", ca.atan2(ca.fabs(_cross(here.normal, here.way)), cosine), unit="rad")
+    mechanism.output(
+        f"{name}_pressure_angle",
+        ca.atan2(ca.fabs(_cross(here.normal, here.way)), cosine),
+        unit="rad",
+    )
     mechanism.output(f"{name}_radius", radius, unit="m")
     if width is not None:
         roller = made.design.roller
         rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
-        pressure = largest_pressure(f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, stiffness)
+        pressure = largest_pressure(
+            f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, stiffness
+        )
         mechanism.output(f"{name}_hertz", pressure, unit="Pa")

@@ -1,4 +1,6 @@
-"""The profile of a disc cam in numbers: points, pressure angle, radius of curvature, undercut; as CSV and as DXF."""
+"""The profile of a disc cam in numbers: points, pressure angle, radius of curvature, undercut; as
+CSV and as DXF.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,10 @@ _MILLIMETRES = 1e3
 class CamProfile:
     """A cam's profile at angles of one turn of the cam, each (n,), in its own axes.
 
-    ``x`` and ``y`` [m] are where the follower touches it while the cam is at ``angle`` [rad], and ``pitch_x`` and ``pitch_y`` where
-    the follower's point is. ``pressure_angle`` [rad] is between the force and the way of that point, ``radius`` [m] that of
-    curvature: positive where the profile is convex, infinite where it is straight. ``undercut`` tells where it would cut itself.
+    ``x`` and ``y`` [m] are where the follower touches it while the cam is at ``angle`` [rad], and
+    ``pitch_x`` and ``pitch_y`` where the follower's point is. ``pressure_angle`` [rad] is between
+    the force and the way of that point, ``radius`` [m] that of curvature: positive where the
+    profile is convex, infinite where it is straight. ``undercut`` tells where it would cut itself.
     """
 
     name: str
@@ -49,21 +52,31 @@ class CamProfile:
     def told_undercut(self) -> str:
         """Where it is undercut, in words; nothing where it is not."""
         found = np.degrees(self.angle[self.undercut])
-        return f"its profile is undercut at {found[0]:.4g} deg of the cam, and at {found.size} angles in all" if found.size else ""
+        return (
+            f"its profile is undercut at {found[0]:.4g} deg of the cam, and at {found.size} angles"
+            " in all"
+            if found.size
+            else ""
+        )
 
     def save_csv(self, path: str | Path) -> None:
-        """Write a row for every angle: cam angle [deg], x [m], y [m], pressure angle [deg], radius of curvature [m].
+        """Write a row for every angle: cam angle [deg], x [m], y [m], pressure angle [deg], radius
+        of curvature [m].
 
-        Raises :class:`.LagrangeCasadiError` for an undercut profile, and :class:`.PathError` where nothing can be written.
+        Raises :class:`.LagrangeCasadiError` for an undercut profile, and :class:`.PathError` where
+        nothing can be written.
         """
         self._refuse_undercut()
-        rows = np.column_stack([np.degrees(self.angle), self.x, self.y, np.degrees(self.pressure_angle), self.radius])
+        rows = np.column_stack(
+            [np.degrees(self.angle), self.x, self.y, np.degrees(self.pressure_angle), self.radius]
+        )
         lines = ["angle [deg],x [m],y [m],pressure angle [deg],radius [m]"]
         lines += [",".join(f"{number:.17g}" for number in row) for row in rows.tolist()]
         self._write(path, "\n".join(lines) + "\n")
 
     def save_dxf(self, path: str | Path) -> None:
-        """Write the profile as a closed polyline of DXF R12, in mm, for a workshop; the package ``ezdxf`` is needed.
+        """Write the profile as a closed polyline of DXF R12, in mm, for a workshop; the package
+        ``ezdxf`` is needed.
 
         Raises :class:`.LagrangeCasadiError` without it, and as :meth:`save_csv` does.
         """
@@ -71,7 +84,9 @@ class CamProfile:
         try:
             from ezdxf.addons.r12writer import R12FastStreamWriter
         except ImportError:
-            raise LagrangeCasadiError("a DXF needs ezdxf; install it with: pip install 'lagrange_casadi[dxf]'") from None
+            raise LagrangeCasadiError(
+                "a DXF needs ezdxf; install it with: pip install 'lagrange_casadi[dxf]'"
+            ) from None
         text = io.StringIO()
         drawing = R12FastStreamWriter(text, fixed_tables=False)
         points = (_MILLIMETRES * np.column_stack([self.x, self.y])).tolist()
@@ -81,7 +96,9 @@ class CamProfile:
 
     def _refuse_undercut(self) -> None:
         if self.undercut.any():
-            raise LagrangeCasadiError(f"cam '{self.name}': {self.told_undercut}; no profile has this motion")
+            raise LagrangeCasadiError(
+                f"cam '{self.name}': {self.told_undercut}; no profile has this motion"
+            )
 
     def _write(self, path: str | Path, text: str) -> None:
         check_writable(Path(path))
@@ -90,21 +107,33 @@ class CamProfile:
 
 
 def turn_in(name: str, count: int) -> Array:
-    """Angles of one turn of a cam in so many steps, from 0 to 2 pi. Raises :class:`.DeclarationError` for too few or too many."""
+    """Angles of one turn of a cam in so many steps, from 0 to 2 pi.
+
+    Raises :class:`.DeclarationError` for too few or too many.
+    """
     if not _LEAST <= count <= _MOST:
         bound = f"at least {_LEAST}" if count < _LEAST else f"at most {_MOST}"
-        raise DeclarationError(f"cam '{name}': count must be a whole number of {bound}, got {shown(count)}")
+        raise DeclarationError(
+            f"cam '{name}': count must be a whole number of {bound}, got {shown(count)}"
+        )
     return np.asarray(np.arange(count + 1) * (math.tau / count), float)
 
 
 def profile_of(name: str, function: Any, p: Sequence[float], count: int) -> CamProfile:
-    """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure angle, radius, progress."""
+    """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure
+    angle, radius, progress.
+    """
     angle = turn_in(name, count)
     found = function(angle[None], list(p)).full()
     # A straight profile has no radius.
     if not np.isfinite(np.delete(found, 5, axis=0)).all():
-        raise DeclarationError(f"cam '{name}': its follower cannot touch the base circle: it does not reach, or is too near")
+        raise DeclarationError(
+            f"cam '{name}': its follower cannot touch the base circle: it does not reach, or is too"
+            " near"
+        )
     size = float(np.abs(found[:2]).max())
     closes = bool(np.abs(found[:2, -1] - found[:2, 0]).max() <= _SAME * size)
     x, y, pitch_x, pitch_y, pressure, radius, progress = found[:, :-1]
-    return CamProfile(name, angle[:-1], x, y, pitch_x, pitch_y, pressure, radius, progress >= 0.0, closes)
+    return CamProfile(
+        name, angle[:-1], x, y, pitch_x, pitch_y, pressure, radius, progress >= 0.0, closes
+    )

@@ -1,4 +1,6 @@
-"""How a body turns or slides on another one: about which axis, and by which coordinates of joints."""
+"""How a body turns or slides on another one: about which axis, and
+by which coordinates of joints.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +24,13 @@ _AS_IT_IS = Rotation()
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a point of a body moves as seen from a carrier: it stays on an ``axis``, or ``slides`` along it.
+    """How a point of a body moves as seen from a carrier: it stays on an ``axis``, or ``slides``
+    along it.
 
-    ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero; ``turns`` are the joints whose
-    coordinates, each with its sign, add up to the angle about the axis, or the way along it. ``joints`` are all joints between,
-    and ``shifted`` how far the point is from their axes. ``seen`` turns the carrier's axes from those of the body.
+    ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero;
+    ``turns`` are the joints whose coordinates, each with its sign, add up to the angle about the
+    axis, or the way along it. ``joints`` are all joints between, and ``shifted`` how far the point
+    is from their axes. ``seen`` turns the carrier's axes from those of the body.
     """
 
     carrier: Body
@@ -51,7 +55,9 @@ class Numbers:
 
     def of(self, value: Expression) -> float:
         """One of them."""
-        defaults = {name: parameter.default for name, parameter in self.mechanism.parameters.items()}
+        defaults = {
+            name: parameter.default for name, parameter in self.mechanism.parameters.items()
+        }
         return self.mechanism.number(value, defaults)
 
     def size(self, vector: Vector) -> float:
@@ -71,22 +77,39 @@ def along(vector: Vector, by: Expression) -> Vector:
 
 
 def courses_on(
-    mechanism: Mechanism, what: str, first: Point, second: Point, carrier: Body | None, *, rack: bool = True
+    mechanism: Mechanism,
+    what: str,
+    first: Point,
+    second: Point,
+    carrier: Body | None,
+    *,
+    rack: bool = True,
 ) -> tuple[Course, Course]:
     """How two points move on the one body on which both turn, or the second slides.
 
     Raises :class:`.DeclarationError` where there is none, or where that is not the ``carrier``.
     """
-    found = [{course.carrier.name: course for course in _courses(mechanism, point)} for point in (first, second)]
-    both = [name for name in found[0] if name in found[1] and not found[0][name].slides and (rack or not found[1][name].slides)]
+    found = [
+        {course.carrier.name: course for course in _courses(mechanism, point)}
+        for point in (first, second)
+    ]
+    both = [
+        name
+        for name in found[0]
+        if name in found[1] and not found[0][name].slides and (rack or not found[1][name].slides)
+    ]
     if carrier is not None:
         both = [name for name in both if name == carrier.name]
     if not both:
         where = f"'{carrier.name}'" if carrier is not None else "one body"
         names = [", ".join(f"'{name}'" for name in one) or "nothing" for one in found]
-        told = "; ".join(f"'{point.body.name}' turns on {on}" for point, on in zip((first, second), names, strict=True))
+        told = "; ".join(
+            f"'{point.body.name}' turns on {on}"
+            for point, on in zip((first, second), names, strict=True)
+        )
         raise DeclarationError(
-            f"{what}: expected the centres of two bodies that turn on {where} by revolute joints through these; {told}"
+            f"{what}: expected the centres of two bodies that turn on {where} by revolute joints"
+            f" through these; {told}"
         )
     nearest = min(both, key=lambda name: sum(len(one[name].joints) for one in found))
     return found[0][nearest], found[1][nearest]
@@ -94,8 +117,15 @@ def courses_on(
 
 def fits_of(what: str, course: Course) -> list[Fit]:
     """That the axes of all joints of a course are one, for other parameters too."""
-    words = f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis, {{got}} m off"
-    return [Fit(words, off, 0.0, 1.0) for off in course.shifted if isinstance(off, ca.SX) and not off.is_constant()]
+    words = (
+        f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis,"
+        " {got} m off"
+    )
+    return [
+        Fit(words, off, 0.0, 1.0)
+        for off in course.shifted
+        if isinstance(off, ca.SX) and not off.is_constant()
+    ]
 
 
 def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
@@ -107,7 +137,10 @@ def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
             if joint.kind not in _KINDS or course.carrier not in joint.bodies:
                 continue
             other = joint.child.body if joint.parent.body is course.carrier else joint.parent.body
-            if other.name not in reached and (further := _through(mechanism, course, joint, other)) is not None:
+            if (
+                other.name not in reached
+                and (further := _through(mechanism, course, joint, other)) is not None
+            ):
                 reached.add(other.name)
                 found.append(further)
     return [course for course in found if course.axis is not None]
@@ -117,7 +150,9 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
     outward = joint.child.body is other
     zero = _zero(joint)
-    if joint.kind != "weld" and (not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)):
+    if joint.kind != "weld" and (
+        not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)
+    ):
         return None
 
     def seen(place: Vector) -> Vector:
@@ -129,7 +164,16 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
     whole = (zero.inverse if outward else zero).then(course.seen)
     axis, place, shifted = course.axis, course.place, course.shifted
     if joint.kind == "weld":
-        return Course(other, seen(place), axis and turn(axis), course.turns, course.slides, (*course.joints, joint), shifted, whole)
+        return Course(
+            other,
+            seen(place),
+            axis and turn(axis),
+            course.turns,
+            course.slides,
+            (*course.joints, joint),
+            shifted,
+            whole,
+        )
     # The joint's axis is in its parent's axes, and the same in its child's, turned.
     own = joint.axes[0].direction
     here = own if outward else zero.resolve(own)
@@ -146,7 +190,9 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
             return None
         shifted = (*shifted, *off)
     turns, joints = (*course.turns, (sign, joint)), (*course.joints, joint)
-    return Course(other, seen(place), turn(axis), turns, joint.kind == "prismatic", joints, shifted, whole)
+    return Course(
+        other, seen(place), turn(axis), turns, joint.kind == "prismatic", joints, shifted, whole
+    )
 
 
 def _zero(joint: Joint) -> Rotation:

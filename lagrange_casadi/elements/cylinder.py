@@ -1,4 +1,6 @@
-"""Hydraulic and pneumatic cylinders: a barrel and a rod between two pins, with pressures, flows and power as outputs."""
+"""Hydraulic and pneumatic cylinders: a barrel and a rod between two pins, with pressures, flows and
+power as outputs.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,8 @@ from ..errors import DeclarationError
 
 @dataclass(frozen=True, eq=False)
 class Cylinder:
-    """A cylinder: its links ``barrel`` and ``rod``, its ``slide``, which is what a scene drives, and its areas [m^2].
+    """A cylinder: its links ``barrel`` and ``rod``, its ``slide``, which is what a scene drives,
+    and its areas [m^2].
 
     The coordinate of the slide is how far it is out. The cap side pushes, the rod side pulls.
     """
@@ -42,22 +45,30 @@ def cylinder(
     barrel_mass: Expression = 0.0,
     rod_mass: Expression = 0.0,
 ) -> Cylinder:
-    """Declare a cylinder between two pins in a plane: links NAME_barrel and NAME_rod, pins NAME_rear and NAME_front, and the slide.
+    """Declare a cylinder between two pins in a plane: links NAME_barrel and NAME_rod, pins
+    NAME_rear and NAME_front, and the slide.
 
-    ``closed`` is the distance of its pins when it is all the way in [m], ``bore`` the diameter of its piston and ``rod`` that
-    of its rod [m], ``back_pressure`` the gauge pressure of the side that does not work [Pa]. It makes a motion where a scene
-    names it among its drives, by NAME. Outputs then are NAME_cap_pressure and NAME_rod_pressure [Pa], of which the lower one
-    is the back pressure; NAME_flow [m^3/s] into the cap side, out of it where negative; and NAME_power [W].
+    ``closed`` is the distance of its pins when it is all the way in [m], ``bore`` the diameter of
+    its piston and ``rod`` that of its rod [m], ``back_pressure`` the gauge pressure of the side
+    that does not work [Pa]. It makes a motion where a scene names it among its drives, by NAME.
+    Outputs then are NAME_cap_pressure and NAME_rod_pressure [Pa], of which the lower one is the
+    back pressure; NAME_flow [m^3/s] into the cap side, out of it where negative; and NAME_power
+    [W].
 
-    Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints does.
+    Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints
+    does.
     """
     what, own = f"cylinder '{name}'", mechanism.own
     if mechanism.space:
-        raise DeclarationError(f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint")
+        raise DeclarationError(
+            f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint"
+        )
     bore, rod = own.expression(f"{what}: bore", bore, "m"), own.expression(f"{what}: rod", rod, "m")
     back = own.expression(f"{what}: back_pressure", back_pressure)
     if not isinstance(bore, ca.SX) and not isinstance(rod, ca.SX) and not 0.0 <= rod < bore:
-        raise DeclarationError(f"{what}: its rod must be thinner than its bore, got {rod:g} m in {bore:g} m")
+        raise DeclarationError(
+            f"{what}: its rod must be thinner than its bore, got {rod:g} m in {bore:g} m"
+        )
     cap_area = math.pi / 4.0 * bore * bore
     rod_area = cap_area - math.pi / 4.0 * rod * rod
     barrel = mechanism.link(f"{name}_barrel", length=closed, mass=barrel_mass)
@@ -66,8 +77,12 @@ def cylinder(
     slide = mechanism.prismatic(name, barrel, piston.base, axis=(1.0, 0.0))
     mechanism.revolute(f"{name}_front", piston.tip, front)
     push, rate = mechanism.results.effort(slide), mechanism.rate(slide)
-    mechanism.output(f"{name}_cap_pressure", ca.fmax((push + back * rod_area) / cap_area, back), unit="Pa")
-    mechanism.output(f"{name}_rod_pressure", ca.fmax((back * cap_area - push) / rod_area, back), unit="Pa")
+    mechanism.output(
+        f"{name}_cap_pressure", ca.fmax((push + back * rod_area) / cap_area, back), unit="Pa"
+    )
+    mechanism.output(
+        f"{name}_rod_pressure", ca.fmax((back * cap_area - push) / rod_area, back), unit="Pa"
+    )
     mechanism.output(f"{name}_flow", cap_area * rate, unit="m^3/s")
     mechanism.output(f"{name}_power", push * rate, unit="W")
     return Cylinder(barrel, piston, slide, cap_area, rod_area)

@@ -1,10 +1,13 @@
-"""Cylindrical cams with the real forces of their contact: a roller in a groove round a drum, on a follower that slides or swings.
+"""Cylindrical cams with the real forces of their contact: a roller in a groove round a drum, on a
+follower that slides or swings.
 
-The centre A of the roller is at a(theta) where the drum has turned by theta, and the roller turns about p, across the groove. The
-groove is what the roller leaves of the drum: its flanks touch the roller along the normal n, at right angles to p and to the way of
-A on the drum, a' - u x (a - c), with u the drum's axis through c. So the contact pushes along n through A. On the drum that is told
-by two points of its axis, c and q = c + h u, and the drum's angle: forces g1 + g2 = n there, with h u x g2 that part of the moment
-(a - c) x n that is across the axis. The part about the axis is the slope of the equation of contact by theta,
+The centre A of the roller is at a(theta) where the drum has turned by theta, and the roller turns
+about p, across the groove. The groove is what the roller leaves of the drum: its flanks touch the
+roller along the normal n, at right angles to p and to the way of A on the drum, a' - u x (a - c),
+with u the drum's axis through c. So the contact pushes along n through A. On the drum that is told
+by two points of its axis, c and q = c + h u, and the drum's angle: forces g1 + g2 = n there, with h
+u x g2 that part of the moment (a - c) x n that is across the axis. The part about the axis is the
+slope of the equation of contact by theta,
 
     n . (A - a) - g1 . (C - c) - g2 . (Q - q) = 0,
 
@@ -42,9 +45,10 @@ _LOOKED_AT = 721
 class Groove:
     """Where the roller is, by the symbol ``angle`` of the drum [rad], in ground axes.
 
-    ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the direction in which the follower
-    moves the centre; ``axis`` is that of the drum through ``centre``. ``bend`` is the curvature of its path on the drum, in the
-    plane across the roller [1/m], positive where it curves along the normal.
+    ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the
+    direction in which the follower moves the centre; ``axis`` is that of the drum through
+    ``centre``. ``bend`` is the curvature of its path on the drum, in the plane across the roller
+    [1/m], positive where it curves along the normal.
     """
 
     angle: Any
@@ -59,11 +63,13 @@ class Groove:
 @public
 @dataclass(frozen=True, eq=False)
 class CylindricalCam:
-    """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
+    """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its
+    ``design``.
 
-    Outputs are NAME_force [N], positive where it pushes the follower along its coordinate: where the sign changes, the roller goes
-    over to the other flank; NAME_pressure_angle [rad] between the force and the way of the roller; and with a width NAME_hertz,
-    the largest pressure between the roller and the flank that it touches [Pa].
+    Outputs are NAME_force [N], positive where it pushes the follower along its coordinate: where
+    the sign changes, the roller goes over to the other flank; NAME_pressure_angle [rad] between the
+    force and the way of the roller; and with a width NAME_hertz, the largest pressure between the
+    roller and the flank that it touches [Pa].
     """
 
     name: str
@@ -73,15 +79,20 @@ class CylindricalCam:
     cam: Joint
 
     def groove(self, parameters: dict[str, float] | None = None, *, count: Count = 720) -> Array:
-        """The path of the roller's centre on the drum at ``count`` angles of one turn, in the drum's own axes, (count, 3) [m].
+        """The path of the roller's centre on the drum at ``count`` angles of one turn, in the
+        drum's own axes, (count, 3) [m].
 
         Raises :class:`.DeclarationError` for a count below 16, and above a million.
         """
         angles = turn_in(self.name, count)[:-1]
         x, values = self.design.angle, self.mechanism.values(parameters)
         turned = _carried(self.cam, x)
-        here = plus(turned.resolve(minus(self.design.place, self.design.centre)), self.cam.child.place)
-        function = ca.Function("groove", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, here)))])
+        here = plus(
+            turned.resolve(minus(self.design.place, self.design.centre)), self.cam.child.place
+        )
+        function = ca.Function(
+            "groove", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, here)))]
+        )
         return np.asarray(function(angles[None], list(values.values())).full().T)
 
 
@@ -99,48 +110,60 @@ def cylindrical_cam(
     width: Symbolic | None = None,
     elastic: Elastic = STEEL,
 ) -> CylindricalCam:
-    """Declare the contact of a drum's groove with the roller of its follower in space, from the follower's motion.
+    """Declare the contact of a drum's groove with the roller of its follower in space, from the
+    follower's motion.
 
     Parameters
     ----------
     cam, follower
-        The revolute joint of the drum on the ground, and the joint of the follower on the ground: prismatic along the drum's axis,
-        or revolute about an axis at right angles to it.
+        The revolute joint of the drum on the ground, and the joint of the follower on the ground:
+        prismatic along the drum's axis, or revolute about an axis at right angles to it.
     lift
-        The follower's way [m], or its swing [rad], as a function of the drum's angle: a motion of ``moves``, a ``curve``, or any
-        function that takes and returns CasADi's expressions. It must be periodic by a turn.
+        The follower's way [m], or its swing [rad], as a function of the drum's angle: a motion of
+        ``moves``, a ``curve``, or any function that takes and returns CasADi's expressions. It must
+        be periodic by a turn.
     start
         The coordinate of the follower's joint where the lift is zero [m or rad].
     point
-        The centre of the roller, in the middle of the groove's depth; by default the point at which the joint holds the follower.
+        The centre of the roller, in the middle of the groove's depth; by default the point at which
+        the joint holds the follower.
     roller, width, elastic
-        The radius of the roller and the width of its contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's
-        ratio of both bodies. The flank is that of the middle of the groove's depth: a curve beside the path of the centre.
+        The radius of the roller and the width of its contact [m], for the pressure of Hertz, and
+        Young's modulus [Pa] and Poisson's ratio of both bodies. The flank is that of the middle of
+        the groove's depth: a curve beside the path of the centre.
 
-    Notes
-    -----
-    Of a follower that slides the roller turns about the line from the drum's axis to its centre; of one that swings, about an axis
-    along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
+    Notes ----- Of a follower that slides the roller turns about the line from the drum's axis to
+    its centre; of one that swings, about an axis along its joint's. Raises
+    :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
     for the groove's bends, and a lift that is not the same after a turn.
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     stiffness = stiffness_of(what, elastic)
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        if own.joint(joint).kind not in kinds or not mechanism.space or not isinstance(joint.parent.body, Ground):
+        if (
+            own.joint(joint).kind not in kinds
+            or not mechanism.space
+            or not isinstance(joint.parent.body, Ground)
+        ):
             raise DeclarationError(
-                f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in space, got '{joint.name}'"
+                f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in"
+                f" space, got '{joint.name}'"
             )
     held = follower.child if point is None else own.point(what, point)
     if held.body is not follower.child.body:
-        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
+        raise DeclarationError(
+            f"{what}: its point must be on '{follower.child.body.name}', which joint"
+            f" '{follower.name}' leads"
+        )
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
     design = _groove(
         what,
         mechanism,
         x,
-        own.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m") + rise,
+        own.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m")
+        + rise,
         cam,
         follower,
         held,
@@ -157,7 +180,8 @@ def cylindrical_cam(
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
         round_ = _round(what, mechanism, design, own.expression(f"{what}: roller", roller, "m"))
         force = mechanism.results.multiplier(constraint)
-        # The flank is as far beside the path as the roller's radius, on the side from which it pushes.
+        # The flank is as far beside the path as the roller's radius, on the side from which it
+        # pushes.
         bend = ca.sign(force) * ca.substitute(ca.SX(design.bend), x, turn)
         curvature = 1.0 / (round_ * (1.0 + bend * round_))
         pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, stiffness)
@@ -169,10 +193,22 @@ def _carried(joint: Joint, angle: Any) -> Rotation:
     """How the child of a joint on the ground is turned, at an angle of the joint."""
     assert joint.turned is not None
     resting = Rotation.of(*joint.turned)
-    return resting if joint.kind == "prismatic" else Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
+    return (
+        resting
+        if joint.kind == "prismatic"
+        else Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
+    )
 
 
-def _groove(what: str, mechanism: Mechanism, x: Any, coordinate: Any, cam: Joint, follower: Joint, held: Point) -> Groove:
+def _groove(
+    what: str,
+    mechanism: Mechanism,
+    x: Any,
+    coordinate: Any,
+    cam: Joint,
+    follower: Joint,
+    held: Point,
+) -> Groove:
     axis, centre, line = cam.triad[0], cam.parent.place, follower.triad[0]
     slides = follower.kind == "prismatic"
     arm = _carried(follower, coordinate).apply(minus(held.place, follower.child.place))
@@ -190,10 +226,15 @@ def _groove(what: str, mechanism: Mechanism, x: Any, coordinate: Any, cam: Joint
     bend = dot(bent, normal) / dot(beside, beside)
     # Along the follower's coordinate, where the drum alone moves.
     values = list(mechanism.values().values())
-    ahead = ca.Function("ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), way))])
+    ahead = ca.Function(
+        "ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), way))]
+    )
     side = float(ahead(0.0, values))
     if not abs(side) > 0.0:
-        raise DeclarationError(f"{what}: the drum does not pass by the roller; expected it off the axis, and a follower along it")
+        raise DeclarationError(
+            f"{what}: the drum does not pass by the roller; expected it off the axis, and a"
+            " follower along it"
+        )
     normal, bend = (normal, bend) if side > 0.0 else (times(-1.0, normal), -bend)
     return Groove(x, place, normal, way, axis, centre, bend)
 
@@ -201,28 +242,43 @@ def _groove(what: str, mechanism: Mechanism, x: Any, coordinate: Any, cam: Joint
 def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> Expression:
     """The radius of the roller, for which the groove's flanks must have room in its bends."""
     angles = np.linspace(0.0, math.tau, _LOOKED_AT)
-    told = ca.Function("bends", [design.angle, mechanism.symbols], [ca.SX(design.bend), ca.SX(roller)])
+    told = ca.Function(
+        "bends", [design.angle, mechanism.symbols], [ca.SX(design.bend), ca.SX(roller)]
+    )
     values = list(mechanism.values().values())
-    bends, radius = (np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values))
+    bends, radius = (
+        np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values)
+    )
     if radius[0] <= 0.0:
         raise DeclarationError(f"{what}: roller must be positive, got {radius[0]:g} m")
     tight = int(np.argmax(np.abs(bends)))
     if abs(bends[tight]) * radius[0] >= 1.0:
-        where = f"{math.degrees(angles[tight]):.4g} deg of the cam, where its path has a radius of {1.0 / abs(bends[tight]):.3g} m"
-        raise DeclarationError(f"{what}: its groove is undercut at {where}; expected a smaller roller or a slower lift")
+        where = (
+            f"{math.degrees(angles[tight]):.4g} deg of the cam, where its path has a radius of"
+            f" {1.0 / abs(bends[tight]):.3g} m"
+        )
+        raise DeclarationError(
+            f"{what}: its groove is undercut at {where}; expected a smaller roller or a slower lift"
+        )
     return roller
 
 
 def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower: Joint) -> None:
-    """Raise :class:`.DeclarationError` for axes that do not lie as they must, and for a lift that is another after a turn."""
+    """Raise :class:`.DeclarationError` for axes that do not lie as they must, and for a lift that
+    is another after a turn.
+    """
     x, p, values = design.angle, mechanism.symbols, list(mechanism.values().values())
     cosine = dot(follower.triad[0], design.axis)
     ends = [ca.substitute(rise, x, turn) for turn in (0.0, math.tau)]
     seat = minus(design.place, design.centre)
-    radius = ca.norm_2(ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis)))))
+    radius = ca.norm_2(
+        ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis))))
+    )
     angles = np.linspace(0.0, math.tau, 181)
     told = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
-    lean, first, last, way, reach = (np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values))
+    lean, first, last, way, reach = (
+        np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values)
+    )
     slides = follower.kind == "prismatic"
     if abs(abs(lean[0]) - (1.0 if slides else 0.0)) > _SAME:
         place = "along the drum's axis" if slides else "at right angles to the drum's axis"
@@ -230,10 +286,14 @@ def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower:
     if not np.isfinite(way).all() or not reach.min() > _SAME * reach.max():
         raise DeclarationError(f"{what}: its roller comes to the drum's axis")
     if abs(last[0] - first[0]) > _SAME * (np.ptp(way) or 1.0):
-        raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
+        raise DeclarationError(
+            f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi"
+        )
 
 
-def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Any) -> Constraint:
+def _contact(
+    mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Any
+) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     drum, turn = cam.child.body, mechanism.coordinate(cam)
     assert isinstance(drum, Link)
@@ -252,8 +312,12 @@ def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: G
         seen = mechanism.place(point)
         off = minus((seen[0], seen[1], seen[2]), there)
         gap = gap + dot(arm, off)
-    phi = mechanism.own.expression(f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True)
-    return mechanism.constraints.setdefault(name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn)))
+    phi = mechanism.own.expression(
+        f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True
+    )
+    return mechanism.constraints.setdefault(
+        name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn))
+    )
 
 
 def _lean(design: Groove) -> tuple[Any, Any]:

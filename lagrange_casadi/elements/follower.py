@@ -1,4 +1,5 @@
-"""The follower of a cam: its lift, a law of the cam's angle, and the pressure of Hertz where both touch along a line.
+"""The follower of a cam: its lift, a law of the cam's angle, and the pressure of Hertz where both
+touch along a line.
 
 Source: K. L. Johnson, *Contact Mechanics*, 1985, equation 4.45.
 """
@@ -23,22 +24,28 @@ _LOOKED_AT = 37
 def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: Any) -> Any:
     """The lift as an expression of the symbol ``angle``.
 
-    Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no finite number.
+    Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no
+    finite number.
     """
     try:
         rise = ca.SX(lift(angle))
     except Exception as error:  # whatever a user's function raises
         raise DeclarationError(
-            f"{what}: lift must be a function of the cam's angle, of CasADi's expressions: {told(error)}"
+            f"{what}: lift must be a function of the cam's angle, of CasADi's expressions:"
+            f" {told(error)}"
         ) from None
     defaults = [parameter.default for parameter in mechanism.parameters.values()]
     angles = np.linspace(0.0, math.tau, _LOOKED_AT)
-    values = ca.Function("lift", [angle, mechanism.symbols], [ca.densify(rise)])(angles[None], defaults).full().ravel()
+    values = (
+        ca.Function("lift", [angle, mechanism.symbols], [ca.densify(rise)])(angles[None], defaults)
+        .full()
+        .ravel()
+    )
     if not np.isfinite(values).all():
         first = math.degrees(angles[np.argmin(np.isfinite(values))])
         raise DeclarationError(
-            f"{what}: lift is no finite number at {first:.4g} deg of the cam; expected a function of CasADi's expressions, "
-            "with casadi.sin in place of math.sin"
+            f"{what}: lift is no finite number at {first:.4g} deg of the cam; expected a function"
+            " of CasADi's expressions, with casadi.sin in place of math.sin"
         )
     return rise
 
@@ -48,14 +55,23 @@ STEEL = (210e9, 0.3)
 
 
 def stiffness_of(what: str, elastic: tuple[float, float]) -> float:
-    """The stiffness [Pa] of the contact of two bodies of one material. Raises :class:`.DeclarationError` for constants of none."""
+    """The stiffness [Pa] of the contact of two bodies of one material.
+
+    Raises :class:`.DeclarationError` for constants of none.
+    """
     if not (0.0 < elastic[0] < math.inf and 0.0 <= elastic[1] <= 0.5):
-        raise DeclarationError(f"{what}: elastic must be Young's modulus [Pa] and Poisson's ratio, 0 to 0.5, got {elastic!r}")
+        raise DeclarationError(
+            f"{what}: elastic must be Young's modulus [Pa] and Poisson's ratio, 0 to 0.5, got"
+            f" {elastic!r}"
+        )
     return elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
 
 
-def largest_pressure(what: str, mechanism: Mechanism, force: Any, curvature: Any, width: Expression, stiffness: float) -> Any:
-    """The largest pressure [Pa] of two bodies, by force [N], width [m], the sum of their curvatures [1/m], and stiffness [Pa].
+def largest_pressure(
+    what: str, mechanism: Mechanism, force: Any, curvature: Any, width: Expression, stiffness: float
+) -> Any:
+    """The largest pressure [Pa] of two bodies, by force [N], width [m], the sum of their curvatures
+    [1/m], and stiffness [Pa].
 
     Raises :class:`.DeclarationError` for a width that is not positive.
     """

@@ -1,12 +1,15 @@
-"""Gears that mesh, of any kind by how their axes lie, with the real forces of their teeth on bearings and shafts.
+"""Gears that mesh, of any kind by how their axes lie, with the real forces of their teeth on
+bearings and shafts.
 
-Parallel axes make spur and helical gears, and a gear in a ring where one is inside the other; axes that meet make bevel gears;
-axes that cross make a worm and its wheel; a body that slides makes a rack. One function declares all of them, because they are one
-thing: a force along the teeth at the pitch point, and what presses the gears apart.
+Parallel axes make spur and helical gears, and a gear in a ring where one is inside the other; axes
+that meet make bevel gears; axes that cross make a worm and its wheel; a body that slides makes a
+rack. One function declares all of them, because they are one thing: a force along the teeth at the
+pitch point, and what presses the gears apart.
 
-A part of the power that they pass on is lost by a couple between the gears against the turning of one on the other: it stands for
-the force of the teeth beside the pitch point. So nothing but the gears bears it, as with real teeth. With the ratio q of the rate
-of one gear on the other to that of the first, and the cosine k between their axes of turning, the couple is
+A part of the power that they pass on is lost by a couple between the gears against the turning of
+one on the other: it stands for the force of the teeth beside the pitch point. So nothing but the
+gears bears it, as with real teeth. With the ratio q of the rate of one gear on the other to that of
+the first, and the cosine k between their axes of turning, the couple is
 
     c = (1 - efficiency) r |W|/(q - (1 - efficiency) k)             where the first drives,
     c = (1 - efficiency) r |W|/(efficiency q + (1 - efficiency) k)  where the second does.
@@ -39,7 +42,8 @@ _FLATTEST, _STEEPEST = math.pi / 4, 75 * math.pi / 180
 
 @dataclass(frozen=True, eq=False)
 class Gears:
-    """Gears that mesh: their ``constraint``, whose multiplier is the force along the pitch circle [N], and their ``kind``.
+    """Gears that mesh: their ``constraint``, whose multiplier is the force along the pitch circle
+    [N], and their ``kind``.
 
     ``ratio`` is the second coordinate's rate over the first one's.
     """
@@ -72,38 +76,43 @@ def gears(
     Parameters
     ----------
     first, second
-        The centres of the gears: points of bodies, on the axes about which revolute joints let these turn. A link stands for its
-        base, the ground for its origin. A rack is a point of a body that slides, on its pitch line. Several second gears, alike,
-        share the load evenly; what ties their own turning must be declared beside.
+        The centres of the gears: points of bodies, on the axes about which revolute joints let
+        these turn. A link stands for its base, the ground for its origin. A rack is a point of a
+        body that slides, on its pitch line. Several second gears, alike, share the load evenly;
+        what ties their own turning must be declared beside.
     teeth, module
-        Numbers of teeth, and the module in the plane at right angles to the teeth [m]: the radii are module teeth/(2 cos helix).
-        A rack takes the teeth of its gear alone.
+        Numbers of teeth, and the module in the plane at right angles to the teeth [m]: the radii
+        are module teeth/(2 cos helix). A rack takes the teeth of its gear alone.
     radii
-        Radii of the pitch circles [m] in place of the module: of bevel gears in the middle of the teeth's width. Crossed axes need
-        both the numbers of teeth and the radii.
+        Radii of the pitch circles [m] in place of the module: of bevel gears in the middle of the
+        teeth's width. Crossed axes need both the numbers of teeth and the radii.
     pressure_angle, helix_angle
-        Angles [rad, or text as ``"20 deg"``] at right angles to the teeth, and between the teeth and the axis (or the cone's side):
-        positive where the teeth of the first gear are a right-handed screw. A plane has no helix.
+        Angles [rad, or text as ``"20 deg"``] at right angles to the teeth, and between the teeth
+        and the axis (or the cone's side): positive where the teeth of the first gear are a
+        right-handed screw. A plane has no helix.
     hand
         Of crossed axes, the hand of the first gear's teeth.
     efficiency
-        What comes out of the mesh over what goes into it, whichever gear drives, seen from the carrier; by default nothing is lost.
+        What comes out of the mesh over what goes into it, whichever gear drives, seen from the
+        carrier; by default nothing is lost.
     mu
-        Of crossed axes in its place the friction coefficient of the teeth, which slide on each other.
+        Of crossed axes in its place the friction coefficient of the teeth, which slide on each
+        other.
     carrier
         The body on which both turn; by default the one that joints tell.
     offset
         The way that the first pitch circle is ahead where both coordinates are zero [m].
 
-    Notes
-    -----
-    The multiplier is the force along the pitch circle on the first gear, positive where it turns this forward. The flank that
-    touches follows from its sign, and both flanks press the gears apart. Outputs are NAME_tangential, NAME_radial toward the axis
-    of the first gear, or off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without friction's
-    part. Where teeth rub, NAME_loss is the power that all meshes take [W]. At rest friction is open, as in joints that rub.
+    Notes ----- The multiplier is the force along the pitch circle on the first gear, positive where
+    it turns this forward. The flank that touches follows from its sign, and both flanks press the
+    gears apart. Outputs are NAME_tangential, NAME_radial toward the axis of the first gear, or off
+    it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without
+    friction's part. Where teeth rub, NAME_loss is the power that all meshes take [W]. At rest
+    friction is open, as in joints that rub.
 
-    Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points, centres that do not fit the
-    radii, numbers of teeth that are not whole, and angles out of range; values of parameters that break these are refused as well.
+    Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points,
+    centres that do not fit the radii, numbers of teeth that are not whole, and angles out of range;
+    values of parameters that break these are refused as well.
     """
     what, own = f"gears '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
@@ -117,7 +126,16 @@ def gears(
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
     numbers, fits, rubs = Numbers(mechanism), [], efficiency is not None or mu is not None
-    told, more = _teeth(what, mechanism, found[0], teeth, module, radii, (pressure_angle, helix_angle), hand == "right")
+    told, more = _teeth(
+        what,
+        mechanism,
+        found[0],
+        teeth,
+        module,
+        radii,
+        (pressure_angle, helix_angle),
+        hand == "right",
+    )
     fits += more
     pitches = [pitch_of(what, numbers, *pair, told) for pair in found]
     meshes = []
@@ -129,17 +147,23 @@ def gears(
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
     ways = [course.way(mechanism) for course in found[0]]
     ahead = own.expression(f"{what}: offset", offset, "m")
-    constraint = mechanism.constraint(name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead)
+    constraint = mechanism.constraint(
+        name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead
+    )
     loss = None
     if rubs:
         loss, more = loss_of(what, mechanism, name, found[0][0], pitches[0], told, efficiency, mu)
         fits += more
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying), loss))
+    constraint = replace(
+        constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying), loss)
+    )
     mechanism.constraints[name] = constraint
     _outputs(mechanism, name, constraint, pitches[0])
     if loss is not None:
-        mechanism.output(f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W")
+        mechanism.output(
+            f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W"
+        )
     return Gears(constraint, pitches[0].kind, -(told.radii[0] / pitches[0].other))
 
 
@@ -166,11 +190,16 @@ def _teeth(
     if (module is None) == (radii is None):
         raise DeclarationError(f"{what}: give module and teeth, or radii")
     names = ("pressure_angle", "helix_angle")
-    pressure, helix = (own.expression(f"{what}: {one}", angle, "rad") for one, angle in zip(names, angles, strict=True))
+    pressure, helix = (
+        own.expression(f"{what}: {one}", angle, "rad")
+        for one, angle in zip(names, angles, strict=True)
+    )
     fits += within(what, "pressure_angle", pressure, 0.0, _FLATTEST)
     fits += within(what, "helix_angle", helix, -_STEEPEST, _STEEPEST)
     if not mechanism.space and not (isinstance(helix, float) and helix == 0.0):
-        raise DeclarationError(f"{what}: gears in a plane have no helix; in space declare a SpatialMechanism")
+        raise DeclarationError(
+            f"{what}: gears in a plane have no helix; in space declare a SpatialMechanism"
+        )
     z = None if teeth is None else each("numbers of teeth", teeth)
     for value in z or ():
         fits += whole(what, "numbers of teeth", value)
@@ -189,13 +218,17 @@ def _teeth(
     return Teeth(tuple(r), ratio, pressure, helix, right), fits
 
 
-def _mesh(mechanism: Mechanism, first: Point, second: Point, one: Course, two: Course, pitch: Pitch) -> Mesh:
+def _mesh(
+    mechanism: Mechanism, first: Point, second: Point, one: Course, two: Course, pitch: Pitch
+) -> Mesh:
     """Where two gears touch; on a rack it is a place that moves."""
     if two.slides:
         way = two.way(mechanism)
         assert two.axis is not None
         gone = tuple(way * x for x in two.axis)
-        back = two.seen.resolve(minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2])))
+        back = two.seen.resolve(
+            minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2]))
+        )
         x, y, z = _sum(second.place, back)
         second = Point(second.body, x, y, z=z)
     wrenches = (Wrench(force, cross(pitch.arm, force)) for force in (pitch.force, pitch.apart))
@@ -218,7 +251,9 @@ def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pit
 
 
 def braking_of(pitch: Pitch) -> Wrench:
-    """What a unit of friction does to the first gear: a couple against its turning on the second, or a force against sliding."""
+    """What a unit of friction does to the first gear: a couple against its turning on the second,
+    or a force against sliding.
+    """
     way = along(pitch.relative, length(pitch.relative))
     return Wrench(way, cross(pitch.arm, way)) if pitch.kind == "crossed" else Wrench(couple=way)
 
@@ -241,7 +276,11 @@ def loss_of(
         value = own.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
-        cosine = ca.cos(teeth.pressure) if isinstance(teeth.pressure, ca.SX) else math.cos(teeth.pressure)
+        cosine = (
+            ca.cos(teeth.pressure)
+            if isinstance(teeth.pressure, ca.SX)
+            else math.cos(teeth.pressure)
+        )
         return Loss(f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.turns), fits
     value = own.expression(f"{what}: efficiency", efficiency)
     fits = share(what, value)
@@ -250,7 +289,9 @@ def loss_of(
     slip = 1 - value
     driving, driven = q - slip * k, value * q + slip * k
     for divisor in (driving, driven):
-        fits += at_least(what, "efficiency is too low for a gear in this ring", divisor, LEAST, value)
+        fits += at_least(
+            what, "efficiency is too low for a gear in this ring", divisor, LEAST, value
+        )
     ahead, back = slip * radius / driving, slip * radius / driven
     return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.turns), fits
 

@@ -1,11 +1,13 @@
-"""Where gears touch: the pitch point, the direction of the teeth's force there, and the radii about which it turns them.
+"""Where gears touch: the pitch point, the direction of the teeth's force there, and the radii about
+which it turns them.
 
-All is in the carrier's axes. At the pitch point e leads from the first gear's axis outward, t = u x e is the way in which it moves
-when the gear turns about its axis u. The force of the teeth on the first gear is lambda f + s a: f, with f . t = 1, at right angles
-to the teeth in the pitch plane, and a at right angles to that plane, off the other gear.
+All is in the carrier's axes. At the pitch point e leads from the first gear's axis outward, t = u x
+e is the way in which it moves when the gear turns about its axis u. The force of the teeth on the
+first gear is lambda f + s a: f, with f . t = 1, at right angles to the teeth in the pitch plane,
+and a at right angles to that plane, off the other gear.
 
-Sources: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 13 (forces of spur, helical, bevel and worm gears);
-G. Niemann, H. Winter, *Maschinenelemente* II, chapter 21.
+Sources: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 13 (forces of spur,
+helical, bevel and worm gears); G. Niemann, H. Winter, *Maschinenelemente* II, chapter 21.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ from .courses import Course, Numbers, along, length
 
 @dataclass(frozen=True, eq=False)
 class Teeth:
-    """What gears are told to be: radii [m] of their pitch circles, ratio of their teeth, pressure and helix angle [rad], hand."""
+    """What gears are told to be: radii [m] of their pitch circles, ratio of their teeth, pressure
+    and helix angle [rad], hand.
+    """
 
     radii: tuple[Expression, ...]
     ratio: Expression
@@ -36,10 +40,12 @@ class Teeth:
 
 @dataclass(frozen=True, eq=False)
 class Pitch:
-    """A pitch point: its ``arm`` from the first centre, forces ``force`` and ``apart`` there, the ``second`` gear's place.
+    """A pitch point: its ``arm`` from the first centre, forces ``force`` and ``apart`` there, the
+    ``second`` gear's place.
 
-    The equation is radius way_1 + ``other`` way_2 = 0. ``outward`` is e, ``axis`` u. ``relative`` is the angular velocity of the
-    first against the second, of crossed axes the velocity with which it slides on that, for a unit of the first one's rate.
+    The equation is radius way_1 + ``other`` way_2 = 0. ``outward`` is e, ``axis`` u. ``relative``
+    is the angular velocity of the first against the second, of crossed axes the velocity with which
+    it slides on that, for a unit of the first one's rate.
     """
 
     kind: str
@@ -91,7 +97,14 @@ def _parallel(what: str, numbers: Numbers, first: Course, second: Course, teeth:
     words = "its centres are {got} m apart; expected {meant} m by the radii"
     fits = [Fit(words, distance, sides[side], r1 + r2)]
     _refuse_beside(what, numbers, beside, r1 + r2)
-    fits.append(Fit("its gears are {got} m beside each other along their axes; expected {meant} m", beside, 0.0, r1 + r2))
+    fits.append(
+        Fit(
+            "its gears are {got} m beside each other along their axes; expected {meant} m",
+            beside,
+            0.0,
+            r1 + r2,
+        )
+    )
     # The pitch point is beyond the first centre where the second gear is a ring.
     e = along(away, distance if side != -1 else -distance)
     t = cross(u, e)
@@ -101,7 +114,18 @@ def _parallel(what: str, numbers: Numbers, first: Course, second: Course, teeth:
     apart = times(size if side == -2 else -size, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
     relative = plus(u, times(r1 / other, second.axis))
-    return Pitch("parallel", times(r1, e), force, apart, minus(second.place, first.place), other, e, u, relative, tuple(fits))
+    return Pitch(
+        "parallel",
+        times(r1, e),
+        force,
+        apart,
+        minus(second.place, first.place),
+        other,
+        e,
+        u,
+        relative,
+        tuple(fits),
+    )
 
 
 def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -109,7 +133,8 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
     assert u is not None
     assert v is not None
-    # How far the centres are from where the axes meet: the feet of the common perpendicular are one.
+    # How far the centres are from where the axes meet: the feet of the common perpendicular are
+    # one.
     away, slope = minus(second.place, first.place), dot(u, v)
     steep = 1 - slope * slope
     far1 = -(dot(away, u) - slope * dot(away, v)) / steep
@@ -121,12 +146,22 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     fits = []
     for number, (far, height) in enumerate(zip((one * far1, two * far2), heights, strict=True), 1):
         got, meant = numbers.of(far), numbers.of(height)
-        words = f"the centre of its gear {number} is {{got}} m from where the axes meet; expected {{meant}} m by the radii"
+        words = (
+            f"the centre of its gear {number} is {{got}} m from where the axes meet; expected"
+            " {meant} m by the radii"
+        )
         fit = Fit(words, far, height, r1 + r2)
         if abs(got - meant) > FITTING * numbers.of(r1 + r2):
             raise DeclarationError(f"{what}: {fit.refusal(got, meant)}")
         fits.append(fit)
-    fits.append(Fit("the axes of its gears are {got} m apart; expected {meant} m", dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
+    fits.append(
+        Fit(
+            "the axes of its gears are {got} m apart; expected {meant} m",
+            dot(away, cross(u, v)) / sine,
+            0.0,
+            r1 + r2,
+        )
+    )
     e = along(minus(w2, times(cosine, w1)), sine)
     t = cross(u, e)
     slant = root(heights[0] * heights[0] + r1 * r1)
@@ -135,11 +170,24 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     size = _tan(teeth.pressure) / _cos(teeth.helix)
     apart = times(size, along(minus(times(r1, w1), times(heights[0], e)), slant))
     other = one * two * r2
-    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, plus(u, times(r1 / other, v)), tuple(fits))
+    return Pitch(
+        "bevel",
+        times(r1, e),
+        force,
+        apart,
+        away,
+        other,
+        e,
+        u,
+        plus(u, times(r1 / other, v)),
+        tuple(fits),
+    )
 
 
 def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: Teeth) -> Pitch:
-    """A worm and its wheel, or crossed helical gears: the teeth lie so that the ratio is that of their numbers."""
+    """A worm and its wheel, or crossed helical gears: the teeth lie so that the ratio is that of
+    their numbers.
+    """
     u, v, (r1, r2) = first.axis, second.axis, teeth.radii
     assert u is not None
     assert v is not None
@@ -147,7 +195,10 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     distance = length(away)
     fits = []
     for number, axis in ((1, u), (2, v)):
-        words = f"the centre of its gear {number} is {{got}} m beside the line at right angles to both axes; expected {{meant}} m"
+        words = (
+            f"the centre of its gear {number} is {{got}} m beside the line at right angles to both"
+            " axes; expected {meant} m"
+        )
         fits.append(Fit(words, dot(away, axis), 0.0, r1 + r2))
     words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
     fits.append(Fit(words, distance, r1 + r2, r1 + r2))
@@ -161,7 +212,9 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     leans = [(way * teeth.ratio * r1 / r2 - cosine) / sine for way in (1, -1)]
     right = [numbers.of(lean) < 0.0 for lean in leans]
     if right[0] == right[1]:
-        raise DeclarationError(f"{what}: radii and numbers of teeth do not fit the angle between its axes")
+        raise DeclarationError(
+            f"{what}: radii and numbers of teeth do not fit the angle between its axes"
+        )
     way = 1 if right[0] == teeth.right else -1
     lean = leans[0] if way == 1 else leans[1]
     force = plus(t, times(lean, u))
@@ -176,13 +229,18 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
     assert u is not None
     assert d is not None
     if abs(numbers.of(dot(u, d))) > FITTING:
-        raise DeclarationError(f"{what}: its rack must slide at right angles to the axis of its gear")
+        raise DeclarationError(
+            f"{what}: its rack must slide at right angles to the axis of its gear"
+        )
     away = minus(second.place, first.place)
     across = minus(away, times(dot(away, d), d))
     beside = dot(across, u)
     across = minus(across, times(beside, u))
     distance = length(across)
-    words = "the pitch line of its rack is {got} m from the axis of its gear; expected its radius, {meant} m"
+    words = (
+        "the pitch line of its rack is {got} m from the axis of its gear; expected its radius,"
+        " {meant} m"
+    )
     fit = Fit(words, distance, radius, radius)
     if abs(numbers.of(distance) - numbers.of(radius)) > FITTING * numbers.of(radius):
         raise DeclarationError(f"{what}: {fit.refusal(numbers.of(distance), numbers.of(radius))}")
@@ -192,13 +250,25 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
     t = cross(u, e)
     force = minus(t, times(_tan(teeth.helix), u))
     apart = times(-(_tan(teeth.pressure) / _cos(teeth.helix)), e)
-    return Pitch("rack", times(radius, e), force, apart, times(radius, e), -_sign(numbers, dot(t, d)), e, u, u, fits)
+    return Pitch(
+        "rack",
+        times(radius, e),
+        force,
+        apart,
+        times(radius, e),
+        -_sign(numbers, dot(t, d)),
+        e,
+        u,
+        u,
+        fits,
+    )
 
 
 def _refuse_beside(what: str, numbers: Numbers, beside: Expression, size: Expression) -> None:
     if abs(numbers.of(beside)) > FITTING * numbers.of(size):
         raise DeclarationError(
-            f"{what}: its parts are {numbers.of(beside):.6g} m beside each other along the axis; expected centres in one plane"
+            f"{what}: its parts are {numbers.of(beside):.6g} m beside each other along the axis;"
+            " expected centres in one plane"
         )
 
 

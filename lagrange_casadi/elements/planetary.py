@@ -1,4 +1,6 @@
-"""Planetary gear sets: planets on a carrier between a sun and a ring, which share the load evenly."""
+"""Planetary gear sets: planets on a carrier between a sun and a ring,
+which share the load evenly.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,11 @@ from .wheel import wheel
 
 @dataclass(frozen=True, eq=False)
 class Planetary:
-    """A planetary set: its ``planets``, which ``pins`` hold on the carrier, and how they mesh with ``sun`` and ``ring``.
+    """A planetary set: its ``planets``, which ``pins`` hold on the carrier, and how they mesh with
+    ``sun`` and ``ring``.
 
-    ``centres`` is the distance from the sun's axis to the pins [m]. The multiplier of the one mesh with the sun is the force on
-    each planet.
+    ``centres`` is the distance from the sun's axis to the pins [m]. The multiplier of the one mesh
+    with the sun is the force on each planet.
     """
 
     planets: tuple[Link, ...]
@@ -47,16 +50,18 @@ def planetary(
     pressure_angle: Expression = "20 deg",
     efficiency: Expression | None = None,
 ) -> Planetary:
-    """Declare the planets of a planetary set in a plane: links NAME_planet_1 and so on, pins NAME_pin_1, and how they mesh.
+    """Declare the planets of a planetary set in a plane: links NAME_planet_1 and so on, pins
+    NAME_pin_1, and how they mesh.
 
     Parameters
     ----------
     sun, carrier, ring
-        The points in the middle of the three, each a body that a revolute joint lets turn about it; one of them may be the ground,
-        or welded to it. A link stands for its base. A carrier has its mass told with centre and inertia, because pins are all
-        round it.
+        The points in the middle of the three, each a body that a revolute joint lets turn about it;
+        one of them may be the ground, or welded to it. A link stands for its base. A carrier has
+        its mass told with centre and inertia, because pins are all round it.
     teeth
-        Numbers of teeth of sun, planets and ring. The ring has as many as the sun and twice a planet.
+        Numbers of teeth of sun, planets and ring. The ring has as many as the sun and twice a
+        planet.
     module
         The module [m].
     planets
@@ -66,31 +71,40 @@ def planetary(
     pressure_angle, efficiency
         As of :func:`.gears`; the efficiency is that of each mesh.
 
-    Notes
-    -----
-    The planets share the load evenly. The mesh with the sun is NAME_sun, those with the ring NAME_ring_1 and so on, with the
-    outputs of :func:`.gears`, all of one planet.
+    Notes ----- The planets share the load evenly. The mesh with the sun is NAME_sun, those with the
+    ring NAME_ring_1 and so on, with the outputs of :func:`.gears`, all of one planet.
 
     Raises :class:`.DeclarationError` for teeth that do not fit, and as :func:`.gears` does.
     """
     what, own = f"planetary set '{name}'", mechanism.own
     if mechanism.space:
-        raise DeclarationError(f"{what}: it lies in a plane; in space declare planets, pins and gears")
-    if not isinstance(teeth, (list, tuple)) or len(teeth) != 3 or any(type(count) is not int or count < 1 for count in teeth):
-        raise DeclarationError(f"{what}: teeth must be three whole numbers, of sun, planets and ring, got {teeth!r}")
+        raise DeclarationError(
+            f"{what}: it lies in a plane; in space declare planets, pins and gears"
+        )
+    if (
+        not isinstance(teeth, (list, tuple))
+        or len(teeth) != 3
+        or any(type(count) is not int or count < 1 for count in teeth)
+    ):
+        raise DeclarationError(
+            f"{what}: teeth must be three whole numbers, of sun, planets and ring, got {teeth!r}"
+        )
     of_sun, of_planet, of_ring = teeth
     if of_ring != of_sun + 2 * of_planet:
         raise DeclarationError(
-            f"{what}: its ring has {of_ring} teeth; expected {of_sun + 2 * of_planet}, those of the sun and twice those of a planet"
+            f"{what}: its ring has {of_ring} teeth; expected {of_sun + 2 * of_planet}, those of the"
+            " sun and twice those of a planet"
         )
     if type(planets) is not int or planets < 1 or (of_sun + of_ring) % planets:
         raise DeclarationError(
-            f"{what}: {planets!r} planets cannot be evenly round; expected a number that divides {of_sun + of_ring}, the teeth of "
-            "sun and ring together"
+            f"{what}: {planets!r} planets cannot be evenly round; expected a number that divides"
+            f" {of_sun + of_ring}, the teeth of sun and ring together"
         )
     apart = of_planet + 2
     if planets > 1 and apart > (of_sun + of_planet) * math.sin(math.pi / planets):
-        raise DeclarationError(f"{what}: {planets} planets of {of_planet} teeth have no room round a sun of {of_sun}")
+        raise DeclarationError(
+            f"{what}: {planets} planets of {of_planet} teeth have no room round a sun of {of_sun}"
+        )
     size = own.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
     middle, centres = own.point(what, carrier), size * (of_sun + of_planet) / 2
@@ -100,14 +114,30 @@ def planetary(
         # So turned that teeth are drawn in gaps where sun and carrier are at zero.
         turned = angle + math.pi - (math.pi - of_sun * angle) / of_planet
         radius = size * of_planet / 2
-        planet = wheel(mechanism, f"{name}_planet_{k + 1}", radius=radius, mass=mass, width=width, teeth=of_planet, turned=turned)
-        spot = Point(middle.body, middle.x + centres * math.cos(angle), middle.y + centres * math.sin(angle))
+        planet = wheel(
+            mechanism,
+            f"{name}_planet_{k + 1}",
+            radius=radius,
+            mass=mass,
+            width=width,
+            teeth=of_planet,
+            turned=turned,
+        )
+        spot = Point(
+            middle.body, middle.x + centres * math.cos(angle), middle.y + centres * math.sin(angle)
+        )
         found.append(planet)
         pins.append(mechanism.revolute(f"{name}_pin_{k + 1}", spot, planet))
     body = middle.body
-    told = {"module": size, "pressure_angle": pressure_angle, "efficiency": efficiency, "carrier": body}
+    told = {
+        "module": size,
+        "pressure_angle": pressure_angle,
+        "efficiency": efficiency,
+        "carrier": body,
+    }
     inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **told)
     outer = tuple(
-        gears(mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **told) for k, planet in enumerate(found)
+        gears(mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **told)
+        for k, planet in enumerate(found)
     )
     return Planetary(tuple(found), tuple(pins), inner, outer, centres)

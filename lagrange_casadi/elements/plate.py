@@ -1,4 +1,6 @@
-"""Plates: rigid bodies of any polygon, whose mass, centre and moment of inertia follow from their corners."""
+"""Plates: rigid bodies of any polygon, whose mass, centre and moment of inertia follow from their
+corners.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ class Plate:
     def corner(self, number: int) -> Point:
         """A corner, the first is 0. Raises :class:`.DeclarationError` for a number of none."""
         if type(number) is not int or not 0 <= number < len(self.corners):
-            raise DeclarationError(f"'{self.link.name}': corner {number!r} is none of 0 to {len(self.corners) - 1}")
+            raise DeclarationError(
+                f"'{self.link.name}': corner {number!r} is none of 0 to {len(self.corners) - 1}"
+            )
         return self.corners[number]
 
     def at(self, x: Expression, y: Expression) -> Point:
@@ -44,43 +48,61 @@ def plate(
     mass: Expression | None = None,
     per_area: Expression | None = None,
 ) -> Plate:
-    """Declare a rigid plate in the plane, a polygon whose ``corners`` (x, y) [m] follow each other round it, either way.
+    """Declare a rigid plate in the plane, a polygon whose ``corners`` (x, y) [m] follow each other
+    round it, either way.
 
-    They are in axes of the plate's own: the direction of the link ``name``, as in a posture, is that of these axes. The plate is
-    even: its ``mass`` [kg], or what it has ``per_area`` [kg/m^2], thickness times density. All may be expressions of parameters.
-    It has no sections; what is to have some is a :func:`.bent_bar`.
+    They are in axes of the plate's own: the direction of the link ``name``, as in a posture, is
+    that of these axes. The plate is even: its ``mass`` [kg], or what it has ``per_area`` [kg/m^2],
+    thickness times density. All may be expressions of parameters. It has no sections; what is to
+    have some is a :func:`.bent_bar`.
 
-    Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that cross, no area.
+    Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that
+    cross, no area.
     """
     what = f"plate '{name}'"
     if mechanism.space:
-        raise DeclarationError(f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia")
+        raise DeclarationError(
+            f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia"
+        )
     if not isinstance(corners, Sequence) or len(corners) < 3:
         raise DeclarationError(f"{what}: expected three corners or more")
     places = []
     for k, corner in enumerate(corners):
         if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
             raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
-        places.append(tuple(mechanism.own.expression(f"{what}: corner {k}", number, "m") for number in corner))
+        places.append(
+            tuple(mechanism.own.expression(f"{what}: corner {k}", number, "m") for number in corner)
+        )
     if (mass is None) == (per_area is None):
         raise DeclarationError(f"{what}: give its mass, or what it has per_area")
     _refuse_crossing(what, places)
     area, x, y, second = area_of(places)
     if isinstance(area, float) and area == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
-    told: Any = mechanism.own.expression(what, mass, "kg") if per_area is None else mechanism.own.expression(what, per_area)
+    told: Any = (
+        mechanism.own.expression(what, mass, "kg")
+        if per_area is None
+        else mechanism.own.expression(what, per_area)
+    )
     whole = told if per_area is None else ca.fabs(ca.SX(area)) * told
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))
-    link = mechanism.link(name, length=plain(farthest), mass=plain(whole), centre=(x, y), inertia=plain(whole * second))
+    link = mechanism.link(
+        name,
+        length=plain(farthest),
+        mass=plain(whole),
+        centre=(x, y),
+        inertia=plain(whole * second),
+    )
     link = replace(link, outline=tuple(places))
     mechanism.bodies[name] = link
     return Plate(link, tuple(link.at(*corner) for corner in places))
 
 
 def area_of(places: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
-    """The area of a polygon, with its sign, the place of its centre, and its second moment about that over its area [m^2].
+    """The area of a polygon, with its sign, the place of its centre, and its second moment about
+    that over its area [m^2].
 
     Seen from the first corner, so that a plate far from its axes loses no digits.
     """
@@ -107,7 +129,8 @@ def _refuse_crossing(what: str, places: Sequence[Any]) -> None:
     for (i, first), (j, second) in itertools.combinations(enumerate(edges), 2):
         if j - i not in (1, count - 1) and _cross(*first, *second):
             raise DeclarationError(
-                f"{what}: the edges from corners {i} and {j} cross; expected the corners in their order round it"
+                f"{what}: the edges from corners {i} and {j} cross; expected the corners in their"
+                " order round it"
             )
 
 

@@ -1,8 +1,10 @@
-"""The lift of a follower from a profile of a disc cam, drawn or measured: points of the cam, to the law of its follower.
+"""The lift of a follower from a profile of a disc cam, drawn or measured: points of the cam, to the
+law of its follower.
 
-The normal of the profile at a point tells where the follower's point is while it touches there, in the cam's axes: a roller's
-radius beyond the point. How far that is from the cam's centre tells the follower's place; in which direction it is, the cam's
-angle. A flat face touches where the normal is its own.
+The normal of the profile at a point tells where the follower's point is while it touches there, in
+the cam's axes: a roller's radius beyond the point. How far that is from the cam's centre tells the
+follower's place; in which direction it is, the cam's angle. A flat face touches where the normal is
+its own.
 """
 
 from __future__ import annotations
@@ -32,9 +34,11 @@ _LEAST = 16
 
 @dataclass(frozen=True, eq=False)
 class ProfileLift:
-    """The lift that a profile gives a follower, by the cam's angle: call it as :func:`.disc_cam` does.
+    """The lift that a profile gives a follower, by the cam's angle: call it as :func:`.disc_cam`
+    does.
 
-    ``curve`` goes smoothly through the lift [m or rad] at the angles of the points; ``base_radius`` [m] is that of the base circle.
+    ``curve`` goes smoothly through the lift [m or rad] at the angles of the points; ``base_radius``
+    [m] is that of the base circle.
     """
 
     curve: Curve
@@ -47,12 +51,14 @@ class ProfileLift:
 
 @public
 def read_profile(path: str | os.PathLike[str]) -> Array:
-    """The points of a profile from a CSV file, (n, 2) [m], of its columns ``x`` and ``y``, beside others.
+    """The points of a profile from a CSV file, (n, 2) [m], of its columns ``x`` and ``y``, beside
+    others.
 
-    They are in m; other units stand with the column, as ``x [mm]``: m, mm, um. :meth:`.CamProfile.save_csv` writes such a file.
+    They are in m; other units stand with the column, as ``x [mm]``: m, mm, um.
+    :meth:`.CamProfile.save_csv` writes such a file.
 
-    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for columns that are missing, and for a
-    line that has no numbers there.
+    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for
+    columns that are missing, and for a line that has no numbers there.
     """
     rows = read_rows(path, "the columns x and y")
     first = next(rows)
@@ -61,18 +67,26 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
     places = []
     for column in "xy":
         if names.count(column) != 1:
-            raise DeclarationError(f"{first.where}: expected one column '{column}', as in x [mm], got {', '.join(first.cells)}")
+            raise DeclarationError(
+                f"{first.where}: expected one column '{column}', as in x [mm], got"
+                f" {', '.join(first.cells)}"
+            )
         head = heads[names.index(column)]
         unit = (head.group(2) if head else None) or "m"
         if unit not in _UNITS:
-            raise DeclarationError(f"{first.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(_UNITS)}")
+            raise DeclarationError(
+                f"{first.where}: column '{column}' cannot be in '{unit}'; valid:"
+                f" {', '.join(_UNITS)}"
+            )
         places.append((names.index(column), _UNITS[unit]))
     points = []
     for row in rows:
         points.append([row.number(row.cells[place], unit) for place, unit in places])
         for column, (place, _), number in zip("xy", places, points[-1], strict=True):
             if math.isnan(number):
-                raise DeclarationError(f"{row.where}: expected a finite number for {column}, got {row.cells[place]!r}")
+                raise DeclarationError(
+                    f"{row.where}: expected a finite number for {column}, got {row.cells[place]!r}"
+                )
     return np.array(points).reshape(-1, 2)
 
 
@@ -89,18 +103,22 @@ def profile_lift(
     side: int = 1,
     smoothing: float = 0.0,
 ) -> ProfileLift:
-    """The lift of a follower on a profile: what :func:`.disc_cam` takes, with the same joints and the same follower.
+    """The lift of a follower on a profile: what :func:`.disc_cam` takes, with the same joints and
+    the same follower.
 
-    ``points`` (n, 2) [m] go once round the profile, either way, seen from the cam's shaft in the cam's own axes; or they are the
-    path of a file that :func:`read_profile` reads. ``cam``, ``follower``, ``point``, ``roller``, ``flat`` and ``side`` are those of
-    :func:`.disc_cam`; dimensions are taken at the default parameters. ``smoothing`` is the noise of the lift, in the root mean
-    square [m or rad], where points were measured: accelerations are second derivatives, and magnify noise.
+    ``points`` (n, 2) [m] go once round the profile, either way, seen from the cam's shaft in the
+    cam's own axes; or they are the path of a file that :func:`read_profile` reads. ``cam``,
+    ``follower``, ``point``, ``roller``, ``flat`` and ``side`` are those of :func:`.disc_cam`;
+    dimensions are taken at the default parameters. ``smoothing`` is the noise of the lift, in the
+    root mean square [m or rad], where points were measured: accelerations are second derivatives,
+    and magnify noise.
 
-    Normals are those of a cubic spline through the points, periodic, along its chords: the lift's error goes as the fourth power of
-    the distance of points where the profile is smooth.
+    Normals are those of a cubic spline through the points, periodic, along its chords: the lift's
+    error goes as the fourth power of the distance of points where the profile is smooth.
 
-    Raises :class:`.DeclarationError` for points that are no profile, a follower that cannot touch all of it, as a roller that is
-    larger than a hollow, and as :func:`.disc_cam` and :func:`.curve` do; :class:`.PathError` for a file that cannot be read.
+    Raises :class:`.DeclarationError` for points that are no profile, a follower that cannot touch
+    all of it, as a roller that is larger than a hollow, and as :func:`.disc_cam` and :func:`.curve`
+    do; :class:`.PathError` for a file that cannot be read.
     """
     what = "profile"
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base=1.0)
@@ -110,7 +128,14 @@ def profile_lift(
         return float(mechanism.number(expression, values))
 
     away, arm = (np.array([number(x) for x in pair]) for pair in (layout.away, layout.arm))
-    at, normal = _normals(what, read_profile(points) if isinstance(points, (str, os.PathLike)) else np.asarray(points, float))
+    at, normal = _normals(
+        what,
+        (
+            read_profile(points)
+            if isinstance(points, (str, os.PathLike))
+            else np.asarray(points, float)
+        ),
+    )
     radius = number(layout.roller)
     if follower.kind == "prismatic":
         up = np.array([number(x) for x in follower.axis[:2]])
@@ -123,7 +148,11 @@ def profile_lift(
         reach, length = math.hypot(*away), math.hypot(*arm)
         found = _law(what, *_swinging(at, normal, away, length, radius, side, flat), smoothing)
         least = _least(found)
-        base = reach * math.sin(least) if flat else math.sqrt(length**2 + reach**2 - 2 * length * reach * math.cos(least)) - radius
+        base = (
+            reach * math.sin(least)
+            if flat
+            else math.sqrt(length**2 + reach**2 - 2 * length * reach * math.cos(least)) - radius
+        )
     cells = tuple((cell[0] - least, *cell[1:]) for cell in found.cells)
     return ProfileLift(replace(found, cells=cells), base)
 
@@ -131,7 +160,9 @@ def profile_lift(
 def _normals(what: str, points: Array) -> tuple[Array, Array]:
     """Points in counter-clockwise sequence and the normals outward there, each (n, 2)."""
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-        raise DeclarationError(f"{what}: expected points (x, y), finite numbers, got an array of shape {points.shape}")
+        raise DeclarationError(
+            f"{what}: expected points (x, y), finite numbers, got an array of shape {points.shape}"
+        )
     size = float(np.abs(points).max(initial=0.0))
     if points.shape[0] > 1 and np.abs(points[-1] - points[0]).max() <= 1e-9 * size:
         points = points[:-1]
@@ -144,30 +175,52 @@ def _normals(what: str, points: Array) -> tuple[Array, Array]:
     closed = np.vstack([points, points[:1]])
     steps = np.hypot(*np.diff(closed, axis=0).T)
     if not steps.min() > 1e-9 * size:
-        raise DeclarationError(f"{what}: points {int(np.argmin(steps)) + 1} and the next lie on each other")
+        raise DeclarationError(
+            f"{what}: points {int(np.argmin(steps)) + 1} and the next lie on each other"
+        )
     way = np.concatenate([[0.0], np.cumsum(steps)])
-    slopes = [[cell[1] for cell in curve(way.tolist(), row.tolist(), periodic=True).cells] for row in closed.T]
+    slopes = [
+        [cell[1] for cell in curve(way.tolist(), row.tolist(), periodic=True).cells]
+        for row in closed.T
+    ]
     along = np.array(slopes).T
-    if np.sum(np.unwrap(np.arctan2(points[:, 1], points[:, 0])[[*range(len(points)), 0]])[[0, -1]] * [-1, 1]) < math.pi:
-        raise DeclarationError(f"{what}: its points do not go round the cam's shaft, which is at (0, 0)")
+    if (
+        np.sum(
+            np.unwrap(np.arctan2(points[:, 1], points[:, 0])[[*range(len(points)), 0]])[[0, -1]]
+            * [-1, 1]
+        )
+        < math.pi
+    ):
+        raise DeclarationError(
+            f"{what}: its points do not go round the cam's shaft, which is at (0, 0)"
+        )
     return points, np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
 
 
-def _sliding(at: Array, normal: Array, up: Array, offset: float, radius: float, flat: bool) -> tuple[Array, Array]:
+def _sliding(
+    at: Array, normal: Array, up: Array, offset: float, radius: float, flat: bool
+) -> tuple[Array, Array]:
     """The cam's angle and the follower's place along its line while each point is touched."""
     if flat:
         return math.atan2(up[1], up[0]) - _direction(normal), np.sum(at * normal, axis=1)
     pitch = at + radius * normal
     reach = np.hypot(*pitch.T)
     if reach.min() < abs(offset):
-        raise DeclarationError(f"profile: the follower's line passes beside it, {abs(offset):.6g} m from the cam's shaft")
+        raise DeclarationError(
+            f"profile: the follower's line passes beside it, {abs(offset):.6g} m from the cam's"
+            " shaft"
+        )
     height = np.sqrt(reach**2 - offset**2)
     place = offset * np.array([up[1], -up[0]]) + height[:, None] * up
     return _direction(place) - _direction(pitch), height
 
 
-def _swinging(at: Array, normal: Array, away: Array, arm: float, radius: float, side: int, flat: bool) -> tuple[Array, Array]:
-    """The cam's angle, and the follower's angle from the line to the cam's shaft, while each point is touched."""
+def _swinging(
+    at: Array, normal: Array, away: Array, arm: float, radius: float, side: int, flat: bool
+) -> tuple[Array, Array]:
+    """The cam's angle, and the follower's angle from the line to the cam's shaft, while each point
+    is touched.
+    """
     reach = math.hypot(*away)
     line = math.atan2(-away[1], -away[0])
     if flat:
@@ -187,14 +240,16 @@ def _swinging(at: Array, normal: Array, away: Array, arm: float, radius: float, 
 
 
 def _law(what: str, angle: Array, height: Array, smoothing: float) -> Curve:
-    """The curve through the follower's places at angles that fall while the profile is gone round."""
+    """The curve through the follower's places at angles that fall while the
+    profile is gone round.
+    """
     turned = np.unwrap(np.concatenate([angle, angle[:1]]))
     steps = -np.diff(turned)
     if not (steps > 0.0).all() or abs(steps.sum() - math.tau) > 1e-6:
         bad = int(np.argmin(steps)) + 1
         raise DeclarationError(
-            f"{what}: the follower cannot touch it near its point {bad}, counted counter-clockwise: it is hollow there, or its "
-            "points are too rough"
+            f"{what}: the follower cannot touch it near its point {bad}, counted counter-clockwise:"
+            " it is hollow there, or its points are too rough"
         )
     order = slice(None, None, -1)
     x, y = turned[order], np.concatenate([height, height[:1]])[order]
@@ -214,7 +269,8 @@ def _least(found: Curve) -> float:
     ends = np.append(starts[1:], starts[0] + found.high - found.low) - starts
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.sqrt(c2**2 - 3.0 * c1 * c3)
-        # The root of c1 + 2 c2 u + 3 c3 u^2 where the slope rises, in the form that loses no digits.
+        # The root of c1 + 2 c2 u + 3 c3 u^2 where the slope rises, in the form that loses no
+        # digits.
         within = np.where(c2 > 0.0, -c1 / (c2 + root), (root - c2) / (3.0 * c3))
     u = np.where((within > 0.0) & (within < ends), within, 0.0)
     return float((c0 + u * (c1 + u * (c2 + u * c3))).min())

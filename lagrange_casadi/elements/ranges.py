@@ -1,4 +1,6 @@
-"""What numbers of parts must be: numbers are refused where a part is declared, expressions for values of parameters."""
+"""What numbers of parts must be: numbers are refused where a part is declared, expressions for
+values of parameters.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ def whole(what: str, told: str, value: Expression) -> list[Fit]:
         nearest = ca.fmax(ca.floor(value + 0.5), 1.0)
         return [Fit(f"{told} must be whole, and 1 or more, got {{got}}", value, nearest, 1.0)]
     if value < 1.0 or abs(value - round(value)) > FITTING:
-        raise DeclarationError(f"{what}: {told} must be whole, and 1 or more, got {readable(value)}")
+        raise DeclarationError(
+            f"{what}: {told} must be whole, and 1 or more, got {readable(value)}"
+        )
     return []
 
 

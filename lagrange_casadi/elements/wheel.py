@@ -1,4 +1,6 @@
-"""Wheels: gears, pulleys and flywheels as round bodies, whose mass and moments of inertia follow from what they are made of."""
+"""Wheels: gears, pulleys and flywheels as round bodies, whose mass and moments of inertia follow
+from what they are made of.
+"""
 
 from __future__ import annotations
 
@@ -29,23 +31,32 @@ def wheel(
     internal: bool = False,
     turned: float | str = 0.0,
 ) -> Link:
-    """Declare a round disc about its base, and return it as a link: a gear by its pitch radius, a pulley, a flywheel.
+    """Declare a round disc about its base, and return it as a link: a gear by its pitch radius, a
+    pulley, a flywheel.
 
-    ``radius`` and ``bore`` are its outer and inner radius [m]; a ring has a large bore. Its ``mass`` [kg] is told, or follows from
-    its ``width`` [m] and its ``density`` [kg/m^3], steel's by default. In space it lies in the plane of its y and z axes, the
-    middle of its width at the base. It has no sections: what is to have some is a shaft that it is welded on, or a link of its own.
+    ``radius`` and ``bore`` are its outer and inner radius [m]; a ring has a large bore. Its
+    ``mass`` [kg] is told, or follows from its ``width`` [m] and its ``density`` [kg/m^3], steel's
+    by default. In space it lies in the plane of its y and z axes, the middle of its width at the
+    base. It has no sections: what is to have some is a shaft that it is welded on, or a link of its
+    own.
 
-    In the plane it is drawn round, or with a number of ``teeth``, the first at the angle ``turned`` [rad]: on its radius, or where
-    ``internal`` on its bore, which are those of the pitch circle then.
+    In the plane it is drawn round, or with a number of ``teeth``, the first at the angle ``turned``
+    [rad]: on its radius, or where ``internal`` on its bore, which are those of the pitch circle
+    then.
 
     Raises :class:`.DeclarationError` for sizes that cannot be.
     """
     what, own = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: give its mass, or its width and density")
-    outer, inner = own.expression(f"{what}: radius", radius, "m"), own.expression(f"{what}: bore", bore, "m")
+    outer, inner = (
+        own.expression(f"{what}: radius", radius, "m"),
+        own.expression(f"{what}: bore", bore, "m"),
+    )
     if isinstance(outer, float) and isinstance(inner, float) and not 0.0 <= inner < outer:
-        raise DeclarationError(f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m")
+        raise DeclarationError(
+            f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m"
+        )
     thick = 0.0 if width is None else own.expression(f"{what}: width", width, "m")
     told = own.expression(f"{what}: mass", mass, "kg") if mass is not None else None
     density = own.expression(f"{what}: density", density)
@@ -54,7 +65,9 @@ def wheel(
     polar = whole * (outer * outer + inner * inner) / 2
     if isinstance(mechanism, SpatialMechanism):
         across = polar / 2 + whole * thick * thick / 12
-        return mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across))
+        return mechanism.link(
+            name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across)
+        )
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
     teeth = None if teeth is None else count(f"{what}: teeth", teeth)
     edges = [
@@ -70,7 +83,9 @@ _Corners = list[tuple[Expression, Expression]]
 
 
 def _outline(outer: _Corners, inner: _Corners) -> tuple[tuple[Expression, Expression], ...]:
-    """The outer edge, and the inner one where there is one: along a line inward, round, and back."""
+    """The outer edge, and the inner one where there is one: along a
+    line inward, round, and back.
+    """
     return (*outer, *([outer[0], inner[0], *reversed(inner)] if inner else ()))
 
 

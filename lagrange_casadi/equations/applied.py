@@ -49,17 +49,30 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
     rate = dot(apart, closing) / distance
     tension = at(load.stiffness) * (distance - at(load.length)) + at(load.damping) * rate
     x, y, z = (tension * component / distance for component in apart)
-    return [Applied(load.name, load.first, (x, y, z)), Applied(load.name, load.second, times(-1, (x, y, z)))]
+    return [
+        Applied(load.name, load.first, (x, y, z)),
+        Applied(load.name, load.second, times(-1, (x, y, z))),
+    ]
 
 
-def held_by(resting: Grown, name: str, expression: Any, of: LoopEquations | RowGraph) -> Iterator[Applied]:
-    """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a place, a direction."""
-    multiplier, seen = (of.multipliers, resting.counted) if isinstance(of, LoopEquations) else (of.multiplier, resting.at_state)
+def held_by(
+    resting: Grown, name: str, expression: Any, of: LoopEquations | RowGraph
+) -> Iterator[Applied]:
+    """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a
+    place, a direction.
+    """
+    multiplier, seen = (
+        (of.multipliers, resting.counted)
+        if isinstance(of, LoopEquations)
+        else (of.multiplier, resting.at_state)
+    )
     for measure in resting.mechanism.measures.asked:
         symbols = ca.vertcat(*(measure.places if isinstance(of, LoopEquations) else measure.rates))
         if not ca.depends_on(expression, symbols):
             continue
-        part = [multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
+        part = [
+            multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)
+        ]
         if isinstance(measure.of, Point):
             x, y, z = (*part, 0.0)[:3]
             yield Applied(name, measure.of, (x, y, z))
@@ -70,8 +83,12 @@ def held_by(resting: Grown, name: str, expression: Any, of: LoopEquations | RowG
             yield from _along_coordinate(resting, name, measure.of, measure.axis, part[0])
 
 
-def work(felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations], velocities: Velocities) -> None:
-    """Let loads and multipliers do work: along the velocities of points, and of what a closing joint holds together."""
+def work(
+    felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations], velocities: Velocities
+) -> None:
+    """Let loads and multipliers do work: along the velocities of points, and of what a closing
+    joint holds together.
+    """
     for part in applied:
         frame = felt.frames[part.point.body.name]
         _bear(velocities, frame.motion_of(part.point.place), part.force)
@@ -80,15 +97,24 @@ def work(felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations]
         if loop.bar is not None:
             frame = felt.frames[loop.bar.link.name]
             (speed, acceleration), (last_speed, last_acceleration) = (
-                frame.motion_of((place, 0.0, 0.0)) for place in (loop.bar.start, loop.bar.start + loop.bar.length)
+                frame.motion_of((place, 0.0, 0.0))
+                for place in (loop.bar.start, loop.bar.start + loop.bar.length)
             )
             along = times(loop.multipliers, frame.rotation.x)
-            _bear(velocities, (minus(last_speed, speed), minus(last_acceleration, acceleration)), along)
+            _bear(
+                velocities,
+                (minus(last_speed, speed), minus(last_acceleration, acceleration)),
+                along,
+            )
         if loop.joint is not None:
             parent, child = felt.ends(loop.joint)
             force, moment = reaction(loop.joint, parent, child, loop.multipliers)
             _bear(velocities, gap_motion(loop.joint, parent, child), force)
-            _bear(velocities, (minus(child.rate, parent.rate), minus(child.angular, parent.angular)), moment)
+            _bear(
+                velocities,
+                (minus(child.rate, parent.rate), minus(child.angular, parent.angular)),
+                moment,
+            )
 
 
 def push(felt: Grown, joint: Joint, axis: Axis, effort: Any, velocities: Velocities) -> None:
@@ -105,14 +131,19 @@ def _bear(velocities: Velocities, motion: tuple[Vector, Vector], force: Vector) 
 
 
 def _vector(resting: Grown, components: Vector) -> Vector:
-    x, y, z = (component if isinstance(component, float) else resting.at_state(component) for component in components)
+    x, y, z = (
+        component if isinstance(component, float) else resting.at_state(component)
+        for component in components
+    )
     return x, y, z
 
 
 def _along(load: LineLoad, resting: Grown) -> Applied:
-    """A load along a link: its coefficients on the link's axes, and its resultant at the middle of the part on which it acts.
+    """A load along a link: its coefficients on the link's axes, and its resultant at the middle of
+    the part on which it acts.
 
-    For a power j of s = (end - xi)/(end - start) the integrals of s^j and of s^j (1/2 - s) from 0 to 1 tell force and couple.
+    For a power j of s = (end - xi)/(end - start) the integrals of s^j and of s^j (1/2 - s) from 0
+    to 1 tell force and couple.
     """
     rotation, reach = resting.frames[load.link.name].rotation, load.reach
     told = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
@@ -121,12 +152,16 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
     for power, (there, here) in enumerate(zip(told, own, strict=True)):
         whole = plus(whole, times(reach / (power + 1), there))
         turning = cross(AXES[0], here) if power else ZERO
-        couple = plus(couple, times(-(reach * reach) * (power / (2 * (power + 1) * (power + 2))), turning))
+        couple = plus(
+            couple, times(-(reach * reach) * (power / (2 * (power + 1) * (power + 2))), turning)
+        )
     force = rotation.apply(whole) if load.turning else whole
     return Applied(load.name, load.points[0], force, rotation.apply(couple), tuple(own))
 
 
-def _along_coordinate(resting: Grown, name: str, joint: Joint, axis: Axis, force: Any) -> Iterator[Applied]:
+def _along_coordinate(
+    resting: Grown, name: str, joint: Joint, axis: Axis, force: Any
+) -> Iterator[Applied]:
     """What works along a joint's coordinate does to its bodies."""
     parent, child = resting.ends(joint)
     along = times(force, resting.along(joint, axis))
@@ -135,4 +170,8 @@ def _along_coordinate(resting: Grown, name: str, joint: Joint, axis: Axis, force
         x, y, z = carried(joint, parent, child)
         under = Point(joint.parent.body, x, y, z=z)
     for point, force in ((joint.child, along), (under, times(-1, along))):
-        yield Applied(name, point, couple=force) if axis.kind == "angle" else Applied(name, point, force)
+        yield (
+            Applied(name, point, couple=force)
+            if axis.kind == "angle"
+            else Applied(name, point, force)
+        )

@@ -1,9 +1,10 @@
 """Grows the graphs of a mechanism outward from the ground, along its spanning tree.
 
-Kinetic energy of bodies (paper eq. 16) is in velocities of points and of directions: no direction itself is in it. In space a
-rigid body's energy is that of its centre and of its axes e: E = m v^2 / 2 + sum J_ij e_i' . e_j' / 2 with the second moments
-J = tr(I) / 2 - I of its mass about the centre. The rates of the axes are rates of places, as a Lagrange system needs them; the
-angular velocity is not. A slender link has but one such axis; one whose slices have rotary inertia has the others too.
+Kinetic energy of bodies (paper eq. 16) is in velocities of points and of directions: no direction
+itself is in it. In space a rigid body's energy is that of its centre and of its axes e: E = m v^2 /
+2 + sum J_ij e_i' . e_j' / 2 with the second moments J = tr(I) / 2 - I of its mass about the centre.
+The rates of the axes are rates of places, as a Lagrange system needs them; the angular velocity is
+not. A slender link has but one such axis; one whose slices have rotary inertia has the others too.
 """
 
 from __future__ import annotations
@@ -40,51 +41,96 @@ def assemble(
     pushed: Collection[str] = (),
     own: Collection[str] = (),
 ) -> Multibody:
-    """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for nothing else.
+    """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for
+    nothing else.
 
-    ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are unknowns of their own; ``own``
-    names the user's outputs.
+    ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are
+    unknowns of their own; ``own`` names the user's outputs.
 
-    The frames and gaps that positions are solved from are built without any mobility: they do not depend on what is wanted.
-    Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
+    The frames and gaps that positions are solved from are built without any mobility: they do not
+    depend on what is wanted. Gravity is an acceleration of the ground, upward, in the frames that
+    matter is weighed in (d'Alembert).
     """
-    seen = [measure.axis.coordinate for measure in mechanism.measures.asked if measure.axis is not None]
+    seen = [
+        measure.axis.coordinate for measure in mechanism.measures.asked if measure.axis is not None
+    ]
     carried = coordinates_of(mechanism, tree, driven, {*seen, *pushed})
     upward = times(-1, mechanism.gravity)
-    weighed = Carried(acceleration=upward, own=Frame(acceleration=upward)) if mechanism.space else Frame(acceleration=upward)
+    weighed = (
+        Carried(acceleration=upward, own=Frame(acceleration=upward))
+        if mechanism.space
+        else Frame(acceleration=upward)
+    )
     resting, felt = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
     for branch in tree.branches:
         resting.hang(branch, displace=False)
         # What acts where loops close is in ground axes.
-        felt.hang(branch, displace=branch.joint.name in reactions, along=not (tree.closing or tree.bars))
-    loops = [_loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint))) for joint in tree.closing]
-    loops += [_loop_equations(bar.link.name, None, *map(ca.SX, resting.span(bar, displace=()))) for bar in tree.bars]
-    loops[len(tree.closing) :] = [replace(loop, bar=bar) for loop, bar in zip(loops[len(tree.closing) :], tree.bars, strict=True)]
+        felt.hang(
+            branch, displace=branch.joint.name in reactions, along=not (tree.closing or tree.bars)
+        )
+    loops = [
+        _loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint)))
+        for joint in tree.closing
+    ]
+    loops += [
+        _loop_equations(bar.link.name, None, *map(ca.SX, resting.span(bar, displace=())))
+        for bar in tree.bars
+    ]
+    loops[len(tree.closing) :] = [
+        replace(loop, bar=bar)
+        for loop, bar in zip(loops[len(tree.closing) :], tree.bars, strict=True)
+    ]
     for bar in tree.bars:
         felt.span(bar, displace=[joint.name for joint in bar.joints if joint.name in reactions])
     for constraint in mechanism.constraints.values():
         gap = resting.counted(constraint.phi)
         rate = change(gap, resting.coordinates, mechanism.time)
-        equations = _loop_equations(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time))
+        equations = _loop_equations(
+            constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)
+        )
         smooth = smooth_constraint(mechanism, constraint)
-        loops.append(equations if smooth is None else replace(equations, seen=resting.counted(ca.vertcat(*smooth.symbols))))
+        loops.append(
+            equations
+            if smooth is None
+            else replace(equations, seen=resting.counted(ca.vertcat(*smooth.symbols)))
+        )
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
-    held = [part for loop in loops if loop.declared for part in _held(resting, mechanism.constraints[loop.name], loop)]
-    held += [part for graph in rows for part in held_by(resting, graph.row.name, graph.row.expression, graph)]
+    held = [
+        part
+        for loop in loops
+        if loop.declared
+        for part in _held(resting, mechanism.constraints[loop.name], loop)
+    ]
+    held += [
+        part
+        for graph in rows
+        for part in held_by(resting, graph.row.name, graph.row.expression, graph)
+    ]
     velocities = Velocities()
-    spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
+    spun = {
+        b.far.body
+        for b in tree.branches
+        if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)
+    }
     slid = {b.far.body for b in tree.branches if b.reverse and b.joint.slides}
     energies = [
         kinetic_energy(
-            body, felt.frames[body.name], velocities, space=mechanism.space, spun=body in spun and body.oriented, slid=body in slid
+            body,
+            felt.frames[body.name],
+            velocities,
+            space=mechanism.space,
+            spun=body in spun and body.oriented,
+            slid=body in slid,
         )
         for body in mechanism.moving
     ]
     kinetic = sum(energies, ca.SX(0))
     work(felt, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
-    open_ = [joint for joint in tree.closing if joint.turns > 2] + [joint for bar in tree.bars for joint in bar.joints]
+    open_ = [joint for joint in tree.closing if joint.turns > 2] + [
+        joint for bar in tree.bars for joint in bar.joints
+    ]
     balls = [c.name for c in resting.coordinates if c.ball is not None]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
@@ -124,7 +170,9 @@ def _held(resting: Grown, constraint: Constraint, loop: LoopEquations) -> Iterab
     return held_by(resting, constraint.name, constraint.phi, loop)
 
 
-def _refuse_unmeasured(name: str, joint: Joint, axis: Axis, tree: Tree, unmeasured: Collection[Joint]) -> None:
+def _refuse_unmeasured(
+    name: str, joint: Joint, axis: Axis, tree: Tree, unmeasured: Collection[Joint]
+) -> None:
     """Raise :class:`DeclarationError` for a drive along a turn that has no angle."""
     if axis.kind != "angle" or joint not in unmeasured:
         return
@@ -137,12 +185,17 @@ def _refuse_unmeasured(name: str, joint: Joint, axis: Axis, tree: Tree, unmeasur
     raise DeclarationError(f"drive '{name}': {why}; drive another joint")
 
 
-def _loop_equations(name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any) -> LoopEquations:
-    return LoopEquations(name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel()))
+def _loop_equations(
+    name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any
+) -> LoopEquations:
+    return LoopEquations(
+        name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel())
+    )
 
 
 def _row(resting: Grown, row: Any) -> RowGraph:
-    """A row, and the size of what is added up in it: rates of coordinates, in what is measured, in the row.
+    """A row, and the size of what is added up in it: rates of coordinates, in what is measured, in
+    the row.
 
     Not the size of its own terms: of a motion along which a row is idle, all of them are rounding.
     """
@@ -150,16 +203,27 @@ def _row(resting: Grown, row: Any) -> RowGraph:
     measured = resting.mechanism.measures.rates
     slopes = ca.fabs(resting.at_state(ca.jacobian(row.expression, measured)))
     going = ca.fabs(ca.jacobian(resting.at_state(measured), rates)) @ ca.fabs(rates)
-    rest = ca.fabs(resting.at_state(ca.substitute(row.expression, measured, ca.SX.zeros(measured.numel()))))
+    rest = ca.fabs(
+        resting.at_state(ca.substitute(row.expression, measured, ca.SX.zeros(measured.numel())))
+    )
     return RowGraph(row, residual, slopes @ going + rest, ca.SX.sym(f"mu_{row.name}"))
 
 
-def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities, *, space: bool, spun: bool, slid: bool) -> Any:
+def kinetic_energy(
+    body: Link | PointMass,
+    frame: Frame,
+    velocities: Velocities,
+    *,
+    space: bool,
+    spun: bool,
+    slid: bool,
+) -> Any:
     """The kinetic energy of a body that moves with a frame.
 
-    Where a body of a plane is ``spun``, its velocities are split into that of its joint and that about it: else the square of its
-    rate, which bears on no effort, would leave there its rounding. A body that is ``slid`` is held at another of its points at
-    every instant, whose velocity is the rate of no place.
+    Where a body of a plane is ``spun``, its velocities are split into that of its joint and that
+    about it: else the square of its rate, which bears on no effort, would leave there its rounding.
+    A body that is ``slid`` is held at another of its points at every instant, whose velocity is the
+    rate of no place.
     """
     if not (isinstance(body, Link) and isinstance(body.mass, Density)):
         assert not isinstance(body.mass, Density)
@@ -169,7 +233,11 @@ def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities,
     if not space:
         return _flat(points, inertia, frame, velocities, spun=spun)
     energy = _slender(points, inertia, frame, velocities, slid=slid)
-    return energy if body.mass.slices is None else energy + _turning(body.mass.slices.whole(body.length), frame, velocities)
+    return (
+        energy
+        if body.mass.slices is None
+        else energy + _turning(body.mass.slices.whole(body.length), frame, velocities)
+    )
 
 
 def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool) -> Any:
@@ -181,11 +249,21 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
             else _flat([(matter, ZERO)], 0.0, frame, velocities, spun=False)
         )
     if not space:
-        return _flat([(matter.mass, (matter.centre[0], matter.centre[1], 0.0))], matter.inertia, frame, velocities, spun=spun)
+        return _flat(
+            [(matter.mass, (matter.centre[0], matter.centre[1], 0.0))],
+            matter.inertia,
+            frame,
+            velocities,
+            spun=spun,
+        )
     (x, y, z), frame = matter.centre, frame.shortest
     energy = matter.mass * ca.sumsqr(velocities.vector(frame.motion_of((x, y, z)))) / 2
     moments = second_moments(matter.inertia)
-    axes = {i: velocities.vector(_direction(frame, AXES[i])) for i in range(3) if not all(nil(moment) for moment in moments[i])}
+    axes = {
+        i: velocities.vector(_direction(frame, AXES[i]))
+        for i in range(3)
+        if not all(nil(moment) for moment in moments[i])
+    }
     for i in axes:
         energy += moments[i][i] * ca.sumsqr(axes[i]) / 2
         for j in range(i):
@@ -194,12 +272,23 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
     return energy
 
 
-def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities, *, slid: bool) -> Any:
-    """A slender link, by the velocity of one of its points and of its axis: of the joint that holds it, or of its base."""
+def _slender(
+    points: list[tuple[Any, Vector]],
+    inertia: Any,
+    frame: Frame,
+    velocities: Velocities,
+    *,
+    slid: bool,
+) -> Any:
+    """A slender link, by the velocity of one of its points and of its axis: of the joint that holds
+    it, or of its base.
+    """
     (x, y, z), frame = frame.anchor, frame.shortest
     held = x if nil(y) and nil(z) and not slid else 0.0
     base = velocities.vector(frame.motion_of((held, 0.0, 0.0)))
-    axis = velocities.vector(frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0]))
+    axis = velocities.vector(
+        frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0])
+    )
     first, second = ca.SX(0), ca.SX(inertia)
     for mass, place in points:
         arm = place[0] - held
@@ -209,7 +298,9 @@ def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, veloc
 
 
 def _turning(moments: tuple[Any, Any, Any], frame: Frame, velocities: Velocities) -> Any:
-    """The energy of slices that turn, by their second moments yy, zz, yz and the rates of the axes in their plane."""
+    """The energy of slices that turn, by their second moments yy, zz, yz and the rates of the axes
+    in their plane.
+    """
     y, z = (velocities.vector(_direction(frame.shortest, axis)) for axis in AXES[1:])
     yy, zz, yz = moments
     return yy * ca.sumsqr(y) / 2 + zz * ca.sumsqr(z) / 2 + (0 if nil(yz) else yz * ca.dot(y, z))
@@ -220,10 +311,23 @@ def _direction(frame: Frame, axis: Vector) -> tuple[Vector, Vector]:
     return Frame(rotation=frame.rotation, rate=frame.rate, angular=frame.angular).motion_of(axis)
 
 
-def _flat(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities, *, spun: bool) -> Any:
+def _flat(
+    points: list[tuple[Any, Vector]],
+    inertia: Any,
+    frame: Frame,
+    velocities: Velocities,
+    *,
+    spun: bool,
+) -> Any:
     """A body of a plane: masses at points, and what is left of its inertia."""
     if not spun:
-        energy = sum((mass * ca.sumsqr(velocities.vector(frame.motion_of(place))) / 2 for mass, place in points), ca.SX(0))
+        energy = sum(
+            (
+                mass * ca.sumsqr(velocities.vector(frame.motion_of(place))) / 2
+                for mass, place in points
+            ),
+            ca.SX(0),
+        )
         return energy + inertia * velocities.number(frame.rate[2], frame.angular[2]) ** 2 / 2
     held, about = velocities.vector((frame.speed, frame.acceleration)), frame.about_anchor()
     energy = sum((mass for mass, _ in points), ca.SX(0)) * ca.sumsqr(held) / 2

@@ -1,12 +1,15 @@
-"""Spherical joints that loops set: their body's directions are unknowns themselves, so that no posture of it is special.
+"""Spherical joints that loops set: their body's directions are unknowns themselves, so that no
+posture of it is special.
 
-Three turns about axes lose one where the second is at a right angle (gimbal lock). A joint whose turns nothing drives, tells or
-loads needs none of them. Its body has three axes, and the components of its angular velocity on these for rates:
+Three turns about axes lose one where the second is at a right angle (gimbal lock). A joint whose
+turns nothing drives, tells or loads needs none of them. Its body has three axes, and the components
+of its angular velocity on these for rates:
 
     x' = w_z y - w_y z,    y' = w_x z - w_z x,    z' = w_y x - w_x y.
 
-Newton's method finds the axes by a quaternion, which it turns by a small rotation a step and keeps at length one (E. Hairer,
-C. Lubich and G. Wanner, *Geometric Numerical Integration*, 2006, on Lie groups). Gaps hold its direction alone, not its length.
+Newton's method finds the axes by a quaternion, which it turns by a small rotation a step and keeps
+at length one (E. Hairer, C. Lubich and G. Wanner, *Geometric Numerical Integration*, 2006, on Lie
+groups). Gaps hold its direction alone, not its length.
 """
 
 from __future__ import annotations
@@ -27,10 +30,12 @@ from .joints import orientation
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """The body that hangs on a joint with three turns, and is on no other: its ``axes`` in ground axes, nine symbols.
+    """The body that hangs on a joint with three turns, and is on no other: its ``axes`` in ground
+    axes, nine symbols.
 
-    It hangs on the body ``near``, in ``reverse`` where the tree runs from the joint's child to its parent. ``side`` stands for the
-    sign of the cosine of the second of the three turns that are told of it.
+    It hangs on the body ``near``, in ``reverse`` where the tree runs from the joint's child to its
+    parent. ``side`` stands for the sign of the cosine of the second of the three turns that are
+    told of it.
     """
 
     joint: Joint
@@ -57,12 +62,18 @@ class Ball:
         return r * y - q * z, p * z - r * x, q * x - p * y
 
     def turned_by(self, turns: Sequence[float], base: Rotation) -> Any:
-        """The axes of the body for its joint's three turns [rad] and for what it hangs on, one column."""
+        """The axes of the body for its joint's three turns [rad] and for what it hangs on, one
+        column.
+        """
         turned = Rotation()
         for axis, turn in zip(self.joint.triad, turns, strict=True):
             turned = turned.then(Rotation.about(axis, *direction(turn), turn))
         zero = orientation(self.joint)
-        found = base.then(zero.inverse).then(turned.inverse) if self.reverse else base.then(turned).then(zero)
+        found = (
+            base.then(zero.inverse).then(turned.inverse)
+            if self.reverse
+            else base.then(turned).then(zero)
+        )
         return ca.vertcat(*found.x, *found.y, *found.z)
 
     def _axis(self, k: int) -> Vector:
@@ -77,18 +88,35 @@ def axes_of(quaternion: Any) -> Any:
     wx, wy, wz = (twice * w * part for part in (x, y, z))
     xx, xy, xz = (twice * x * part for part in (x, y, z))
     yy, yz, zz = twice * y * y, twice * y * z, twice * z * z
-    return ca.vertcat(1 - (yy + zz), xy + wz, xz - wy, xy - wz, 1 - (xx + zz), yz + wx, xz + wy, yz - wx, 1 - (xx + yy))
+    return ca.vertcat(
+        1 - (yy + zz),
+        xy + wz,
+        xz - wy,
+        xy - wz,
+        1 - (xx + zz),
+        yz + wx,
+        xz + wy,
+        yz - wx,
+        1 - (xx + yy),
+    )
 
 
 def turn(quaternion: Any, rotation: Any) -> Any:
     """A quaternion turned by a rotation about its axes [rad], of length one."""
     (w, x, y, z), (a, b, c) = ca.vertsplit(quaternion), ca.vertsplit(rotation / 2)
-    moved = ca.vertcat(w - x * a - y * b - z * c, x + w * a - z * b + y * c, y + z * a + w * b - x * c, z - y * a + x * b + w * c)
+    moved = ca.vertcat(
+        w - x * a - y * b - z * c,
+        x + w * a - z * b + y * c,
+        y + z * a + w * b - x * c,
+        z - y * a + x * b + w * c,
+    )
     return moved / ca.sqrt(ca.sumsqr(moved))
 
 
 def quaternion_of(axes: Array) -> list[float]:
-    """The quaternion of three axes, the rows of a matrix: that of the largest part, so that nothing cancels (Shepperd 1978)."""
+    """The quaternion of three axes, the rows of a matrix: that of the largest part, so that nothing
+    cancels (Shepperd 1978).
+    """
     r = axes.T
     trace = float(np.trace(r))
     parts = [trace, *np.diag(r)]

@@ -1,10 +1,13 @@
-"""Bars: slender links between two spherical joints, whose spin about their own axis nothing holds and nothing feels.
+"""Bars: slender links between two spherical joints, whose spin about their own axis nothing holds
+and nothing feels.
 
-A bar has no coordinates. It lies between its two ends, wherever these are, and its length is one equation: the square of their
-distance. Its points move as its ends do, in proportion. So its energy, and the work of forces on its axis, hold nothing of a spin.
+A bar has no coordinates. It lies between its two ends, wherever these are, and its length is one
+equation: the square of their distance. Its points move as its ends do, in proportion. So its
+energy, and the work of forces on its axis, hold nothing of a spin.
 
-Its cross-section is turned as the declaration says: at every instant its y axis is the part across the bar of the direction
-``beside``, which is fixed in the ground. Without that no stress of a cross-section that is not round is told.
+Its cross-section is turned as the declaration says: at every instant its y axis is the part across
+the bar of the direction ``beside``, which is fixed in the ground. Without that no stress of a
+cross-section that is not round is told.
 """
 
 from __future__ import annotations
@@ -29,8 +32,9 @@ from ..geometry.vectors import ZERO, cross, dot, minus, nil, plus, times
 class Bar:
     """A link that is a bar, and its joints: first that nearer its base.
 
-    Its y axis is the part across it of the direction ``aside`` in ground axes: the link's ``beside``, or where none was declared
-    symbols for that of the ground's axes that is most across the bar at the start.
+    Its y axis is the part across it of the direction ``aside`` in ground axes: the link's
+    ``beside``, or where none was declared symbols for that of the ground's axes that is most across
+    the bar at the start.
     """
 
     link: Link
@@ -63,21 +67,29 @@ class Bar:
 
 @dataclass(frozen=True, eq=False)
 class BarFrame(Frame):
-    """The motion of a bar: that of its first joint, and what the bar's direction does: its rate, and the change of that."""
+    """The motion of a bar: that of its first joint, and what the bar's direction does: its rate,
+    and the change of that.
+    """
 
     course: tuple[Vector, Vector] = (ZERO, ZERO)
 
     def motion_of(self, point: Vector) -> tuple[Vector, Vector]:
-        """Velocity and acceleration of the bar's point: on its axis in proportion between its ends."""
+        """Velocity and acceleration of the bar's point: on its axis in
+        proportion between its ends.
+        """
         x, y, z = point
         if not (nil(y) and nil(z)):
             return super().motion_of(point)
         reach = x - self.anchor[0]
-        return plus(self.speed, times(reach, self.course[0])), plus(self.acceleration, times(reach, self.course[1]))
+        return plus(self.speed, times(reach, self.course[0])), plus(
+            self.acceleration, times(reach, self.course[1])
+        )
 
 
 def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
-    """The links that are bars; none where something drives, measures or loads what a spin would change."""
+    """The links that are bars; none where something drives, measures or loads what a spin would
+    change.
+    """
     if not mechanism.space:
         return ()
     found: dict[Body, Bar] = {}
@@ -85,7 +97,9 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
     for joint in mechanism.joints.values():
         for body in joint.bodies:
             ends.setdefault(body, []).append(joint)
-    seen = {measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)}
+    seen = {
+        measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)
+    }
     seen |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
     told = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     for link in mechanism.links.values():
@@ -95,9 +109,15 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
         points = [joint.on(link) for joint in joints]
         others = [body for joint in joints for body in joint.bodies if body is not link]
         balls = all(joint.kind == "spherical" and joint.name not in seen | told for joint in joints)
-        if not balls or not all(_on_axis(point) for point in points) or any(body in found for body in others):
+        if (
+            not balls
+            or not all(_on_axis(point) for point in points)
+            or any(body in found for body in others)
+        ):
             continue
-        if all(_on_axis(point) for point in _marked(mechanism, link)) and not _twisted(mechanism, link):
+        if all(_on_axis(point) for point in _marked(mechanism, link)) and not _twisted(
+            mechanism, link
+        ):
             values = parameter_values(mechanism.parameters, None)
             first, second = sorted(joints, key=lambda joint: _place(mechanism, joint, link, values))
             if _place(mechanism, first, link, values) < _place(mechanism, second, link, values):
@@ -107,34 +127,53 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
 
 
 def unaimed(link: str) -> str:
-    """Why no stress of a bar is told whose cross-section is not round and whose y axis was not declared."""
+    """Why no stress of a bar is told whose cross-section is not round and whose y axis was not
+    declared.
+    """
     return (
-        f"link '{link}' is a bar that spins freely about its line, and its cross-section is not round, so its stresses depend on "
-        "how it is turned; declare it between= two places with beside=, the direction of its y axis, or take a universal joint "
-        "for one of its spherical ones"
+        f"link '{link}' is a bar that spins freely about its line, and its cross-section is not"
+        " round, so its stresses depend on how it is turned; declare it between= two places with"
+        " beside=, the direction of its y axis, or take a universal joint for one of its spherical"
+        " ones"
     )
 
 
 def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
-    """Of links that are no bars, in words: which spins between two spherical joints nothing holds, and what to do."""
+    """Of links that are no bars, in words: which spins between two spherical joints nothing holds,
+    and what to do.
+    """
     bars, joints = [bar.link for bar in bars_of(mechanism, driven)], mechanism.joints.values()
     found = []
     for link in mechanism.links.values():
         own = [joint for joint in joints if link in joint.bodies]
-        moved = any(mechanism.coordinates[name][0] in own for name in driven if name in mechanism.coordinates)
-        if link not in bars and not moved and len(own) == 2 and all(joint.kind == "spherical" for joint in own):
+        moved = any(
+            mechanism.coordinates[name][0] in own
+            for name in driven
+            if name in mechanism.coordinates
+        )
+        if (
+            link not in bars
+            and not moved
+            and len(own) == 2
+            and all(joint.kind == "spherical" for joint in own)
+        ):
             first, second = (joint.name for joint in own)
             found.append(
-                f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is idle: give one of their turns a "
-                "motion, or the link its mass alone, so that it is a bar; where one of them rubs, make the other one universal"
+                f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is"
+                " idle: give one of their turns a motion, or the link its mass alone, so that it"
+                " is a bar; where one of them rubs, make the other one universal"
             )
     return found
 
 
-def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]) -> tuple[BarFrame, tuple[Any, Any, Any]]:
-    """A bar's frame between the bodies of its joints, displaced by the mobilities that are ``released``; and its length's equation.
+def bar_frame(
+    bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]
+) -> tuple[BarFrame, tuple[Any, Any, Any]]:
+    """A bar's frame between the bodies of its joints, displaced by the mobilities that are
+    ``released``; and its length's equation.
 
-    The latter is Phi, Phi' and Phi'' of half the square of the distance over the length, less half the length [m].
+    The latter is Phi, Phi' and Phi'' of half the square of the distance over the length, less half
+    the length [m].
     """
     places, speeds, accelerations = [], [], []
     for joint in bar.joints:
@@ -161,7 +200,11 @@ def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]
         (bar.start, 0.0, 0.0),
         course,
     )
-    gap = (dot(apart, apart) / length - length) / 2, dot(x, rate), dot(x, change) + dot(course[0], rate)
+    gap = (
+        (dot(apart, apart) / length - length) / 2,
+        dot(x, rate),
+        dot(x, change) + dot(course[0], rate),
+    )
     return frame, gap
 
 
@@ -182,7 +225,8 @@ def _marked(mechanism: Mechanism, link: Link) -> Iterator[Point]:
 def _twisted(mechanism: Mechanism, link: Link) -> bool:
     """Whether a load may twist a link, or turns with it."""
     return any(
-        (isinstance(load, Torque) or getattr(load, "turning", False)) and any(point.body is link for point in load.points)
+        (isinstance(load, Torque) or getattr(load, "turning", False))
+        and any(point.body is link for point in load.points)
         for load in mechanism.loads.values()
     )
 

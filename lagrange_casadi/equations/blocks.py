@@ -1,8 +1,10 @@
-"""The order in which loops can be solved: blocks of equations, each as small as possible, and the count of freedoms.
+"""The order in which loops can be solved: blocks of equations, each as small as possible, and the
+count of freedoms.
 
-Which coordinate stands in which equation is a sparse matrix. Its Dulmage-Mendelsohn decomposition gives the blocks: a maximum
-matching and strongly connected components (A. Pothen and C.-J. Fan, *Computing the block triangular form of a sparse matrix*,
-ACM TOMS 16, 1990). CasADi has that of CSparse.
+Which coordinate stands in which equation is a sparse matrix. Its Dulmage-Mendelsohn decomposition
+gives the blocks: a maximum matching and strongly connected components (A. Pothen and C.-J. Fan,
+*Computing the block triangular form of a sparse matrix*, ACM TOMS 16, 1990). CasADi has that of
+CSparse.
 """
 
 from __future__ import annotations
@@ -28,13 +30,15 @@ from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
 
 _ABSENT = 1e-13
-"""Of the largest slope of an equation, or of what its gaps are large beside: what stands in it by rounding alone, as a line that a
-link slides along may, or all of an equation that says nothing."""
+"""Of the largest slope of an equation, or of what its gaps are large beside: what stands in it by
+rounding alone, as a line that a link slides along may, or all of an equation that says nothing."""
 
 
 @dataclass(frozen=True, eq=False)
 class Equation:
-    """One scalar equation of a loop or constraint, with its time derivatives, in the undriven coordinates that are ``present``."""
+    """One scalar equation of a loop or constraint, with its time derivatives, in the undriven
+    coordinates that are ``present``.
+    """
 
     loop: LoopEquations
     row: int
@@ -45,14 +49,17 @@ class Equation:
 
     @property
     def aligns(self) -> bool:
-        """Whether it holds the direction of a joint's child: by its sine, which a half turn has too."""
+        """Whether it holds the direction of a joint's child: by its sine, which a half turn has
+        too.
+        """
         joint = self.loop.joint
         return joint is not None and joint.aligns and self.row == self.loop.gap.numel() - 1
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Equations solved together for ``unknown``; more equations than unknowns where the mechanism is over-constrained.
+    """Equations solved together for ``unknown``; more equations than unknowns where the mechanism
+    is over-constrained.
 
     ``forms`` solve them one after another; there are none where the block is iterated.
     """
@@ -107,11 +114,13 @@ Part = tuple[list[Equation], list[Coordinate]]
 
 
 def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
-    """The blocks in the order of solution; among those that can be solved next, first the one that fewest joints close.
+    """The blocks in the order of solution; among those that can be solved next, first the one that
+    fewest joints close.
 
-    Where the equations do not match the unknowns, the rank of their Jacobian decides, at the assembled start: equations
-    that repeat what others say are kept, in blocks with more equations than unknowns. ``start`` holds numbers at the start:
-    ``posture`` (by coordinate), ``inputs`` (symbols) and ``values``.
+    Where the equations do not match the unknowns, the rank of their Jacobian decides, at the
+    assembled start: equations that repeat what others say are kept, in blocks with more equations
+    than unknowns. ``start`` holds numbers at the start: ``posture`` (by coordinate), ``inputs``
+    (symbols) and ``values``.
 
     Raises :class:`MobilityError`, with the count of freedoms, where the drives do not match them.
     """
@@ -119,20 +128,31 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
     equations = _equations(multibody, unknown)
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
-        slopes = _require_freedom(multibody, len(equations), parts, _slopes(multibody, start), start["posture"])
+        slopes = _require_freedom(
+            multibody, len(equations), parts, _slopes(multibody, start), start["posture"]
+        )
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
-            at = {equation: k for k, equation in enumerate(equations)}, {c: k for k, c in enumerate(multibody.coordinates)}
+            at = (
+                {equation: k for k, equation in enumerate(equations)},
+                {c: k for k, c in enumerate(multibody.coordinates)},
+            )
             parts = [piece for part in parts for piece in _peeled(part, slopes, *at)]
     counted = column(loop.gap for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
-    return tuple(Block(tuple(rows), tuple(columns), _forms(multibody, rows, columns, counted)) for rows, columns in ordered)
+    return tuple(
+        Block(tuple(rows), tuple(columns), _forms(multibody, rows, columns, counted))
+        for rows, columns in ordered
+    )
 
 
 def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equation]:
     """All scalar equations, without the coordinates that stand in them by rounding alone."""
     loops = multibody.loop_equations
-    motion = [column(getattr(loop, name) for loop in loops) for name in ("gap", "gap_rate", "gap_acceleration")]
+    motion = [
+        column(getattr(loop, name) for loop in loops)
+        for name in ("gap", "gap_rate", "gap_acceleration")
+    ]
     slopes = ca.jacobian(motion[1], column(c.rate for c in unknown))
     entries = drawn(ca.vertcat(ca.SX(0, 1), *slopes.nonzeros()), multibody.coordinates)
     sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
@@ -142,9 +162,17 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     whole = mechanism.own.at_defaults(extent(mechanism)) if mechanism.space else 1.0
     for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
         # What has no value at such points may be anything.
-        least = _ABSENT * max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
-        beside = _ABSENT * units(loop, whole)[row] if mechanism.space and loop.joint is not None else 0.0
-        there = {c for c, size in sizes[k].items() if size > max(least, beside / (whole if c.kind == "slide" else 1.0))}
+        least = _ABSENT * max(
+            (size for size in sizes[k].values() if np.isfinite(size)), default=0.0
+        )
+        beside = (
+            _ABSENT * units(loop, whole)[row] if mechanism.space and loop.joint is not None else 0.0
+        )
+        there = {
+            c
+            for c, size in sizes[k].items()
+            if size > max(least, beside / (whole if c.kind == "slide" else 1.0))
+        }
         # The three of a ball share their variables.
         balls = {c.ball for c in there if c.ball is not None}
         present = frozenset(c for c in unknown if c in there or c.ball in balls)
@@ -159,7 +187,8 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
 
 
 def _decomposed(equations: Sequence[Equation], unknown: Sequence[Coordinate]) -> list[Part]:
-    """Parts that can be solved one after another: square ones, and what has too many equations, or too many unknowns.
+    """Parts that can be solved one after another: square ones, and what has too many equations, or
+    too many unknowns.
 
     What has neither an equation nor an unknown to go with is a part as well.
     """
@@ -182,8 +211,8 @@ def _decomposed(equations: Sequence[Equation], unknown: Sequence[Coordinate]) ->
 def _pieces(part: Part) -> list[Part]:
     """A part in pieces that share neither a coordinate nor a loop or constraint.
 
-    A piece with too many equations is not taken apart further: what is left of a parallelogram without one of its cranks
-    is singular when its links lie on one line, and the whole is not.
+    A piece with too many equations is not taken apart further: what is left of a parallelogram
+    without one of its cranks is singular when its links lie on one line, and the whole is not.
     """
     rows, columns = part
     if len(rows) == len(columns):
@@ -193,14 +222,23 @@ def _pieces(part: Part) -> list[Part]:
         shared = {equation.loop, *equation.present.intersection(columns)}
         joined = [group for group in groups if group[1] & shared]
         groups = [group for group in groups if group not in joined]
-        groups.append(([e for group in joined for e in group[0]] + [equation], shared.union(*(group[1] for group in joined))))
+        groups.append(
+            (
+                [e for group in joined for e in group[0]] + [equation],
+                shared.union(*(group[1] for group in joined)),
+            )
+        )
     return [(equations, [c for c in columns if c in shared]) for equations, shared in groups]
 
 
-def _peeled(part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[Coordinate, int]) -> list[Part]:
-    """A part that has too many equations, loop by loop: in space a planar loop has, but says all of what it leaves no other.
+def _peeled(
+    part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[Coordinate, int]
+) -> list[Part]:
+    """A part that has too many equations, loop by loop: in space a planar loop has, but says all of
+    what it leaves no other.
 
-    A loop that tells its coordinates by the rank of its own equations is solved by itself, the fewest coordinates first.
+    A loop that tells its coordinates by the rank of its own equations is solved by itself, the
+    fewest coordinates first.
     """
     rows, columns = part
     found: list[Part] = []
@@ -208,12 +246,18 @@ def _peeled(part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[
         loops: dict[LoopEquations, list[Equation]] = {}
         for equation in rows:
             loops.setdefault(equation.loop, []).append(equation)
-        for own in sorted(loops.values(), key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns))):
+        for own in sorted(
+            loops.values(),
+            key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns)),
+        ):
             told = [c for c in columns if any(c in equation.present for equation in own)]
             block = slopes[np.ix_([row[e] for e in own], [of[c] for c in told])]
             if told and len(own) < len(rows) and rank_of(block) == len(told):
                 found.append((own, told))
-                rows, columns = [e for e in rows if e not in own], [c for c in columns if c not in told]
+                rows, columns = (
+                    [e for e in rows if e not in own],
+                    [c for c in columns if c not in told],
+                )
                 break
         else:
             break
@@ -221,9 +265,14 @@ def _peeled(part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[
 
 
 def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Part]:
-    """The parts in an order in which each stands on the ones before; next the one that fewest joints close, then as declared."""
+    """The parts in an order in which each stands on the ones before; next the one that fewest
+    joints close, then as declared.
+    """
     owner = {c: i for i, (_, columns) in enumerate(parts) for c in columns}
-    needs = [{owner[c] for equation in rows for c in equation.present} - {i} for i, (rows, _) in enumerate(parts)]
+    needs = [
+        {owner[c] for equation in rows for c in equation.present} - {i}
+        for i, (rows, _) in enumerate(parts)
+    ]
     declared = {loop: k for k, loop in enumerate(loops)}
     ranks = [sorted({declared[equation.loop] for equation in rows}) for rows, _ in parts]
     followers: list[list[int]] = [[] for _ in parts]
@@ -243,30 +292,49 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
     return found
 
 
-def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> tuple[ClosedForm, ...]:
+def _forms(
+    multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any
+) -> tuple[ClosedForm, ...]:
     """The closed forms that solve a part one after another, where there are any."""
     if any(c.ball is not None for c in unknown):
         return ()
-    bar, phi = all(equation.loop.bar is not None for equation in rows), column(equation.gap for equation in rows)
+    bar, phi = (
+        all(equation.loop.bar is not None for equation in rows),
+        column(equation.gap for equation in rows),
+    )
     form = solve_loop(phi, unknown, multibody.coordinates, bar=bar)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
-    if not forms and unknown and len({equation.loop for equation in rows}) == 1 and (joint := rows[0].loop.joint) is not None:
+    if (
+        not forms
+        and unknown
+        and len({equation.loop for equation in rows}) == 1
+        and (joint := rows[0].loop.joint) is not None
+    ):
         forms = solve_line(joint, [equation.row for equation in rows], phi, unknown, multibody)
         if not forms and len(unknown) in (2, 3):
             forms = solve_leg(phi, joint, unknown, multibody)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
-    if any(form.branches for form in forms) and any(ca.depends_on(counted, c.value) for c in unknown):
+    if any(form.branches for form in forms) and any(
+        ca.depends_on(counted, c.value) for c in unknown
+    ):
         return ()
-    # The order of solution counts on what is absent from the equations: a form must not hold it either, by its joint's places.
+    # The order of solution counts on what is absent from the equations: a form must not hold it
+    # either, by its joint's places.
     present = {c for equation in rows for c in equation.present}
     absent = [c for c in multibody.coordinates if not c.driven and c not in present]
     return tuple(form.without(absent) for form in forms)
 
 
 def _require_freedom(
-    multibody: Multibody, equations: int, parts: Sequence[Part], slopes: Array | None, told: Collection[Coordinate]
+    multibody: Multibody,
+    equations: int,
+    parts: Sequence[Part],
+    slopes: Array | None,
+    told: Collection[Coordinate],
 ) -> Array:
-    """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and no part is loose."""
+    """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and
+    no part is loose.
+    """
     driven = sum(c.driven for c in multibody.coordinates)
     how = "by the rank of its loops at the start"
     if slopes is None:
@@ -274,11 +342,19 @@ def _require_freedom(
         how = "counted by joints; it could not be assembled to count by rank"
     else:
         freedom = len(multibody.coordinates) - rank_of(slopes)
-        undriven = rank_of(slopes[:, [k for k, c in enumerate(multibody.coordinates) if not c.driven]])
-        if freedom == driven == len(multibody.coordinates) - undriven and all(len(rows) >= len(columns) for rows, columns in parts):
+        undriven = rank_of(
+            slopes[:, [k for k, c in enumerate(multibody.coordinates) if not c.driven]]
+        )
+        if freedom == driven == len(multibody.coordinates) - undriven and all(
+            len(rows) >= len(columns) for rows, columns in parts
+        ):
             return slopes
     movable = list(multibody.mechanism.coordinates)
-    advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
+    advice = (
+        f"drive {freedom} of the joints {', '.join(movable)}"
+        if freedom > 0
+        else "take a joint, a constraint or a link away"
+    )
     lacking = [c.told_as for c in multibody.coordinates if c not in told]
     if slopes is None and lacking:
         advice = f"give a rough posture of {', '.join(lacking)} too"
@@ -286,30 +362,41 @@ def _require_freedom(
         advice = "but these over-determine some loops and leave others loose; drive other joints"
     elif freedom > driven:
         advice += "".join(
-            f"; {spin}" for spin in idle_spins(multibody.mechanism, [c.name for c in multibody.coordinates if c.driven])
+            f"; {spin}"
+            for spin in idle_spins(
+                multibody.mechanism, [c.name for c in multibody.coordinates if c.driven]
+            )
         )
     raise MobilityError(
-        f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and {driven} drive(s); {advice}"
+        f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and"
+        f" {driven} drive(s); {advice}"
     )
 
 
 def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
-    """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None where no posture is found."""
+    """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None
+    where no posture is found.
+    """
     # Drives are free to give way in it, for there may be too many.
-    return Freed.of(multibody, start["posture"], start["inputs"], start["values"], ()).slopes(start["values"])
+    return Freed.of(multibody, start["posture"], start["inputs"], start["values"], ()).slopes(
+        start["values"]
+    )
 
 
 def solve_line(
     joint: Joint, rows: Sequence[int], phi: Any, unknown: Sequence[Coordinate], multibody: Multibody
 ) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the plane in which its line moves.
+    """The closed forms, one after another, of the ``rows`` of a joint that are Phi, told in the
+    plane in which its line moves.
 
-    A slot or a cylindrical joint that closes a loop holds its points together along two lines across its own, and its directions
-    as well. What moves in a plane has one of them for each: that across the line in the plane. Out of the plane nothing may be
-    off, and the two lines lie anyhow to it. So each two equations are summed to the one in the plane, with weights that no
-    motion changes.
+    A slot or a cylindrical joint that closes a loop holds its points together along two lines
+    across its own, and its directions as well. What moves in a plane has one of them for each: that
+    across the line in the plane. Out of the plane nothing may be off, and the two lines lie anyhow
+    to it. So each two equations are summed to the one in the plane, with weights that no motion
+    changes.
 
-    None where it does not close a loop along a line, where what is unknown does not turn in a plane with it, or none were verified.
+    None where it does not close a loop along a line, where what is unknown does not turn in a plane
+    with it, or none were verified.
     """
     if joint.directions is None or sum(freedom.move == "slide" for freedom in joint.lets) != 1:
         return ()
@@ -318,8 +405,12 @@ def solve_line(
     if turn is None or [k for pair in pairs for k in pair] != list(rows):
         return ()
     line, first, second = joint.triad
-    across = cross(multibody.frames[joint.parent.body.name].rotation.resolve(multibody.axes[turn]), line)
-    weights = in_fewest(ca.vertcat(dot(across, first), dot(across, second)), (), multibody.coordinates)
+    across = cross(
+        multibody.frames[joint.parent.body.name].rotation.resolve(multibody.axes[turn]), line
+    )
+    weights = in_fewest(
+        ca.vertcat(dot(across, first), dot(across, second)), (), multibody.coordinates
+    )
     if weights is None:
         return ()
     equations = [weights.T @ phi[2 * k : 2 * k + 2] for k in range(len(pairs))]

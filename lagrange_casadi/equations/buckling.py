@@ -1,9 +1,11 @@
-"""Columns: Euler's and Johnson's critical loads, and the interaction with bending; in numbers, arrays or expressions.
+"""Columns: Euler's and Johnson's critical loads, and the interaction with bending; in numbers,
+arrays or expressions.
 
-Johnson's parabola joins Euler's curve at half the yield strength (Shigley, *Mechanical Engineering Design*, 9th edition, sections
-4-12 and 4-13). Bending adds to compression as N/N_cr + M/(M_yield (1 - N/N_Euler)) = 1, about both axes (Timoshenko and Gere,
-*Theory of Elastic Stability*, sections 1.11 and 1.13, for moments that are even along the link, the worst). Of a link whose
-cross-section changes, the least second moment, area and modulus count for all of it.
+Johnson's parabola joins Euler's curve at half the yield strength (Shigley, *Mechanical Engineering
+Design*, 9th edition, sections 4-12 and 4-13). Bending adds to compression as N/N_cr + M/(M_yield (1
+- N/N_Euler)) = 1, about both axes (Timoshenko and Gere, *Theory of Elastic Stability*, sections
+1.11 and 1.13, for moments that are even along the link, the worst). Of a link whose cross-section
+changes, the least second moment, area and modulus count for all of it.
 """
 
 from __future__ import annotations
@@ -26,15 +28,18 @@ _ROUNDS, _TINY = 8, 1e-12
 
 @public
 def critical_stress(slenderness: Numeric, elasticity: Positive, strength: Positive) -> Any:
-    """The stress at which a column of a slenderness, effective length over radius of gyration, fails: Euler's or Johnson's [Pa]."""
+    """The stress at which a column of a slenderness, effective length over radius of gyration,
+    fails: Euler's or Johnson's [Pa].
+    """
     with np.errstate(divide="ignore"):
         return _critical(np.pi**2 * elasticity / np.asarray(slenderness, float) ** 2, strength)
 
 
 @dataclass(frozen=True)
 class Column:
-    """A link as a column, where it bends along y and where it bends along z: effective lengths over its own, slenderness, Euler's
-    load and the critical one [N], and the moment at which its outermost fibre yields [N m].
+    """A link as a column, where it bends along y and where it bends along z: effective lengths over
+    its own, slenderness, Euler's load and the critical one [N], and the moment at which its
+    outermost fibre yields [N m].
     """
 
     effective: tuple[Any, Any]
@@ -56,7 +61,10 @@ class Column:
             own, second = effective[k] * length, thinnest.second[k]
             euler = math.pi**2 * elasticity * second / own**2
             slenderness = own * (thinnest.area / second) ** 0.5
-            critical, yielding = _critical(euler, strength * thinnest.area), thinnest.modulus[k] * strength
+            critical, yielding = (
+                _critical(euler, strength * thinnest.area),
+                thinnest.modulus[k] * strength,
+            )
             numbers = (effective[k], slenderness, euler, critical, yielding)
             return tuple(number if symbolic(number) else float(number) for number in numbers)
 
@@ -64,10 +72,11 @@ class Column:
 
 
 def used(column: Column, compression: Any, moments: Sequence[Any]) -> Any:
-    """How far a column is used by compression and moments, about z and in space about y: one over the factor of safety.
+    """How far a column is used by compression and moments, about z and in space about y: one over
+    the factor of safety.
 
-    That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) = 1. Compression of less than
-    1e-6 of the critical load counts as none.
+    That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) =
+    1. Compression of less than 1e-6 of the critical load counts as none.
     """
     compressed = larger(compression, 0.0)
     share = compressed / smaller(*column.critical)

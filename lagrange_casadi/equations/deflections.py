@@ -1,8 +1,10 @@
-"""How far a link bends at an instant: the deflection across it that is largest along it, as an expression.
+"""How far a link bends at an instant: the deflection across it that is largest along it, as an
+expression.
 
-Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are told at Chebyshev's nodes of each part between two
-stations, and the polynomials through them are integrated: exactly where the cross-section is constant. In space
-turn_z' and turn_y' are those of bending about any axes, and shear twists about the shear centre.
+Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are told at Chebyshev's nodes
+of each part between two stations, and the polynomials through them are integrated: exactly where
+the cross-section is constant. In space turn_z' and turn_y' are those of bending about any axes, and
+shear twists about the shear centre.
 """
 
 from __future__ import annotations
@@ -28,17 +30,26 @@ _MORE = 6
 """More nodes where the cross-section changes."""
 
 
-def deflections(mechanism: Mechanism, name: str, columns: Mapping[Column, Any], *, ends: bool) -> dict[Column, Any]:
+def deflections(
+    mechanism: Mechanism, name: str, columns: Mapping[Column, Any], *, ends: bool
+) -> dict[Column, Any]:
     """The size of the deflection across a link that is largest along it [m].
 
-    It counts from the straight line between the ``ends`` as they are, or from the link's axes at its base. Raises
-    :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant.
+    It counts from the straight line between the ``ends`` as they are, or from the link's axes at
+    its base. Raises :class:`.DeclarationError` where its material has no elasticity, or its
+    cross-section in space no torsion constant.
     """
     link = Loaded(mechanism.space, mechanism.links[name], columns)
     moduli = moduli_of(link.beam, f"output 'deflection:{name}'", space=link.space)
     curves = [_curve(link, *plane, moduli, ends=ends) for plane in _PLANES[link.space]]
     along = zip(*curves, strict=True)
-    value = most([value for pieces in along for value in looked(partial(_size, pieces), len(pieces) * pieces[0].degree)])
+    value = most(
+        [
+            value
+            for pieces in along
+            for value in looked(partial(_size, pieces), len(pieces) * pieces[0].degree)
+        ]
+    )
     if link.space:
         # A root whose slope is nothing where nothing bends.
         bends = value > 0.0
@@ -48,16 +59,23 @@ def deflections(mechanism: Mechanism, name: str, columns: Mapping[Column, Any], 
 
 def _size(pieces: Sequence[_Piece], x: Any) -> Any:
     """The size of a deflection at a place of a part; in space its square."""
-    return ca.fabs(pieces[0].at(x)) if len(pieces) == 1 else sum(piece.at(x) ** 2 for piece in pieces)
+    return (
+        ca.fabs(pieces[0].at(x)) if len(pieces) == 1 else sum(piece.at(x) ** 2 for piece in pieces)
+    )
 
 
-_PLANES = {False: (("bending", "shear", 1.0),), True: (("bending_z", "shear_y", 1.0), ("bending_y", "shear_z", -1.0))}
+_PLANES = {
+    False: (("bending", "shear", 1.0),),
+    True: (("bending_z", "shear_y", 1.0), ("bending_y", "shear_z", -1.0)),
+}
 """Of each plane of bending the section forces, and the sign with which the first turns the link."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """The deflection along a part of a link, by coefficients of Chebyshev's polynomials from 0 to 1."""
+    """The deflection along a part of a link, by coefficients of Chebyshev's polynomials from 0 to
+    1.
+    """
 
     coefficients: Sequence[Any]
 
@@ -74,17 +92,27 @@ class _Piece:
         return self.coefficients[0] + 0.5 * twice * last - before
 
 
-def _curve(link: Loaded, bending: str, shear: str, sign: float, moduli: Moduli, *, ends: bool) -> list[_Piece]:
+def _curve(
+    link: Loaded, bending: str, shear: str, sign: float, moduli: Moduli, *, ends: bool
+) -> list[_Piece]:
     """The deflection in a plane, part after part."""
     found: list[tuple[Part, Any]] = []
     turn, across = ca.SX(0.0), ca.SX(0.0)
     for part in link.parts:
         first, last = link.course.cells[part.cell]
         nodes, once, twice = _integrals(link.degree + (0 if first is last else _MORE))
-        each = [strains(link.at(part, x), {name: part.force(name, x) for name in part.forces}, moduli) for x in nodes]
-        bent, sheared = sign * column(strain[bending] for strain in each), column(strain[shear] for strain in each)
+        each = [
+            strains(link.at(part, x), {name: part.force(name, x) for name in part.forces}, moduli)
+            for x in nodes
+        ]
+        bent, sheared = (
+            sign * column(strain[bending] for strain in each),
+            column(strain[shear] for strain in each),
+        )
         length = link.link.length * part.width
-        curve = length * (length * ca.mtimes(twice, bent) + ca.vertcat(ca.mtimes(once, sheared), 0.0))
+        curve = length * (
+            length * ca.mtimes(twice, bent) + ca.vertcat(ca.mtimes(once, sheared), 0.0)
+        )
         curve[:2] += length * turn / 2
         curve[0] += across
         found.append((part, curve))
@@ -98,7 +126,9 @@ def _curve(link: Loaded, bending: str, shear: str, sign: float, moduli: Moduli, 
 
 
 def _integrals(degree: int) -> tuple[list[float], Any, Any]:
-    """Nodes from 0 to 1, and what makes of values there the integral from 0 of their polynomial, and the integral of that."""
+    """Nodes from 0 to 1, and what makes of values there the integral from 0 of their polynomial,
+    and the integral of that.
+    """
     x = np.cos(math.pi * (2.0 * np.arange(degree + 1) + 1.0) / (2.0 * (degree + 1)))
     fit = np.linalg.inv(chebyshev.chebvander(x, degree))
     once = chebyshev.chebint(fit, lbnd=-1, scl=0.5, axis=0)

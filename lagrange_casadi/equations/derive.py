@@ -1,4 +1,6 @@
-"""From a scene to its graphs: kinematics, Lagrange terms and internal forces put together, and nothing that is not wanted."""
+"""From a scene to its graphs: kinematics, Lagrange terms and internal forces put together, and
+nothing that is not wanted.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,9 @@ _FITS = 2e-14
 """How far equations that are too many may miss where they are exact, of the links' length."""
 
 _SERVES = 1e-10
-"""How far they may miss at the start for other parameters, and graphs serve for these too: a tenth of what certificates allow."""
+"""How far they may miss at the start for other parameters, and graphs serve for these too: a tenth
+of what certificates allow.
+"""
 
 _STEPS = 50
 
@@ -60,9 +64,11 @@ def compile_scene(
     *,
     parameters: Mapping[str, float] | None = None,
 ) -> Program:
-    """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant and tables of plain data.
+    """Compile a scene, for its own wanted outputs or for others, to CasADi functions of an instant
+    and tables of plain data.
 
-    What is returned needs the scene no more. It can be pickled, and read in another process that has no file of the case.
+    What is returned needs the scene no more. It can be pickled, and read in another process that
+    has no file of the case.
 
     Parameters
     ----------
@@ -73,12 +79,11 @@ def compile_scene(
     parameters
         Values with which loops are assembled where they cannot be with the scene's own.
 
-    Notes
-    -----
-    A scene is compiled once: what is made is kept while the process lasts, and in the cache folder by the content of the
-    declaration.
+    Notes ----- A scene is compiled once: what is made is kept while the process lasts, and in the
+    cache folder by the content of the declaration.
 
-    Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
+    Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the
+    loops cannot be solved.
     """
     names = scene.wanted if wanted is None else wanted
     if parameters is not None:
@@ -101,7 +106,9 @@ derive = compile_scene
 
 @symbolic
 def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -> Scene:
-    """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded axes corrected."""
+    """Return the scene that :func:`compile_scene` makes a graph of, as it is assembled, its rounded
+    axes corrected.
+    """
     scene = assembled(scene, scene.values(parameters), wanted)
     compile_scene(scene, wanted)
     found = _kept(scene, Wanted.of(scene.mechanism, wanted))
@@ -110,10 +117,14 @@ def as_derived(scene: Scene, wanted: Outputs, parameters: Mapping[str, float]) -
 
 
 @symbolic
-def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None) -> Scene:
-    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
+def assembled(
+    scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None
+) -> Scene:
+    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled
+    with ``values`` of all.
 
-    So it is too where loops close with its own parameters but not with ``values``, and axes are corrected for one or the other.
+    So it is too where loops close with its own parameters but not with ``values``, and axes are
+    corrected for one or the other.
 
     Raises what :func:`compile_scene` does, where they can be assembled with neither.
     """
@@ -125,7 +136,11 @@ def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] |
         there = _at(scene, tuple(values.items()))
         compile_scene(there, wanted)
         return there
-    if scene.mechanism.space and scene.rounding and _misses(graph, values, iterated=False) > _SERVES:
+    if (
+        scene.mechanism.space
+        and scene.rounding
+        and _misses(graph, values, iterated=False) > _SERVES
+    ):
         with suppress(AssemblyError, MobilityError):
             there = _at(scene, tuple(values.items()))
             if compile_scene(there, wanted).data.rounding or graph.data.rounding:
@@ -145,7 +160,9 @@ def _nearest(scene: Scene) -> Scene | None:
 
 @dataclass(frozen=True, eq=False)
 class _Derived:
-    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do not close as declared."""
+    """A graph, and the scene of which it is: one whose rounded axes are corrected, where loops do
+    not close as declared.
+    """
 
     graph: Program
     scene: Scene
@@ -170,7 +187,10 @@ def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityErro
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
-    if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
+    if (
+        _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS
+        and (near := _nearest(scene)) is not None
+    ):
         found = _kept(near, want)
         if isinstance(found, _Derived):
             return replace(found, graph=replace(found.graph, identity=identity))
@@ -180,8 +200,12 @@ def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityErro
 
 
 def _misses(graph: Program, values: Mapping[str, float], *, iterated: bool) -> float:
-    """By how much loops with too many equations miss at the start, of the links' length: all of them, or those ``iterated``."""
-    rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
+    """By how much loops with too many equations miss at the start, of the links' length: all of
+    them, or those ``iterated``.
+    """
+    rows = [
+        row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated
+    ]
     if not rows:
         return 0.0
     t, p, newton = graph.data.span[0], list(values.values()), graph.newton
@@ -197,7 +221,9 @@ def _misses(graph: Program, values: Mapping[str, float], *, iterated: bool) -> f
 
 @dataclass(frozen=True, eq=False)
 class _Borne:
-    """Forces over the inputs; ``free`` are symbols of what equilibrium leaves open in them, ``frictions`` those of frictions."""
+    """Forces over the inputs; ``free`` are symbols of what equilibrium leaves open in them,
+    ``frictions`` those of frictions.
+    """
 
     columns: dict[Column, Any]
     free: Any
@@ -206,7 +232,11 @@ class _Borne:
     @classmethod
     def of(cls, moving: Moving, columns: Mapping[Column, Any]) -> _Borne:
         """The forces that are wanted, and those of ``columns`` that friction goes into."""
-        want, links, coordinates = moving.want, moving.scene.mechanism.links.values(), moving.body.coordinates
+        want, links, coordinates = (
+            moving.want,
+            moving.scene.mechanism.links.values(),
+            moving.body.coordinates,
+        )
         forces = internal_forces(
             moving.body,
             moving.solved,
@@ -218,12 +248,19 @@ class _Borne:
             weights=moving.scene.weights,
         )
         rubbed = forces.rubbed
-        told = {key: value for key, value in columns.items() if ca.depends_on(ca.SX(value), rubbed.symbols)}
+        told = {
+            key: value
+            for key, value in columns.items()
+            if ca.depends_on(ca.SX(value), rubbed.symbols)
+        }
         placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
         pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))
         acting = gathered(forces.columns, forces.free, links, coordinates) | pressed
-        # Beside the start of the motion, for a drive through a gear moves little of what it drives, and holds it all the same.
-        for check in [check for check in acting if isinstance(check, Check) and check.kind == "hold"]:
+        # Beside the start of the motion, for a drive through a gear moves little of what it drives,
+        # and holds it all the same.
+        for check in [
+            check for check in acting if isinstance(check, Check) and check.kind == "hold"
+        ]:
             acting[check] = closure(acting[check], float(moving.begins(acting[check])))
         return cls(acting, forces.free, rubbed.forces)
 
@@ -237,13 +274,21 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
     columns = {key: value for key, value in columns.items() if key not in borne.columns}
     acting = borne.columns | own_outputs(moving.body, moving.solved, columns | borne.columns)
     least = _least_energy(scene, acting, borne) if scene.elastic else None
-    forces = Forces.over(acting, borne.free) if least is None else least.completed(acting, borne.free)
+    forces = (
+        Forces.over(acting, borne.free) if least is None else least.completed(acting, borne.free)
+    )
     forces = forces.with_those_of(lambda told: _strength(scene, asked, {**columns, **told}))
     columns |= forces.columns
-    columns = columns if want is asked else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
+    columns = (
+        columns
+        if want is asked
+        else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
+    )
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = share_reciprocals(ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p")
+    instant = share_reciprocals(
+        ca.Function("instant", moving.inputs, [out], names, ["out"], {"cse": True}), "p"
+    )
     return Program(
         data=ModelData.of(scene, moving.laws),
         wanted=asked,
@@ -258,19 +303,23 @@ def _derive(scene: Scene, asked: Wanted) -> Program:
 def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> LeastEnergy | None:
     """Choose by least strain energy what equilibrium leaves open; None where this is nothing.
 
-    Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what presses on it.
+    Raises :class:`.DeclarationError` where frictions follow it: what rubs is not linear in what
+    presses on it.
     """
     for name, value in borne.frictions.items():
         if ca.depends_on(ca.SX(value), borne.free):
             raise DeclarationError(
-                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open; elasticity tells it without friction"
+                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open;"
+                " elasticity tells it without friction"
             )
     open_ = any(ca.depends_on(ca.SX(value), borne.free) for value in acting.values())
     return least_energy(scene.mechanism, scene.elastic, acting, borne.free) if open_ else None
 
 
 def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
-    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has no direction for it."""
+    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has
+    no direction for it.
+    """
     named = [name for name in names if name != "all"]
     for bar in bars_of(scene.guided, scene.laws) if named else ():
         asked = any(among(kind, [bar.link.name], named) for kind in STRENGTH)
@@ -288,9 +337,13 @@ def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None
-            found |= utilisation(scene.mechanism, name, columns, beam.columns or effective_lengths(told, name))
+            found |= utilisation(
+                scene.mechanism, name, columns, beam.columns or effective_lengths(told, name)
+            )
         for name in want.bent:
-            found |= deflections(scene.mechanism, name, columns, ends="free" not in ends_of(told, name))
+            found |= deflections(
+                scene.mechanism, name, columns, ends="free" not in ends_of(told, name)
+            )
     return found
 
 
@@ -304,20 +357,34 @@ def _felt_alone(key: Column, asked: Wanted) -> bool:
     )
 
 
-def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]) -> dict[Column, Any]:
-    """The user's outputs as expressions of an instant, where ``found`` are the columns that they may be made of."""
+def own_outputs(
+    body: Multibody, solved: Kinematics, found: Mapping[Column, Any]
+) -> dict[Column, Any]:
+    """The user's outputs as expressions of an instant, where ``found`` are the columns that they
+    may be made of.
+    """
     mechanism = body.mechanism
-    asked = [asked for asked in mechanism.asked if any(asked in mechanism.outputs[name].made_of for name in body.own)]
+    asked = [
+        asked
+        for asked in mechanism.asked
+        if any(asked in mechanism.outputs[name].made_of for name in body.own)
+    ]
     values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
     symbols = column(one.symbol for one in asked)
     placed = solved.evaluate(column(body.own.values()))
     return {
         Output("output", name): value
-        for name, value in zip(body.own, ca.vertsplit(ca.substitute(placed, symbols, values)) if body.own else (), strict=True)
+        for name, value in zip(
+            body.own,
+            ca.vertsplit(ca.substitute(placed, symbols, values)) if body.own else (),
+            strict=True,
+        )
     }
 
 
-def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table) -> Any:
+def _value(
+    links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table
+) -> Any:
     if asked.output.group == "section":
         link = links[asked.output.part]
         assert isinstance(link.mass, Density)
@@ -325,8 +392,11 @@ def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any],
         # One graph serves both precisions.
         return section.at(asked.output.member, Place(asked.ratio), END["single"])
     if asked.output not in found:
-        drives = ", ".join(str(key.part) for key in found if isinstance(key, Output) and key.group == "effort")
+        drives = ", ".join(
+            str(key.part) for key in found if isinstance(key, Output) and key.group == "effort"
+        )
         raise DeclarationError(
-            f"an output is made of {asked.output}, and joint '{asked.output.part}' is no drive; drives: {drives}"
+            f"an output is made of {asked.output}, and joint '{asked.output.part}' is no drive;"
+            f" drives: {drives}"
         )
     return found[asked.output]

@@ -1,8 +1,9 @@
 """Efforts of drives where they are others than the joints whose motion is given.
 
-Efforts tau along the drives' coordinates must leave nothing to be done along the coordinates whose motion is given:
-R(tau) = R(0) + A tau = 0, a small linear system. Of more drives than motions, the efforts are those with the least sum of
-w tau^2 (weighted least norm): tau = W^-1/2 x, with x of the least length that satisfies (A W^-1/2) x = -R(0).
+Efforts tau along the drives' coordinates must leave nothing to be done along the coordinates whose
+motion is given: R(tau) = R(0) + A tau = 0, a small linear system. Of more drives than motions, the
+efforts are those with the least sum of w tau^2 (weighted least norm): tau = W^-1/2 x, with x of the
+least length that satisfies (A W^-1/2) x = -R(0).
 """
 
 from __future__ import annotations
@@ -23,9 +24,11 @@ _ROUNDING = 1e-24
 
 @dataclass(frozen=True, eq=False)
 class Efforts:
-    """Symbols of efforts and their values; ``hold`` is zero where the drives cannot make the motion, else positive.
+    """Symbols of efforts and their values; ``hold`` is zero where the drives cannot make the
+    motion, else positive.
 
-    It is the square of how much of a motion moves the drives, and of how far they are from depending on each other.
+    It is the square of how much of a motion moves the drives, and of how far they are from
+    depending on each other.
     """
 
     symbols: Any
@@ -34,18 +37,25 @@ class Efforts:
 
 
 def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str, ...]:
-    """The drives whose efforts are unknowns: all where they are too many, else those that are not at a joint that is ``moved``."""
+    """The drives whose efforts are unknowns: all where they are too many, else those that are not
+    at a joint that is ``moved``.
+    """
     if drives is None:
         return ()
     return tuple(name for name in drives if len(drives) > len(moved) or name not in moved)
 
 
 def solve_efforts(
-    efforts: Mapping[str, Any], needs: Mapping[str, Any], weights: Mapping[str, Any], units: Mapping[str, Any]
+    efforts: Mapping[str, Any],
+    needs: Mapping[str, Any],
+    weights: Mapping[str, Any],
+    units: Mapping[str, Any],
 ) -> Efforts:
-    """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in them.
+    """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in
+    them.
 
-    ``units`` are by joint what its coordinate is measured in, to tell whether a drive moves much of a motion or little.
+    ``units`` are by joint what its coordinate is measured in, to tell whether a drive moves much of
+    a motion or little.
     """
     symbols, left = column(efforts.values()), column(needs.values())
     rest = ca.substitute(left, symbols, ca.SX.zeros(symbols.numel()))
@@ -53,7 +63,11 @@ def solve_efforts(
     effect = ca.densify(ca.jacobian(left, symbols)).T
     system = LinearSystem.of(ca.diag(lighter) @ effect)
     values = lighter * system.solve_transposed(-rest, ca.SX.zeros(system.free))
-    moved = ca.diag(column(1 / ca.SX(units[name]) for name in efforts)) @ effect @ ca.diag(column(units[name] for name in needs))
+    moved = (
+        ca.diag(column(1 / ca.SX(units[name]) for name in efforts))
+        @ effect
+        @ ca.diag(column(units[name] for name in needs))
+    )
     hold = system.volume * system.volume
     for j in range(len(needs)):
         hold *= ca.sumsqr(moved[:, j])
@@ -61,6 +75,8 @@ def solve_efforts(
 
 
 def closure(hold: Any, usual: float) -> Any:
-    """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is where the motion starts."""
+    """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is
+    where the motion starts.
+    """
     beside = usual if _ROUNDING < usual < math.inf else 1.0
     return hold / (hold + beside)

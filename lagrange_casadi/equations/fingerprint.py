@@ -18,19 +18,24 @@ from ..declare.scene import Scene, Wanted
 
 @symbolic
 def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
-    """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code that derives.
+    """The hash of the declaration, its expressions, laws of motion, what is wanted, and the code
+    that derives.
 
     None where the declaration holds something whose content cannot be told.
     """
     declared = declaration(scene, wanted)
     if declared is None:
         return None
-    return hashlib.sha256("\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
+    return hashlib.sha256(
+        "\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()
+    ).hexdigest()[:32]
 
 
 @symbolic
 def declaration(scene: Scene, wanted: Wanted) -> str | None:
-    """All that is declared and wanted, as text; None where it holds something whose content cannot be told."""
+    """All that is declared and wanted, as text; None where it holds something whose content cannot
+    be told.
+    """
     mechanism = scene.mechanism
     expressions: list[Any] = []
     words: list[str] = []

@@ -1,4 +1,6 @@
-"""The loops of a mechanism whose coordinates are all free to give way, drives too: their slopes and rank in numbers."""
+"""The loops of a mechanism whose coordinates are all free to give way, drives too: their slopes and
+rank in numbers.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,16 @@ _CLOSED = 1e-11
 _SINGULAR = 1e-10
 _DEPENDENT = 1e-9
 _NO_SLOPE = 1e-14
-"""A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that is there twice."""
+"""A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that
+is there twice.
+"""
 
 
 @dataclass(frozen=True)
 class Posture:
-    """Where coordinates are: numbers ``u``, nothing of balls, which are where quaternions ``q`` say."""
+    """Where coordinates are: numbers ``u``, nothing of balls, which are where quaternions ``q``
+    say.
+    """
 
     u: Array
     q: Array
@@ -35,8 +41,9 @@ class Posture:
 class Freed:
     """The loops' equations over coordinates u and quaternions q of balls.
 
-    ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of ``by``; ``turned(u, q)`` the
-    quaternions after the small rotations u of balls, which ``resting`` tells. ``first`` is the rough posture.
+    ``gaps(u, q, *inputs)`` gives the equations and their derivatives by u, and then by each of
+    ``by``; ``turned(u, q)`` the quaternions after the small rotations u of balls, which ``resting``
+    tells. ``first`` is the rough posture.
     """
 
     gaps: Any
@@ -46,29 +53,51 @@ class Freed:
 
     @classmethod
     def of(
-        cls, multibody: Multibody, told: Mapping[Coordinate, float], inputs: Sequence[Any], values: Sequence[Any], by: Sequence[Any]
+        cls,
+        multibody: Multibody,
+        told: Mapping[Coordinate, float],
+        inputs: Sequence[Any],
+        values: Sequence[Any],
+        by: Sequence[Any],
     ) -> Freed:
-        """Those near what is ``told`` of coordinates; ``values`` are the numbers of the symbols ``inputs`` at first."""
+        """Those near what is ``told`` of coordinates; ``values`` are the numbers of the symbols
+        ``inputs`` at first.
+        """
         coordinates, numbers = multibody.coordinates, Numbers()
         for symbols, value in zip(inputs, values, strict=True):
             numbers.note(symbols, np.atleast_1d(value).tolist())
-        quaternions = place_roughly(multibody, told, numbers, {}) if any(c.ball for c in coordinates) else {}
+        quaternions = (
+            place_roughly(multibody, told, numbers, {}) if any(c.ball for c in coordinates) else {}
+        )
         turned = {ball: ca.SX.sym("quaternion", 4) for ball in quaternions}
         free = ca.SX.sym("u", len(coordinates))
         symbols = column(c.value for c in coordinates)
         placed = [c.placed(symbols, free) for c in coordinates if c.ball is None]
         # Of balls a step is a small rotation of where they are.
-        own = {ball: ca.vertcat(*(free[k] for k, c in enumerate(coordinates) if c.ball is ball)) for ball in turned}
+        own = {
+            ball: ca.vertcat(*(free[k] for k, c in enumerate(coordinates) if c.ball is ball))
+            for ball in turned
+        }
         placed += [axes_of(turn(turned[ball], own[ball])) for ball in turned]
-        variables = [*(c.variables for c in coordinates if c.ball is None), *(ball.axes for ball in turned)]
-        gaps = ca.substitute(column(c.gap for c in multibody.loop_equations), column(variables), column(placed))
+        variables = [
+            *(c.variables for c in coordinates if c.ball is None),
+            *(ball.axes for ball in turned),
+        ]
+        gaps = ca.substitute(
+            column(c.gap for c in multibody.loop_equations), column(variables), column(placed)
+        )
         quaternion = column(turned.values())
         slopes = [ca.jacobian(gaps, symbols) for symbols in (free, *by)]
         return cls(
             ca.Function("gaps", [free, quaternion, *inputs], [gaps, *slopes]),
-            ca.Function("turned", [free, quaternion], [column(turn(turned[ball], own[ball]) for ball in turned)]),
+            ca.Function(
+                "turned",
+                [free, quaternion],
+                [column(turn(turned[ball], own[ball]) for ball in turned)],
+            ),
             Posture(
-                np.array([0.0 if c.ball else told.get(c, 0.0) for c in coordinates]), np.array([*quaternions.values()]).ravel()
+                np.array([0.0 if c.ball else told.get(c, 0.0) for c in coordinates]),
+                np.array([*quaternions.values()]).ravel(),
             ),
             np.array([c.ball is not None for c in coordinates], bool),
         )
@@ -84,14 +113,19 @@ class Freed:
         return Posture(np.where(self.resting, 0.0, u), self.turned(u, posture.q).full().ravel())
 
     def slopes(self, values: Sequence[Any]) -> Array | None:
-        """The derivatives by all coordinates where the loops close near the rough posture; None where they do not."""
+        """The derivatives by all coordinates where the loops close near the rough posture; None
+        where they do not.
+        """
         posture = self.first
         for _ in range(_STEPS):
             gap, slope, *_ = self.at(posture, values)
             if np.max(np.abs(gap), initial=0.0) < _CLOSED:
                 return slope
             posture = self.moved(
-                posture, np.asarray(np.linalg.lstsq(slope, -gap, rcond=_SINGULAR)[0]) if posture.u.size else posture.u
+                posture,
+                np.asarray(np.linalg.lstsq(slope, -gap, rcond=_SINGULAR)[0])
+                if posture.u.size
+                else posture.u,
             )
         return None
 

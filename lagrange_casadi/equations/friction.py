@@ -1,16 +1,19 @@
 """Friction that follows reactions: forces and reactions solved together, at every instant.
 
-All forces are linear in the frictions' forces s along their coordinates, so what presses on each joint is R(s) = R0 + A s. The law
+All forces are linear in the frictions' forces s along their coordinates, so what presses on each
+joint is R(s) = R0 + A s. The law
 
     s_j = -sigma_j sum_k c_k |R_k(s)| - viscous_j v_j
 
-is solved friction by friction where these are explicit, in blocks where they depend on each other: by a fixed number of Newton
-steps, from s of the frictionless R0. With B_jk = sum c |A_k|, which is not negative, I - B is an M-matrix where all pivots of its
-elimination are positive (Berman, Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, chapter 6). Then the law is a
+is solved friction by friction where these are explicit, in blocks where they depend on each other:
+by a fixed number of Newton steps, from s of the frictionless R0. With B_jk = sum c |A_k|, which is
+not negative, I - B is an M-matrix where all pivots of its elimination are positive (Berman,
+Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, chapter 6). Then the law is a
 contraction in a weighted norm: there is one solution, and only one. Else the mechanism may jam.
 
-At rest the sign is open, and so is all that depends on it: no number. Where a rate passes through zero, as at the end of a stroke,
-the sign is the one of the acceleration, that of the instants right after.
+At rest the sign is open, and so is all that depends on it: no number. Where a rate passes through
+zero, as at the end of a stroke, the sign is the one of the acceleration, that of the instants right
+after.
 """
 
 from __future__ import annotations
@@ -28,14 +31,18 @@ from .multibody import column
 from .pressing import Contact, Rubbing, both_edges
 
 STEPS = 4
-"""Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
+"""Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a
+friction brings about.
+"""
 
 _NOTHING = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """Symbols of frictions and their values; by name the forces and the power that is lost; and the checks of them."""
+    """Symbols of frictions and their values; by name the forces and the power that is lost; and the
+    checks of them.
+    """
 
     symbols: Any
     values: Any
@@ -45,11 +52,12 @@ class Solved:
 
 
 def solve(found: Sequence[Rubbing], open_: Any, signs: Mapping[str, Any] | None = None) -> Solved:
-    """The forces of frictions, along their coordinates, from what presses on them, which is linear in the symbols of all.
+    """The forces of frictions, along their coordinates, from what presses on them, which is linear
+    in the symbols of all.
 
-    It is linear too in the symbols ``open_`` of what equilibrium leaves open: frictions are solved where these are zero, and
-    change with them by what they can change most. At rest frictions are at their limits, with the ``signs`` that are given by
-    name; without, they are no number.
+    It is linear too in the symbols ``open_`` of what equilibrium leaves open: frictions are solved
+    where these are zero, and change with them by what they can change most. At rest frictions are
+    at their limits, with the ``signs`` that are given by name; without, they are no number.
     """
     symbols = column(one.friction.symbol for one in found)
     n = len(found)
@@ -72,11 +80,15 @@ def solve(found: Sequence[Rubbing], open_: Any, signs: Mapping[str, Any] | None 
             )
         laws.append(_Law.of(one, parts, None if signs is None else signs.get(one.friction.name)))
     values: list[Any] = [None] * n
-    checks: dict[Column, Any] = {Check("rest", law.name): law.rest for law in laws if law.rest is not None}
+    checks: dict[Column, Any] = {
+        Check("rest", law.name): law.rest for law in laws if law.rest is not None
+    }
     for block in _blocks(laws):
         checks |= _solve_block([laws[j] for j in block], block, values)
     if signs is not None:
-        checks |= {Check("bend", law.name): bend for law in laws if (bend := _bend(law, laws)) is not None}
+        checks |= {
+            Check("bend", law.name): bend for law in laws if (bend := _bend(law, laws)) is not None
+        }
     if doubts.nnz():
         values = _doubted(laws, values, ca.fabs(doubts) @ open_)
     lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
@@ -109,7 +121,9 @@ class _Pressed:
         return size if lean is None else size + sigma * (lean * pressing[0])
 
     def weights(self, pressing: Sequence[Any], sigma: Any, unit: Any) -> list[Any]:
-        """How ``unit`` times the push changes with each component; their products with the components add up to it."""
+        """How ``unit`` times the push changes with each component; their products with the
+        components add up to it.
+        """
         arm, lean = self.contact.arm, self.contact.lean
         if len(pressing) == 1:
             way = arm * ca.sign(pressing[0])
@@ -142,13 +156,21 @@ class _Law:
         if isinstance(friction, Loss):
             sigma, rest, still = _way(one, sign)
             return cls(friction.name, pressed, 1.0, sigma, None, rest, still)
-        steady = None if isinstance(friction.viscous, float) and friction.viscous == 0.0 else friction.viscous * v
+        steady = (
+            None
+            if isinstance(friction.viscous, float) and friction.viscous == 0.0
+            else friction.viscous * v
+        )
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
         mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
         if friction.static is not None:
             speed = v * lever / friction.stribeck
-            squares = speed * speed if not one.beside else speed * speed + (one.beside[0] / friction.stribeck) ** 2
+            squares = (
+                speed * speed
+                if not one.beside
+                else speed * speed + (one.beside[0] / friction.stribeck) ** 2
+            )
             mu = mu + (friction.static - mu) * ca.exp(-squares)
         if friction.smooth is not None:
             return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
@@ -157,34 +179,46 @@ class _Law:
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""
-        dry = -self.sigma * (self.mu * sum((part.push(part.at(values), self.sigma) for part in self.pressed), ca.SX(0)))
+        dry = -self.sigma * (
+            self.mu
+            * sum((part.push(part.at(values), self.sigma) for part in self.pressed), ca.SX(0))
+        )
         return dry if self.steady is None else dry - self.steady
 
     def straight(self, values: Sequence[Any], known: Sequence[Any]) -> tuple[Any, list[Any]]:
-        """The force as ``start - slopes s``, beside what is ``known``, if all that presses kept its direction at ``values``."""
+        """The force as ``start - slopes s``, beside what is ``known``, if all that presses kept its
+        direction at ``values``.
+        """
         start, slopes = ca.SX(0) if self.steady is None else -self.steady, [None] * len(known)
         for part in self.pressed:
             weights = part.weights(part.at(values), self.sigma, self.sigma * self.mu)
             for weight, beside, row in zip(weights, part.at(known), part.slopes, strict=True):
                 start = start - weight * beside
                 slopes = [
-                    so_far if slope is None else weight * slope if so_far is None else so_far + weight * slope
+                    so_far
+                    if slope is None
+                    else weight * slope
+                    if so_far is None
+                    else so_far + weight * slope
                     for so_far, slope in zip(slopes, row, strict=True)
                 ]
         return start, slopes
 
     def depends(self, k: int) -> bool:
-        """Whether it depends on a friction: never where its joint does not move at all, for then it is open."""
+        """Whether it depends on a friction: never where its joint does not move at all, for then it
+        is open.
+        """
         return not self.still and any(part.seen(k) is not None for part in self.pressed)
 
 
 def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
-    """The sign of what slides, or its share of where it slides along two coordinates; whether it rests; and whether it always
-    does, and has no ``sign`` given for that.
+    """The sign of what slides, or its share of where it slides along two coordinates; whether it
+    rests; and whether it always does, and has no ``sign`` given for that.
     """
     v, acceleration = one.rate, one.acceleration
     slow, quiet = one.slowest
-    # A size has a kink wherever a change of rate is nothing but rounding; comparisons with a limit have none.
+    # A size has a kink wherever a change of rate is nothing but rounding; comparisons with a limit
+    # have none.
     moves, turns = ca.fabs(v) > slow, ca.logic_or(acceleration > quiet, acceleration < -quiet)
     if one.beside:
         other, change = one.beside
@@ -208,7 +242,8 @@ def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
 def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
     """How much a friction that slides changes at most with those at rest; None where with none.
 
-    Its force is then no straight line in theirs, and need not be largest where they are at their limits.
+    Its force is then no straight line in theirs, and need not be largest where they are at their
+    limits.
     """
     seen = [
         other.rest * (law.mu * size)
@@ -221,8 +256,12 @@ def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
     return sliding * sum(seen, ca.SX(0)) if seen else None
 
 
-def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:
-    """Put the values of frictions that depend on each other into ``values``; and the checks of them."""
+def _solve_block(
+    laws: Sequence[_Law], block: Sequence[int], values: list[Any]
+) -> dict[Column, Any]:
+    """Put the values of frictions that depend on each other into ``values``; and the checks of
+    them.
+    """
     known = list(values)
     for j, law in zip(block, laws, strict=True):
         values[j] = law.pushed(known)
@@ -235,7 +274,9 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
             [slopes[k] if k != j else 1 if slopes[k] is None else 1 + slopes[k] for k in block]
             for j, (_, slopes) in zip(block, rows, strict=True)
         ]
-        for j, value in zip(block, _eliminated(matrix, [start for start, _ in rows])[0], strict=True):
+        for j, value in zip(
+            block, _eliminated(matrix, [start for start, _ in rows])[0], strict=True
+        ):
             found[j] = value
     missed, size = ca.SX(0), ca.SX(_NOTHING)
     for j, law in zip(block, laws, strict=True):
@@ -247,9 +288,15 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
 
 
 def _doubted(laws: Sequence[_Law], values: Sequence[Any], doubts: Any) -> list[Any]:
-    """Values with what they change at most where what presses on them changes by ``doubts``, row by row."""
+    """Values with what they change at most where what presses on them changes by ``doubts``, row by
+    row.
+    """
     rows = iter(ca.vertsplit(doubts))
-    own = [law.mu * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0)) for law in laws]
+    own = [
+        law.mu
+        * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0))
+        for law in laws
+    ]
     changes = own
     for _ in laws:
         changes = [
@@ -286,7 +333,9 @@ def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Any:
 
 
 def _eliminated(matrix: list[list[Any]], right: list[Any]) -> tuple[list[Any], list[Any]]:
-    """The solution of a system by elimination without exchange of rows, and its pivots; None stands for zero."""
+    """The solution of a system by elimination without exchange of rows, and its pivots; None stands
+    for zero.
+    """
     n, rows, right = len(right), [list(row) for row in matrix], list(right)
     for i in range(n):
         for j in range(i + 1, n):
@@ -310,19 +359,36 @@ def _eliminated(matrix: list[list[Any]], right: list[Any]) -> tuple[list[Any], l
 def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
     """Frictions that depend on each other, those first that depend on no others."""
     n = len(laws)
-    reached = np.array([[j == k or law.depends(k) for k in range(n)] for j, law in enumerate(laws)], bool).reshape(n, n)
+    reached = np.array(
+        [[j == k or law.depends(k) for k in range(n)] for j, law in enumerate(laws)], bool
+    ).reshape(n, n)
     for k in range(n):
         reached |= np.outer(reached[:, k], reached[k])
-    found = {tuple(np.flatnonzero(reached[j] & reached[:, j]).tolist()): int(reached[j].sum()) for j in range(n)}
+    found = {
+        tuple(np.flatnonzero(reached[j] & reached[:, j]).tolist()): int(reached[j].sum())
+        for j in range(n)
+    }
     return [list(block) for block in sorted(found, key=lambda block: (found[block], block))]
 
 
 def needed(forces: Any, found: Mapping[str, Rubbing], wanted: Collection[str]) -> list[str]:
-    """The frictions on which forces depend, or which are ``wanted``, and those on which these depend."""
-    names = [name for name, one in found.items() if name in wanted or ca.depends_on(forces, one.friction.symbol)]
+    """The frictions on which forces depend, or which are ``wanted``, and those on which these
+    depend.
+    """
+    names = [
+        name
+        for name, one in found.items()
+        if name in wanted or ca.depends_on(forces, one.friction.symbol)
+    ]
     while True:
-        rows = column(x for name in names for contact in found[name].contacts for x in contact.pressing)
-        more = [name for name, one in found.items() if name in names or ca.depends_on(rows, one.friction.symbol)]
+        rows = column(
+            x for name in names for contact in found[name].contacts for x in contact.pressing
+        )
+        more = [
+            name
+            for name, one in found.items()
+            if name in names or ca.depends_on(rows, one.friction.symbol)
+        ]
         if more == names:
             return names
         names = more

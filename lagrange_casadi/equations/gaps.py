@@ -1,4 +1,6 @@
-"""What is left of the equations of loops once they are solved, and beside what length a gap is large."""
+"""What is left of the equations of loops once they are solved, and beside what length a gap is
+large.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ if TYPE_CHECKING:
 
 
 def left(multibody: Multibody, block: Block, length: Any) -> Any:
-    """What is left of a block's equations, in one number [m]: gaps as they are, any other over its slopes, times a ``length``."""
+    """What is left of a block's equations, in one number [m]: gaps as they are, any other over its
+    slopes, times a ``length``.
+    """
     total = ca.SX(0)
     for equation in block.equations:
         if equation.loop.declared:
@@ -31,7 +35,9 @@ def left(multibody: Multibody, block: Block, length: Any) -> Any:
 
 
 def misfit(multibody: Multibody, block: Block) -> Any:
-    """The largest gap of a block, over the length of all links; and a direction is missed by a half turn, which has no sine."""
+    """The largest gap of a block, over the length of all links; and a direction is missed by a half
+    turn, which has no sine.
+    """
     found = ca.mmax(ca.fabs(block.gap)) / reach(multibody.mechanism)
     for equation in block.equations:
         if equation.aligns:
@@ -40,15 +46,28 @@ def misfit(multibody: Multibody, block: Block) -> Any:
 
 
 def reach(mechanism: Mechanism) -> Any:
-    """All links end to end [m], or one metre where there is none, as an expression in parameters."""
-    return sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0)) if mechanism.links else ca.SX(1)
+    """All links end to end [m], or one metre where there is none,
+    as an expression in parameters.
+    """
+    return (
+        sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0))
+        if mechanism.links
+        else ca.SX(1)
+    )
 
 
 @symbolic
 def extent(mechanism: Mechanism) -> Any:
-    """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is small or large beside it."""
+    """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is
+    small or large beside it.
+    """
     points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
-    places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in point.place]
+    places = [
+        ca.fabs(ca.SX(place))
+        for point in points
+        if point.body is mechanism.ground
+        for place in point.place
+    ]
     return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
 
 
@@ -66,7 +85,9 @@ def _turned(multibody: Multibody, equation: Equation) -> Any:
 
 
 def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:
-    """How much an equation changes with all coordinates: angles by a radian or their own size, slides by a length or theirs."""
+    """How much an equation changes with all coordinates: angles by a radian or their own size,
+    slides by a length or theirs.
+    """
     total = ca.SX(0)
     for coordinate in multibody.coordinates:
         unit = length if coordinate.kind == "slide" else ca.SX(1)

@@ -1,4 +1,6 @@
-"""Frames grown outward from the ground along the spanning tree, and the coordinates that place them."""
+"""Frames grown outward from the ground along the spanning tree, and the coordinates that place
+them.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ from .tree import Branch, Tree
 class Grown:
     """Frames of bodies, grown body by body."""
 
-    def __init__(self, mechanism: Mechanism, carried: Mapping[str, tuple[Coordinate, ...]], ground: Frame) -> None:
+    def __init__(
+        self, mechanism: Mechanism, carried: Mapping[str, tuple[Coordinate, ...]], ground: Frame
+    ) -> None:
         self.mechanism = mechanism
         self.carried = carried
         self.coordinates = tuple(coordinate for found in carried.values() for coordinate in found)
@@ -40,20 +44,29 @@ class Grown:
         return self.frames[parent.name], self.frames[child.name]
 
     def hang(self, branch: Branch, *, displace: bool, along: bool = False) -> None:
-        """Place a body on its branch, with the branch's mobility where wanted: in ground axes, or ``along`` its own if shorter."""
+        """Place a body on its branch, with the branch's mobility where wanted: in ground axes, or
+        ``along`` its own if shorter.
+        """
         joint = branch.joint
         frame = self._undisplaced(branch, self.carried[joint.name])
         if displace:
             plane = not self.mechanism.space
             moves = AXES[:2] if plane else AXES
             turns = (AXES[2:] if plane else AXES) if joint.bears_moment else ()
-            rates = self.mobilities[joint.name] = ca.SX.sym(f"ed_{joint.name}", len(moves) + len(turns))
+            rates = self.mobilities[joint.name] = ca.SX.sym(
+                f"ed_{joint.name}", len(moves) + len(turns)
+            )
             translation, turning = ZERO, ZERO
             for k, axis in enumerate(moves):
                 translation = plus(translation, times(rates[k], axis))
             for k, axis in enumerate(turns, len(moves)):
                 turning = plus(turning, times(rates[k], axis))
-            if along and branch.far.body.oriented and isinstance(frame, Carried) and frame.shortest is frame.own:
+            if (
+                along
+                and branch.far.body.oriented
+                and isinstance(frame, Carried)
+                and frame.shortest is frame.own
+            ):
                 frame = frame.displaced_along(translation, turning)
                 self.own_axes.add(joint.name)
             else:
@@ -61,17 +74,23 @@ class Grown:
         self.frames[branch.far.body.name] = frame
 
     def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[Any, Any, Any]:
-        """Place a bar between its ends, with the mobilities of the named joints, and return the equation of its length."""
+        """Place a bar between its ends, with the mobilities of the named joints, and return the
+        equation of its length.
+        """
         self.mobilities |= {name: ca.SX.sym(f"ed_{name}", 3) for name in displace}
         self.frames[bar.link.name], gap = bar_frame(bar, self.frames, self.mobilities)
         return gap
 
     def counted(self, expression: Any) -> Any:
-        """An expression of what the user measures in the tree's own variables, angles counted by turns."""
+        """An expression of what the user measures in the tree's own variables, angles counted by
+        turns.
+        """
         return self._measured(expression, turns=True)
 
     def at_state(self, expression: Any) -> Any:
-        """The same with rates; angles that are not driven are symbols of their own, for :mod:`.turns` to tell."""
+        """The same with rates; angles that are not driven are symbols of their own, for
+        :mod:`.turns` to tell.
+        """
         return self._measured(expression, turns=False)
 
     def _measured(self, expression: Any, *, turns: bool) -> Any:
@@ -79,14 +98,21 @@ class Grown:
         values: list[Any] = []
         for measure in self.mechanism.measures.asked:
             of = measure.of
-            if not ca.depends_on(ca.SX(expression), ca.vertcat(*measure.places, *measure.rates, *measure.accelerations)):
+            if not ca.depends_on(
+                ca.SX(expression),
+                ca.vertcat(*measure.places, *measure.rates, *measure.accelerations),
+            ):
                 continue
             symbols += [*measure.places, *measure.rates, *measure.accelerations]
             if isinstance(of, Joint):
                 assert measure.axis is not None
                 own = own_coordinate(measure.axis, self.coordinates)
                 known = turns or measure.axis.kind == "slide" or (own is not None and own.driven)
-                place = place_along(of, measure.axis, self.frames, self.coordinates) if known else self._seen(of, measure.axis)
+                place = (
+                    place_along(of, measure.axis, self.frames, self.coordinates)
+                    if known
+                    else self._seen(of, measure.axis)
+                )
                 values += [place, *rates_along(of, measure.axis, self.frames, self.coordinates)]
             elif isinstance(of, Point):
                 frame, many = self.frames[of.body.name], len(measure.places)
@@ -94,7 +120,11 @@ class Grown:
                 values += [*frame.place_of(of.place)[:many], *speed[:many], *acceleration[:many]]
             else:
                 frame = self.frames[of.name]
-                values += [frame.rotation.angle if turns else self._seen(of), frame.rate[2], frame.angular[2]]
+                values += [
+                    frame.rotation.angle if turns else self._seen(of),
+                    frame.rate[2],
+                    frame.angular[2],
+                ]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
 
     def _seen(self, of: Joint | Link, axis: Axis | None = None) -> Any:
@@ -120,7 +150,9 @@ class Grown:
         return child.rotation.against(parent.rotation)
 
     def _undisplaced(self, branch: Branch, coordinates: Sequence[Coordinate]) -> Frame:
-        """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""
+        """The frame of the body that hangs on a branch, anchored at the
+        joint's point on its child.
+        """
         base = self.frames[branch.near.body.name]
         rotation, rate, angular = self._turn(branch, coordinates, base)
         slides = _slides(coordinates)
@@ -130,19 +162,39 @@ class Grown:
         moved = Frame(speed=speed, acceleration=acceleration, rate=turning)
         for direction, coordinate in slides:
             moved = _slid(moved, carrier.apply(times(branch.sign, direction)), coordinate)
-        motion = base.place_of(point), moved.speed, moved.acceleration, rotation, rate, angular, anchor
+        motion = (
+            base.place_of(point),
+            moved.speed,
+            moved.acceleration,
+            rotation,
+            rate,
+            angular,
+            anchor,
+        )
         if not isinstance(base, Carried):
             return Frame(*motion)
         if free := [coordinate for coordinate in coordinates if coordinate.ball is not None]:
-            speed, acceleration = rotation.resolve(moved.speed), rotation.resolve(moved.acceleration)
-            own = Frame(speed=speed, acceleration=acceleration, rate=_rates(free), angular=_accelerations(free))
+            speed, acceleration = (
+                rotation.resolve(moved.speed),
+                rotation.resolve(moved.acceleration),
+            )
+            own = Frame(
+                speed=speed,
+                acceleration=acceleration,
+                rate=_rates(free),
+                angular=_accelerations(free),
+            )
         else:
             own = _own(branch, coordinates, base)
         return Carried(
-            *motion, replace(own, anchor=anchor), base.turns + sum(coordinate.kind != "slide" for coordinate in coordinates)
+            *motion,
+            replace(own, anchor=anchor),
+            base.turns + sum(coordinate.kind != "slide" for coordinate in coordinates),
         )
 
-    def _turn(self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame) -> tuple[Rotation, Vector, Vector]:
+    def _turn(
+        self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame
+    ) -> tuple[Rotation, Vector, Vector]:
         """Direction, angular velocity and its change of the body that hangs on a branch."""
         if not branch.far.body.oriented:
             return Rotation(), ZERO, ZERO
@@ -153,10 +205,17 @@ class Grown:
             own = Rotation.flat(*ca.vertsplit(coordinate.variables))
             if not coordinate.driven:
                 return own, (0.0, 0.0, coordinate.rate), (0.0, 0.0, coordinate.acceleration)
-            spin, change = (times(branch.sign, (0.0, 0.0, one)) for one in (coordinate.rate, coordinate.acceleration))
+            spin, change = (
+                times(branch.sign, (0.0, 0.0, one))
+                for one in (coordinate.rate, coordinate.acceleration)
+            )
             assert base.rotation.angle is not None
             assert own.angle is not None
-            return replace(own, angle=base.rotation.angle + branch.sign * own.angle), plus(rate, spin), plus(angular, change)
+            return (
+                replace(own, angle=base.rotation.angle + branch.sign * own.angle),
+                plus(rate, spin),
+                plus(angular, change),
+            )
         if free := [c for c in coordinates if c.ball is not None]:
             assert free[0].ball is not None
             rotation = free[0].ball.rotation
@@ -169,13 +228,20 @@ class Grown:
             own = Rotation.about(direction, c, s, angle)
             self.turning[coordinate.name] = rotation.apply(direction)
             axis = times(branch.sign, self.turning[coordinate.name])
-            angular = plus(angular, plus(times(coordinate.acceleration, axis), cross(times(coordinate.rate, rate), axis)))
+            angular = plus(
+                angular,
+                plus(
+                    times(coordinate.acceleration, axis), cross(times(coordinate.rate, rate), axis)
+                ),
+            )
             rate = plus(rate, times(coordinate.rate, axis))
             rotation = rotation.then(own.inverse if branch.reverse else own)
         return rotation if branch.reverse else rotation.then(zero), rate, angular
 
     def along(self, joint: Joint, axis: Axis) -> Vector:
-        """The force or couple on a joint's child, in ground axes, that does a unit of work along an axis, and none along others."""
+        """The force or couple on a joint's child, in ground axes, that does a unit of work along an
+        axis, and none along others.
+        """
         parent, child = self.ends(joint)
         if axis.kind == "slide":
             return parent.rotation.apply(axis.direction)
@@ -183,7 +249,8 @@ class Grown:
         number = turns.index(axis.coordinate)
         if len(turns) < 3:
             return turning_axes(joint, parent, child)[number]
-        # The first axis and the last one are not at right angles: each couple is at right angles to the other two axes.
+        # The first axis and the last one are not at right angles: each couple is at right angles to
+        # the other two axes.
         first, second, last = (self.turning[name] for name in turns)
         if number == 1:
             return second
@@ -200,7 +267,9 @@ def coordinates_of(
     A joint with three turns none of which is ``driven`` or ``told`` is a ball.
     """
     # Directions that drives alone set, and their rates, by body: of a plane.
-    turned: dict[str, tuple[Any, Any]] = {} if mechanism.space else {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
+    turned: dict[str, tuple[Any, Any]] = (
+        {} if mechanism.space else {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
+    )
     found: dict[str, tuple[Coordinate, ...]] = {}
     for branch in tree.branches:
         joint, near, far = branch.joint, branch.near.body.name, branch.far.body
@@ -213,7 +282,9 @@ def coordinates_of(
             ball = Ball.of(joint, near, reverse=branch.reverse)
         for axis in joint.axes_of(far):
             name, drives = axis.coordinate, axis.coordinate in driven
-            q, rate, acceleration = (ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration"))
+            q, rate, acceleration = (
+                ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration")
+            )
             if axis.kind == "slide":
                 own.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
                 continue
@@ -221,25 +292,53 @@ def coordinates_of(
                 continue
             turn, spin = q, rate
             if drives and near in turned:
-                turn, spin = (before + branch.sign * one for before, one in zip(turned[near], (q, rate), strict=True))
+                turn, spin = (
+                    before + branch.sign * one
+                    for before, one in zip(turned[near], (q, rate), strict=True)
+                )
                 turned[far.name] = turn, spin
             c, s = ca.SX.sym(f"cos_{name}"), ca.SX.sym(f"sin_{name}")
             variables, change = ca.vertcat(c, s, q), ca.vertcat(-s * spin, c * spin, rate)
             relative = mechanism.space or (drives and near not in turned)
-            own.append(Coordinate(name, far.name, axis, drives, variables, change, rate, acceleration, turn, relative=relative))
+            own.append(
+                Coordinate(
+                    name,
+                    far.name,
+                    axis,
+                    drives,
+                    variables,
+                    change,
+                    rate,
+                    acceleration,
+                    turn,
+                    relative=relative,
+                )
+            )
         if ball is not None:
-            own += _of_ball(ball, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"])
+            own += _of_ball(
+                ball, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"]
+            )
         found[joint.name] = tuple(own)
     return found
 
 
 def _of_ball(ball: Ball, body: str, axes: Sequence[Axis]) -> list[Coordinate]:
     """The three coordinates of a ball."""
-    rates, accelerations = ([ca.SX.sym(f"{axis.coordinate}_{what}") for axis in axes] for what in ("spin", "spin_rate"))
+    rates, accelerations = (
+        [ca.SX.sym(f"{axis.coordinate}_{what}") for axis in axes] for what in ("spin", "spin_rate")
+    )
     changes = ball.changes(rates)
     return [
         Coordinate(
-            axis.coordinate, body, axis, False, ball.axes[3 * k : 3 * k + 3], changes[k], rates[k], accelerations[k], ball=ball
+            axis.coordinate,
+            body,
+            axis,
+            False,
+            ball.axes[3 * k : 3 * k + 3],
+            changes[k],
+            rates[k],
+            accelerations[k],
+            ball=ball,
         )
         for k, axis in enumerate(axes)
     ]
@@ -258,7 +357,9 @@ def _accelerations(free: Sequence[Coordinate]) -> Vector:
 
 
 def _slides(coordinates: Sequence[Coordinate]) -> list[tuple[Vector, Coordinate]]:
-    """The coordinates along which a joint slides, each with how far and where a unit of it leads."""
+    """The coordinates along which a joint slides, each with how far and where
+    a unit of it leads.
+    """
     return [
         (times(c.axis.pitch, c.axis.direction) if c.axis.move == "screw" else c.axis.direction, c)
         for c in coordinates
@@ -267,7 +368,9 @@ def _slides(coordinates: Sequence[Coordinate]) -> list[tuple[Vector, Coordinate]
 
 
 def _ends(branch: Branch, slides: Sequence[tuple[Vector, Coordinate]]) -> tuple[Vector, Vector]:
-    """The point of the body near the ground, and that of the one that hangs on it, that are at one place."""
+    """The point of the body near the ground, and that of the one that hangs on it, that are at one
+    place.
+    """
     near, far = branch.near.place, branch.far.place
     for direction, coordinate in slides:
         along = times(coordinate.value, direction)
@@ -276,7 +379,9 @@ def _ends(branch: Branch, slides: Sequence[tuple[Vector, Coordinate]]) -> tuple[
 
 
 def _slid(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
-    """A motion with that along an axis, which turns at the motion's rate under what slides on it (Coriolis)."""
+    """A motion with that along an axis, which turns at the motion's rate under what slides on it
+    (Coriolis).
+    """
     spin = times(coordinate.rate, times(2, motion.rate))
     change = plus(times(coordinate.acceleration, axis), cross(spin, axis))
     speed = plus(motion.speed, times(coordinate.rate, axis))
@@ -284,10 +389,14 @@ def _slid(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
 
 
 def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Frame:
-    """The motion of the body that hangs on a branch, in its own axes: handed on from axes to axes, each turned from the last."""
+    """The motion of the body that hangs on a branch, in its own axes: handed on from axes to axes,
+    each turned from the last.
+    """
     slides = _slides(coordinates)
     speed, acceleration = base.own.motion_of(_ends(branch, slides)[0])
-    motion = Frame(speed=speed, acceleration=acceleration, rate=base.own.rate, angular=base.own.angular)
+    motion = Frame(
+        speed=speed, acceleration=acceleration, rate=base.own.rate, angular=base.own.angular
+    )
     if not branch.far.body.oriented:
         for direction, coordinate in slides:
             motion = _slid(motion, direction, coordinate)
@@ -302,8 +411,14 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
     for coordinate in reversed(turns) if branch.reverse else turns:
         turn = Rotation.about(coordinate.axis.direction, *ca.vertsplit(coordinate.variables))
         axis = times(branch.sign, coordinate.axis.direction)
-        change = plus(times(coordinate.acceleration, axis), cross(times(coordinate.rate, motion.rate), axis))
-        motion = replace(motion, rate=plus(motion.rate, times(coordinate.rate, axis)), angular=plus(motion.angular, change))
+        change = plus(
+            times(coordinate.acceleration, axis), cross(times(coordinate.rate, motion.rate), axis)
+        )
+        motion = replace(
+            motion,
+            rate=plus(motion.rate, times(coordinate.rate, axis)),
+            angular=plus(motion.angular, change),
+        )
         motion = _seen_from(motion, turn.inverse if branch.reverse else turn)
     if not branch.reverse:
         return _seen_from(motion, zero)
@@ -314,5 +429,7 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
 
 def _seen_from(motion: Frame, turn: Rotation) -> Frame:
     """A motion in axes that are turned."""
-    speed, acceleration, rate, angular = map(turn.resolve, (motion.speed, motion.acceleration, motion.rate, motion.angular))
+    speed, acceleration, rate, angular = map(
+        turn.resolve, (motion.speed, motion.acceleration, motion.rate, motion.angular)
+    )
     return Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)

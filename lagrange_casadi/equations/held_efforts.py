@@ -23,7 +23,8 @@ from .pressing import frictions_of
 class HeldEfforts(Graphs):
     """``instant(t, d, d_rate, d_acceleration, z, p, signs) -> out``, a row for each of ``columns``.
 
-    ``signs`` are those of ``frictions``; those ``every_way`` may hold their joint in more than one direction.
+    ``signs`` are those of ``frictions``; those ``every_way`` may hold their joint in more than one
+    direction.
     """
 
     instant: Any
@@ -35,7 +36,9 @@ class HeldEfforts(Graphs):
 @symbolic
 @functools.lru_cache(maxsize=8)
 def held_efforts(scene: Scene) -> HeldEfforts:
-    """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts that are ``open`` besides."""
+    """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts
+    that are ``open`` besides.
+    """
     mechanism = scene.mechanism
     want = Wanted.of(mechanism, ["effort"])
     moving = Moving.of(scene, want)
@@ -55,9 +58,24 @@ def held_efforts(scene: Scene) -> HeldEfforts:
     efforts = {key: value for key, value in forces.columns.items() if isinstance(key, Output)}
     slopes = ca.jacobian(column(efforts.values()), forces.free)
     found: dict[Column, Any] = dict(forces.columns)
-    found |= {Check("open", key): ca.sum2(ca.fabs(slopes[k, :])) for k, key in enumerate(efforts) if slopes[k, :].nnz()}
+    found |= {
+        Check("open", key): ca.sum2(ca.fabs(slopes[k, :]))
+        for k, key in enumerate(efforts)
+        if slopes[k, :].nnz()
+    }
     out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p", "signs"]
-    instant = ca.Function("held", [*moving.inputs, column(signs.values())], [ca.densify(out)], names, ["out"], {"cse": True})
-    every_way = (name for name, load in frictions_of(mechanism).items() if load.every_way or load.beside is not None)
+    instant = ca.Function(
+        "held",
+        [*moving.inputs, column(signs.values())],
+        [ca.densify(out)],
+        names,
+        ["out"],
+        {"cse": True},
+    )
+    every_way = (
+        name
+        for name, load in frictions_of(mechanism).items()
+        if load.every_way or load.beside is not None
+    )
     return HeldEfforts(instant, tuple(found), tuple(signs), tuple(every_way))

@@ -1,8 +1,9 @@
-"""Whether velocities are rates of places: total time derivatives of functions of the coordinates and of time.
+"""Whether velocities are rates of places: total time derivatives of functions of the coordinates
+and of time.
 
-They are just where d/dt(dw/dq') = dw/dq holds, whatever the coordinates, rates and accelerations. It holds for velocities of
-points in axes at rest, and for rates of angles in a plane. It does not hold for the components of a body's angular velocity in
-space, which are the rates of nothing.
+They are just where d/dt(dw/dq') = dw/dq holds, whatever the coordinates, rates and accelerations.
+It holds for velocities of points in axes at rest, and for rates of angles in a plane. It does not
+hold for the components of a body's angular velocity in space, which are the rates of nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ _SAME, _NOTHING = 1e-8, 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a system moves: symbols of coordinates p, rates q', accelerations q'' and time t, and p' = tangent q' + drift."""
+    """How a system moves: symbols of coordinates p, rates q', accelerations q'' and time t, and p'
+    = tangent q' + drift.
+    """
 
     coordinates: Any
     rates: Any
@@ -39,15 +42,18 @@ class Course:
     def derivative(self, graphs: Any) -> Any:
         """The total time derivative of graphs over coordinates, rates and time."""
         state = ca.vertcat(self.coordinates, self.rates, self.time)
-        change = ca.vertcat(self.coordinate_rates, self.accelerations, ca.SX.ones(self.time.numel()))
+        change = ca.vertcat(
+            self.coordinate_rates, self.accelerations, ca.SX.ones(self.time.numel())
+        )
         return ca.jtimes(graphs, state, change)
 
 
 def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) -> list[int]:
-    """The numbers of those ``graphs``, over coordinates, rates and time, that are no rates of places: found at random points.
+    """The numbers of those ``graphs``, over coordinates, rates and time, that are no rates of
+    places: found at random points.
 
-    Mobilities rest; along one of them, only graphs that depend on it are looked at. Raises :class:`DeclarationError` where the
-    graphs have no value at any of many points.
+    Mobilities rest; along one of them, only graphs that depend on it are looked at. Raises
+    :class:`DeclarationError` where the graphs have no value at any of many points.
     """
     graphs = ca.densify(ca.SX(graphs))
     n, p, k = course.rates.numel(), course.coordinates.numel(), graphs.numel()
@@ -62,7 +68,9 @@ def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) 
     for e, e_rate in zip(_split(mobilities), _split(mobility_rates), strict=False):
         by_mobility = ca.jacobian(graphs, e)
         own = ca.SX(by_mobility.sparsity(), 1)
-        across[0] = ca.horzcat(across[0], course.derivative(ca.densify(ca.jacobian(graphs, e_rate))) * own)
+        across[0] = ca.horzcat(
+            across[0], course.derivative(ca.densify(ca.jacobian(graphs, e_rate))) * own
+        )
         across[1] = ca.horzcat(across[1], by_mobility)
     moving = ca.vertcat(course.coordinates, course.rates, course.time, course.accelerations)
     resting = ca.vertcat(mobilities, mobility_rates)
@@ -71,18 +79,29 @@ def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) 
     identity = ca.Function("identity", [weights, moving, others, resting], outputs)
 
     def broken(at: Array, fixed: Array, weighted: Array) -> list[bool]:
-        """Whether the sum is broken along the coordinates; and which graphs are along the mobilities."""
+        """Whether the sum is broken along the coordinates; and which graphs are along the
+        mobilities.
+        """
         *sides, _ = (x.full() for x in identity(weighted, at, fixed, np.zeros(resting.numel())))
-        gap, across_gap = (np.abs(a - b).max(axis=1, initial=0.0) for a, b in (sides[:2], sides[2:]))
-        largest, across_largest = (np.maximum(np.abs(a), np.abs(b)).max(initial=0.0) for a, b in (sides[:2], sides[2:]))
-        return [bool(gap.max(initial=0.0) > _SAME * (1.0 + largest)), *(across_gap > _SAME * (1.0 + across_largest))]
+        gap, across_gap = (
+            np.abs(a - b).max(axis=1, initial=0.0) for a, b in (sides[:2], sides[2:])
+        )
+        largest, across_largest = (
+            np.maximum(np.abs(a), np.abs(b)).max(initial=0.0) for a, b in (sides[:2], sides[2:])
+        )
+        return [
+            bool(gap.max(initial=0.0) > _SAME * (1.0 + largest)),
+            *(across_gap > _SAME * (1.0 + across_largest)),
+        ]
 
     generator, circles = np.random.default_rng(0), _circles(course)
     found: set[int] = set()
     points = 0
     for trial in range(_TRIALS):
         reach = 1.0 if trial < _TRIALS // 3 else 10.0 ** generator.uniform(-3.0, 3.0)
-        at, fixed = (reach * generator.uniform(0.2, 2.0, size) for size in (moving.numel(), others.numel()))
+        at, fixed = (
+            reach * generator.uniform(0.2, 2.0, size) for size in (moving.numel(), others.numel())
+        )
         at *= generator.choice([-1.0, 1.0], at.size) if trial % 2 else 1.0
         for pair in circles:
             angle = generator.uniform(-np.pi, np.pi)
@@ -97,28 +116,42 @@ def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) 
         together, *alone = broken(at, fixed, weighted)
         found |= {i for i in range(k) if alone[i]}
         if together:
-            found |= {i for i in range(k) if broken(at, fixed, np.where(np.arange(k) == i, weighted, 0.0))[0]}
+            found |= {
+                i
+                for i in range(k)
+                if broken(at, fixed, np.where(np.arange(k) == i, weighted, 0.0))[0]
+            }
         points += 1
         if points == _POINTS:
             break
     if not points:
-        raise DeclarationError(f"velocities or tangent are not finite at any of {_TRIALS} random points, so they cannot be checked")
+        raise DeclarationError(
+            f"velocities or tangent are not finite at any of {_TRIALS} random points, so they"
+            " cannot be checked"
+        )
     return sorted(found)
 
 
 def _circles(course: Course) -> list[tuple[int, int]]:
-    """Pairs of coordinates that stay on a circle, such as a cosine and a sine: graphs may rely on its radius of one."""
+    """Pairs of coordinates that stay on a circle, such as a cosine and a sine: graphs may rely on
+    its radius of one.
+    """
     generator, size = np.random.default_rng(1), course.coordinates.numel()
     tangent = ca.densify(course.tangent)
     others = _others(tangent, course.coordinates)
     at = generator.uniform(0.2, 2.0, size)
-    slopes = ca.Function("tangent", [course.coordinates, others], [tangent])(at, generator.uniform(0.2, 2.0, others.numel())).full()
+    slopes = ca.Function("tangent", [course.coordinates, others], [tangent])(
+        at, generator.uniform(0.2, 2.0, others.numel())
+    ).full()
     radial = at[:, None] * slopes
     found: list[tuple[int, int]] = []
     free = np.flatnonzero(np.abs(radial).max(axis=1, initial=0.0))
     while free.size:
         i, free = int(free[0]), free[1:]
-        meets = np.flatnonzero(np.abs(radial[free] + radial[i]).max(axis=1, initial=0.0) < _SAME * np.abs(radial[i]).max())
+        meets = np.flatnonzero(
+            np.abs(radial[free] + radial[i]).max(axis=1, initial=0.0)
+            < _SAME * np.abs(radial[i]).max()
+        )
         if meets.size:
             found.append((i, int(free[meets[0]])))
             free = np.delete(free, meets[0])
@@ -128,7 +161,9 @@ def _circles(course: Course) -> list[tuple[int, int]]:
 def _others(graphs: Any, known: Any) -> Any:
     """The symbols of graphs that are not among those that are known, one column."""
     own = {symbol.element_hash() for symbol in _split(known)}
-    return ca.vertcat(ca.SX(0, 1), *(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in own))
+    return ca.vertcat(
+        ca.SX(0, 1), *(symbol for symbol in ca.symvar(graphs) if symbol.element_hash() not in own)
+    )
 
 
 def _split(symbols: Any) -> list[Any]:

@@ -15,15 +15,19 @@ from .multibody import Coordinate, Multibody, column
 from .substitution import Numbers
 
 LARGEST_STEP = 0.3
-"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
+"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on
+another branch.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class NewtonLoop:
-    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
+    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess
+    for the first instant.
 
-    ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes them, for messages. ``turning``
-    tells which unknowns are angles that matter up to whole turns only.
+    ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes
+    them, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns
+    only.
     """
 
     step: Any
@@ -35,9 +39,11 @@ class NewtonLoop:
 
 @dataclass(eq=False)
 class Iterated:
-    """The unknowns, in the order in which they were added: numbers, each on a scale of its own, and balls by their quaternions.
+    """The unknowns, in the order in which they were added: numbers, each on a scale of its own, and
+    balls by their quaternions.
 
-    Gaps are told to it in the axes of the balls, whose slopes are shorter than those of quaternions.
+    Gaps are told to it in the axes of the balls, whose slopes are shorter than those of
+    quaternions.
     """
 
     parts: list[Any] = field(default_factory=list)
@@ -53,9 +59,13 @@ class Iterated:
     def ball(self, ball: Ball, guess: Sequence[float]) -> Any:
         """The axes of a ball, as they follow from its four symbols."""
         self.balls[len(self.parts)] = ball
-        return axes_of(self._add(ca.SX.sym(f"z_{ball.joint.name}", 4), [1, 1, 1], guess, turning=False))
+        return axes_of(
+            self._add(ca.SX.sym(f"z_{ball.joint.name}", 4), [1, 1, 1], guess, turning=False)
+        )
 
-    def _add(self, symbols: Any, scales: Sequence[Any], guess: Sequence[float], *, turning: bool) -> Any:
+    def _add(
+        self, symbols: Any, scales: Sequence[Any], guess: Sequence[float], *, turning: bool
+    ) -> Any:
         self.parts.append(symbols)
         self.scales += scales
         self.guess += guess
@@ -72,20 +82,33 @@ class Iterated:
         if not self.balls:
             return expression
         axes = column(ball.axes for ball in self.balls.values())
-        return ca.substitute(ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.balls))
+        return ca.substitute(
+            ca.SX(expression), axes, column(axes_of(self.parts[k]) for k in self.balls)
+        )
 
     def step(self, gaps: Any) -> tuple[Any, Any]:
-        """What a step adds to the symbols, so that gaps vanish, and how large it is; a large one is shortened."""
-        slope = ca.jacobian(gaps, column(self.balls[k].axes if k in self.balls else part for k, part in enumerate(self.parts)))
+        """What a step adds to the symbols, so that gaps vanish, and how large it is; a large one is
+        shortened.
+        """
+        slope = ca.jacobian(
+            gaps,
+            column(
+                self.balls[k].axes if k in self.balls else part for k, part in enumerate(self.parts)
+            ),
+        )
         if self.balls:
             unit = ca.SX.eye(3)
             turned = {
-                k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3))) for k, b in self.balls.items()
+                k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3)))
+                for k, b in self.balls.items()
             }
-            slope = self.placed(slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts)))))
+            slope = self.placed(
+                slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts))))
+            )
         correction = -LinearSystem.of(slope).solve(self.placed(gaps))
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
-        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
+        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times
+        # infinity.
         bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
         return self._moved(bounded) if self.balls else bounded, relative
 
@@ -100,15 +123,25 @@ class Iterated:
         return column(added)
 
 
-def place_roughly(multibody: Multibody, told: Mapping[Coordinate, float], numbers: Numbers, but: Mapping[Coordinate, Any]) -> Any:
-    """Let ``numbers`` hold where coordinates are by what is ``told`` of them, but for some; and give the quaternions of balls."""
+def place_roughly(
+    multibody: Multibody,
+    told: Mapping[Coordinate, float],
+    numbers: Numbers,
+    but: Mapping[Coordinate, Any],
+) -> Any:
+    """Let ``numbers`` hold where coordinates are by what is ``told`` of them, but for some; and
+    give the quaternions of balls.
+    """
     found: dict[Ball, list[float]] = {}
     for coordinate in multibody.coordinates:
         ball = coordinate.ball
         if coordinate in but or ball in found:
             continue
         if ball is None:
-            numbers.note(coordinate.variables, numbers.of(coordinate.placed(coordinate.value, ca.SX(told.get(coordinate, 0.0)))))
+            numbers.note(
+                coordinate.variables,
+                numbers.of(coordinate.placed(coordinate.value, ca.SX(told.get(coordinate, 0.0)))),
+            )
             continue
         turns = [told.get(c, 0.0) for c in multibody.coordinates if c.ball is ball]
         axes = np.array(numbers.of(ball.turned_by(turns, multibody.frames[ball.near].rotation)))

@@ -1,4 +1,6 @@
-"""What joints look like in space: where they slide, what they close, what they bear. What a plane has none of is nil.
+"""What joints look like in space: where they slide, what they close, what they bear.
+
+What a plane has none of is nil.
 
 In each function ``parent`` and ``child`` are the frames of a joint's bodies.
 """
@@ -31,9 +33,15 @@ def apart(joint: Joint, parent: Frame, child: Frame) -> Vector:
 
 
 def gap_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, Vector]:
-    """Velocity and acceleration of a joint's point on the child, less those of the parent's point that it is at, in ground axes."""
+    """Velocity and acceleration of a joint's point on the child, less those of the parent's point
+    that it is at, in ground axes.
+    """
     own = child.motion_of(joint.child.place)
-    under = parent.motion_at(child.place_of(joint.child.place)) if joint.slides else parent.motion_of(joint.parent.place)
+    under = (
+        parent.motion_at(child.place_of(joint.child.place))
+        if joint.slides
+        else parent.motion_of(joint.parent.place)
+    )
     return minus(own[0], under[0]), minus(own[1], under[1])
 
 
@@ -52,7 +60,9 @@ def carried(joint: Joint, parent: Frame, child: Frame) -> Vector:
     return place
 
 
-def slide_motion(joint: Joint, parent: Frame, child: Frame, along: Vector) -> tuple[Expression, Expression]:
+def slide_motion(
+    joint: Joint, parent: Frame, child: Frame, along: Vector
+) -> tuple[Expression, Expression]:
     """Rate and acceleration of :func:`slide`, while nothing moves but along the joint's slides."""
     axis = parent.rotation.apply(along)
     speed, acceleration = gap_motion(joint, parent, child)
@@ -63,7 +73,9 @@ def slide_motion(joint: Joint, parent: Frame, child: Frame, along: Vector) -> tu
 
 
 def turned(joint: Joint, number: int, parent: Frame, child: Frame) -> Expression:
-    """The angle of a joint about the first (0) or the second of its one or two turns; in a plane it counts turns."""
+    """The angle of a joint about the first (0) or the second of its one or two turns; in a plane it
+    counts turns.
+    """
     if joint.turned is None:
         return child.rotation.against(parent.rotation).angle
     seen = misalignment(joint, parent, child)
@@ -75,7 +87,9 @@ def turned(joint: Joint, number: int, parent: Frame, child: Frame) -> Expression
     return ca.atan2(dot(there, third), dot(there, first))
 
 
-def turning(joint: Joint, number: int, parent: Frame, child: Frame) -> tuple[Expression, Expression]:
+def turning(
+    joint: Joint, number: int, parent: Frame, child: Frame
+) -> tuple[Expression, Expression]:
     """Rate and acceleration of :func:`turned`, while nothing turns but about the joint's axes."""
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
     axis = AXES[2] if joint.turned is None else turning_axes(joint, parent, child)[number]
@@ -86,16 +100,20 @@ def turning(joint: Joint, number: int, parent: Frame, child: Frame) -> tuple[Exp
 def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
     """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
 
-    Phi are gaps in ground axes or across slides, and of directions where they are held; its multipliers are the action of the
-    parent on the child along these gaps.
+    Phi are gaps in ground axes or across slides, and of directions where they are held; its
+    multipliers are the action of the parent on the child along these gaps.
     """
     gaps = [*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child)]
-    phi, phi_rate, phi_acceleration = (ca.vertcat(ca.SX(0, 1), *(gap[k] for gap in gaps)) for k in range(3))
+    phi, phi_rate, phi_acceleration = (
+        ca.vertcat(ca.SX(0, 1), *(gap[k] for gap in gaps)) for k in range(3)
+    )
     return phi, phi_rate, phi_acceleration
 
 
 def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tuple[Vector, Vector]:
-    """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by its multipliers."""
+    """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by
+    its multipliers.
+    """
     force: Vector = (0.0, 0.0, 0.0)
     moment: Vector = (0.0, 0.0, 0.0)
     places = [way for _, way in _across(joint, parent)]
@@ -109,12 +127,18 @@ def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tup
     return force, moment
 
 
-def borne(joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vector) -> tuple[Vector, Vector]:
-    """What a joint bears of a force and a moment in ground axes: nothing along its slides, nothing about its turns.
+def borne(
+    joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vector
+) -> tuple[Vector, Vector]:
+    """What a joint bears of a force and a moment in ground axes: nothing along its slides, nothing
+    about its turns.
 
-    A screw bears a moment about its axis that is less its force along it times its pitch, so that both do no work.
+    A screw bears a moment about its axis that is less its force along it times its pitch, so that
+    both do no work.
     """
-    slides = [parent.rotation.apply(joint.triad[f.direction]) for f in joint.lets if f.move == "slide"]
+    slides = [
+        parent.rotation.apply(joint.triad[f.direction]) for f in joint.lets if f.move == "slide"
+    ]
     if len(slides) == 1 and joint.turned is None:
         normal = cross(AXES[2], slides[0])
         force = times(dot(force, normal), normal)
@@ -131,19 +155,27 @@ def borne(joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vect
 
 
 def turning_axes(joint: Joint, parent: Frame, child: Frame) -> list[Vector]:
-    """The axes in ground axes about which a joint that bears a moment lets its child turn, at right angles to each other."""
+    """The axes in ground axes about which a joint that bears a moment lets its child turn, at right
+    angles to each other.
+    """
     turns = [joint.triad[freedom.direction] for freedom in joint.lets if freedom.move != "slide"]
     own = [_at_zero(joint, direction) for direction in turns[1:]]
     return [*map(parent.rotation.apply, turns[:1]), *map(child.rotation.apply, own[:1])]
 
 
 def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
-    """One less the cosine of what the directions that a joint holds are off; None where half a turn off is as good."""
+    """One less the cosine of what the directions that a joint holds are off; None where half a turn
+    off is as good.
+    """
     turns = [f for f in joint.lets if f.move != "slide"]
     seen = misalignment(joint, parent, child)
     if not turns:
         # Of a plane the trace is 1 + 2 cos.
-        return 1 - seen.c if seen.angle is not None else 1 - (seen.x[0] + seen.y[1] + seen.z[2] - 1) / 2
+        return (
+            1 - seen.c
+            if seen.angle is not None
+            else 1 - (seen.x[0] + seen.y[1] + seen.z[2] - 1) / 2
+        )
     if len(turns) > 1 or joint.turned is None:
         return None
     axis = _at_zero(joint, joint.triad[turns[0].direction])
@@ -156,7 +188,9 @@ def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
 
 
 def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
-    """The directions along which a joint holds its points together: in the parent's axes, if it slides, and in ground axes."""
+    """The directions along which a joint holds its points together: in the parent's axes, if it
+    slides, and in ground axes.
+    """
     plane = joint.directions is None
     slides = sum(freedom.move == "slide" for freedom in joint.lets)
     if not slides:
@@ -175,10 +209,14 @@ def held_directions(joint: Joint) -> int:
 
 
 def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
-    """Pairs of directions that a joint holds at right angles, of its child and of its parent, where coordinates are zero."""
+    """Pairs of directions that a joint holds at right angles, of its child and of its parent, where
+    coordinates are zero.
+    """
     if not joint.bears_moment:
         return ()
-    first, second, third = AXES if not joint.turns else (_at_zero(joint, direction) for direction in _triad(joint))
+    first, second, third = (
+        AXES if not joint.turns else (_at_zero(joint, direction) for direction in _triad(joint))
+    )
     if joint.directions is None:
         return ((first, second),)
     return (
@@ -193,7 +231,10 @@ def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
     speed, acceleration = gap_motion(joint, parent, child)
     slides = sum(freedom.move == "slide" for freedom in joint.lets)
     if not slides:
-        distance, many = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place)), len(_across(joint, parent))
+        distance, many = (
+            minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place)),
+            len(_across(joint, parent)),
+        )
         yield from zip(distance[:many], speed[:many], acceleration[:many], strict=True)
         return
     distance, held = apart(joint, parent, child), _across(joint, parent)
@@ -215,7 +256,9 @@ def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Ga
         return
     base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
-    turning = Frame(rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate))))
+    turning = Frame(
+        rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate)))
+    )
     for own, across in held:
         there = seen.apply(own)
         speed, acceleration = turning.motion_of(there)
@@ -230,5 +273,7 @@ def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:
 
 
 def _at_zero(joint: Joint, direction: Vector) -> Vector:
-    """A direction in the parent's axes, in the child's axes where the joint's coordinates are zero."""
+    """A direction in the parent's axes, in the child's axes where the
+    joint's coordinates are zero.
+    """
     return orientation(joint).resolve(direction)

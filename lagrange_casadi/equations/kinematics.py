@@ -1,9 +1,10 @@
 """Loops: the undriven coordinates, their rates and accelerations, from the driven ones.
 
-The loop equations Phi = 0 are solved block by block (:mod:`.blocks`). A dyad is solved in closed form (:mod:`.loops`); any other
-block by Newton's method, iterated by whoever evaluates the graphs, from the solution of the instant before. Rates and
-accelerations follow from the linear systems Phi_z z' = -Phi_d d' and Phi_z z'' = -(Phi_d d'' + what the rates leave), whose
-matrix, transposed, gives the multipliers too.
+The loop equations Phi = 0 are solved block by block (:mod:`.blocks`). A dyad is solved in closed
+form (:mod:`.loops`); any other block by Newton's method, iterated by whoever evaluates the graphs,
+from the solution of the instant before. Rates and accelerations follow from the linear systems
+Phi_z z' = -Phi_d d' and Phi_z z'' = -(Phi_d d'' + what the rates leave), whose matrix, transposed,
+gives the multipliers too.
 """
 
 from __future__ import annotations
@@ -32,7 +33,9 @@ from .substitution import Expressions, Numbers
 from .winding import wound
 
 _WAYS = 32
-"""How many ways to close loops that are open are tried, where the first does not close the others."""
+"""How many ways to close loops that are open are tried, where the first
+does not close the others.
+"""
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
@@ -49,12 +52,15 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """The whole motion as graphs over time, the driven coordinates d, d', d'', the iterated unknowns z and the parameters.
+    """The whole motion as graphs over time, the driven coordinates d, d', d'', the iterated
+    unknowns z and the parameters.
 
-    ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`; ``systems`` are the factorized
-    Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``gaps`` [m] what is
-    left of the equations of a block, ``misfits`` how far the equations that are too many are from holding. ``loose`` names the
-    joints whose angles are known up to whole turns, ``swings`` how far those of screws are from what counts their turns.
+    ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`;
+    ``systems`` are the factorized Phi_z of ``blocks``. ``closures`` say by joint how far each loop
+    is from a dead centre, ``gaps`` [m] what is left of the equations of a block, ``misfits`` how
+    far the equations that are too many are from holding. ``loose`` names the joints whose angles
+    are known up to whole turns, ``swings`` how far those of screws are from what counts their
+    turns.
     """
 
     driven: Any
@@ -72,16 +78,19 @@ class Kinematics:
     swings: dict[str, Any]
 
     def evaluate(self, expression: Any) -> Any:
-        """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
+        """An expression in the multibody's symbols, as one in t, d, d',
+        d'', z and the parameters.
+        """
         return self.found.put_into(expression)
 
 
 def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> Kinematics:
     """Close every loop, on the branch that is nearest to ``posture`` at the start of the motion.
 
-    ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the link's or the joint's name.
-    Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`PostureError` for a posture that
-    leaves branches open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
+    ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the
+    link's or the joint's name. Raises :class:`MobilityError` where drives and degrees of freedom do
+    not match, :class:`PostureError` for a posture that leaves branches open, :class:`AssemblyError`
+    where the mechanism cannot be assembled at the start.
     """
     solver = _Solver(multibody, dict(posture), start)
     blocks = solving_order(multibody, solver.beginning())
@@ -92,10 +101,13 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
                 solver.close(block)
             break
         except AssemblyError:
-            # A loop whose way is open may have to be closed in the other one: the last such loop first.
+            # A loop whose way is open may have to be closed in the other one: the last such loop
+            # first.
             open_ = solver.undecided.ways[len(solver.ways) :]
             for k, (_, ways) in enumerate(open_):
-                waiting += [(*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(ways)))]
+                waiting += [
+                    (*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(ways)))
+                ]
             if not waiting or tried == _WAYS - 1:
                 raise
             solver = _Solver(multibody, dict(posture), start, waiting.pop())
@@ -105,15 +117,25 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
 
 
 class _Solver:
-    """Carries the expressions known so far, and their numbers at the start, while the blocks are closed in order."""
+    """Carries the expressions known so far, and their numbers at the start, while the blocks are
+    closed in order.
+    """
 
-    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, ways: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self,
+        multibody: Multibody,
+        posture: dict[str, float],
+        start: Start,
+        ways: tuple[int, ...] = (),
+    ) -> None:
         self.ways = ways
         self.multibody = multibody
         self.posture = posture
         self.start = start
         driven = [c for c in multibody.coordinates if c.driven]
-        self.d, self.dd, self.ddd = (ca.SX.sym(name, len(driven)) for name in ("d", "d_rate", "d_acceleration"))
+        self.d, self.dd, self.ddd = (
+            ca.SX.sym(name, len(driven)) for name in ("d", "d_rate", "d_acceleration")
+        )
         self.iterated = Iterated()
         self.residuals: list[Block] = []
         self.closures: dict[str, tuple[Any, bool]] = {}
@@ -133,7 +155,9 @@ class _Solver:
             self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
 
     def beginning(self) -> dict[str, Any]:
-        """What the count of freedoms needs: the rough posture, drives included, and the inputs with their values at the start."""
+        """What the count of freedoms needs: the rough posture, drives included, and the inputs with
+        their values at the start.
+        """
         mechanism = self.multibody.mechanism
         told = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
         told |= dict(zip(self.known, self.start.driven, strict=True))
@@ -161,16 +185,23 @@ class _Solver:
         closures = [self._solved(block, form) for form in block.forms]
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branches:
-                self.loose |= {c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings}
+                self.loose |= {
+                    c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings
+                }
             if closure is not None:
                 self._judge(block, closure)
 
     def _solved(self, block: Block, form: ClosedForm) -> Any | None:
-        """Take note of what one closed form of a block solves, on the branch that is nearest to the posture; its closure."""
+        """Take note of what one closed form of a block solves, on the branch that is nearest to the
+        posture; its closure.
+        """
         closure, variables = form.closure, form.variables
         if form.branches:
             signs = ca.SX(ca.DM(self._signs(block, form)))
-            told = [ca.substitute(value, column(form.branches), signs) for value in (closure, *variables)]
+            told = [
+                ca.substitute(value, column(form.branches), signs)
+                for value in (closure, *variables)
+            ]
             closure, variables = told[0], tuple(told[1:])
         if closure is not None:
             closure = self.found.put_into(closure)
@@ -187,14 +218,18 @@ class _Solver:
         return [c for c in self.known if c.kind == "angle" and c.name not in self.loose]
 
     def _judge(self, block: Block, closure: Any) -> None:
-        """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
+        """Note how far a block is from a dead centre: of blocks that one joint closes, the one that
+        is nearest.
+        """
         # What iterates has the sine for its measure, a closed form its square.
         sine = not block.forms
         before = self.closures.get(block.name)
         if before is not None:
             both = (before, (closure, sine))
             sine = sine or before[1]
-            closure = ca.fmin(*(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both))
+            closure = ca.fmin(
+                *(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both)
+            )
         self.closures[block.name] = closure, sine
 
     def _signs(self, block: Block, form: ClosedForm) -> tuple[int, ...]:
@@ -206,8 +241,15 @@ class _Solver:
         }
         values = {signs: found for signs, (closure, *found) in every.items() if closure > 0.0}
         if not values:
-            what = "is at a dead centre" if any(closure == 0.0 for closure, *_ in every.values()) else "cannot be closed"
-            raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
+            what = (
+                "is at a dead centre"
+                if any(closure == 0.0 for closure, *_ in every.values())
+                else "cannot be closed"
+            )
+            raise AssemblyError(
+                f"the loop closed by {block.joints} {what} at the start of the"
+                f" motion{self._where()}"
+            )
         distance = {signs: self._distance(form, found) for signs, found in values.items()}
         least = min(distance.values())
         near = [signs for signs, gap in distance.items() if gap - least <= 1e-6 * (1.0 + least)]
@@ -217,33 +259,51 @@ class _Solver:
             first = self.ways[number] if number < len(self.ways) else 0
             near = near[first:] + near[:first]
             ways = [_numbers(form.unknown, values[signs]) for signs in near]
-            words = [" with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items()) for way in ways]
+            words = [
+                " with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items())
+                for way in ways
+            ]
             self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
         return near[0]
 
     def _distance(self, form: ClosedForm, values: Sequence[float]) -> float:
-        """How far a solution is from the posture, by all that the posture says of what it places."""
+        """How far a solution is from the posture, by all that the posture
+        says of what it places.
+        """
         (size,) = self.numbers.of(self.length)
         total, placed = 0.0, {*self.known, *form.unknown}
         self.numbers.note(column(c.variables for c in form.unknown), values)
         for name, (place, of) in self._told_of.items():
             if of & set(form.unknown) and of <= placed:
                 gap = self.numbers.of(place)[0] - self.posture[name]
-                total += abs(math.remainder(gap, 2.0 * math.pi)) if turns(self.multibody, name) else abs(gap) / size
+                total += (
+                    abs(math.remainder(gap, 2.0 * math.pi))
+                    if turns(self.multibody, name)
+                    else abs(gap) / size
+                )
         return total
 
     @cached_property
     def _told_of(self) -> dict[str, tuple[Any, set[Coordinate]]]:
         return measured(self.multibody, self.posture)
 
-    def _rough(self, coordinates: Sequence[Coordinate], *, needed: bool = True) -> dict[Coordinate, float]:
-        """What the posture says of coordinates, by their own names, or else of angles through joints; some may lack.
+    def _rough(
+        self, coordinates: Sequence[Coordinate], *, needed: bool = True
+    ) -> dict[Coordinate, float]:
+        """What the posture says of coordinates, by their own names, or else of angles through
+        joints; some may lack.
 
-        Where it is not ``needed``, joints that hold directions are not looked through, for that takes time.
+        Where it is not ``needed``, joints that hold directions are not looked through, for that
+        takes time.
         """
         found = {c: self.posture[c.told_as] for c in coordinates if c.told_as in self.posture}
         angles = [c for c in coordinates if c.kind == "angle" and not c.relative and c not in found]
-        if angles and (needed or any(n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture)):
+        if angles and (
+            needed
+            or any(
+                n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture
+            )
+        ):
             told = directions(self.multibody, self.posture, self.numbers, self.known)
             found |= {c: told[c.body] for c in angles if c.body in told}
         return found
@@ -252,14 +312,20 @@ class _Solver:
         balls = list(dict.fromkeys(c.ball for c in block.unknown if c.ball is not None))
         if balls:
             told = {c: self.posture.get(c.told_as, 0.0) for c in self.multibody.coordinates}
-            quaternions = place_roughly(self.multibody, told | dict(guess), self.numbers, self.known)
+            quaternions = place_roughly(
+                self.multibody, told | dict(guess), self.numbers, self.known
+            )
         for coordinate in block.unknown:
             if coordinate.ball is not None:
                 continue
-            counted = any(ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations)
+            counted = any(
+                ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations
+            )
             turning = coordinate.kind == "angle" and not counted
             scale = 1 if coordinate.kind == "angle" else self.length
-            symbol = self.iterated.number(coordinate.name, scale, guess[coordinate], turning=turning)
+            symbol = self.iterated.number(
+                coordinate.name, scale, guess[coordinate], turning=turning
+            )
             self._know(coordinate, coordinate.placed(coordinate.value, symbol))
             if turning:
                 self.loose.add(coordinate.name)
@@ -271,12 +337,16 @@ class _Solver:
         self._settle()
 
     def _settle(self) -> None:
-        """Iterate the guess at the start of the motion, so that every later evaluation begins on this branch."""
+        """Iterate the guess at the start of the motion, so that every later evaluation begins on
+        this branch.
+        """
         loop = self.newton()
         assert loop is not None
         for _ in range(100):
             guess = self.iterated.guess
-            correction, size = loop.step(guess, self.start.t, self.start.driven, self.start.parameters)
+            correction, size = loop.step(
+                guess, self.start.t, self.start.driven, self.start.parameters
+            )
             guess[:] = [float(z) for z in (ca.DM(guess) + correction).full().ravel()]
             if float(size) < 1e-9:
                 self.numbers.note(self.iterated.symbols, guess)
@@ -284,8 +354,8 @@ class _Solver:
                     self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
                 return
         raise AssemblyError(
-            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the start of the motion"
-            f"{self._where()}"
+            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the"
+            f" start of the motion{self._where()}"
         )
 
     def _where(self) -> str:
@@ -303,17 +373,30 @@ class _Solver:
         for ball in body.balls:
             found.note(ball.side, ca.SX(self._side(ball)))
             found.note(ball.axes, self.iterated.placed(ball.axes))
-        driven = column(c.rate for c in body.coordinates if c.driven), column(c.acceleration for c in body.coordinates if c.driven)
+        driven = (
+            column(c.rate for c in body.coordinates if c.driven),
+            column(c.acceleration for c in body.coordinates if c.driven),
+        )
         found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
         systems: list[LinearSystem] = []
         gaps: dict[str, Any] = {}
         misfits: dict[str, Any] = {}
         for block in blocks:
-            rates, accelerations = column(c.rate for c in block.unknown), column(c.acceleration for c in block.unknown)
+            rates, accelerations = (
+                column(c.rate for c in block.unknown),
+                column(c.acceleration for c in block.unknown),
+            )
             still = ca.SX.zeros(len(block.unknown))
             system = LinearSystem.of(found.put_into(block.jacobian))
-            found.note(rates, system.solve(-found.put_into(ca.substitute(block.gap_rate, rates, still))))
-            found.note(accelerations, system.solve(-found.put_into(ca.substitute(block.gap_acceleration, accelerations, still))))
+            found.note(
+                rates, system.solve(-found.put_into(ca.substitute(block.gap_rate, rates, still)))
+            )
+            found.note(
+                accelerations,
+                system.solve(
+                    -found.put_into(ca.substitute(block.gap_acceleration, accelerations, still))
+                ),
+            )
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self.numbers.of(system.volume)[0])
@@ -322,7 +405,9 @@ class _Solver:
             if system.free:
                 misfits[block.name] = found.put_into(misfit(body, block))
             else:
-                gaps[block.name] = gaps.get(block.name, 0) + found.put_into(left(body, block, self.length))
+                gaps[block.name] = gaps.get(block.name, 0) + found.put_into(
+                    left(body, block, self.length)
+                )
         return Kinematics(
             driven=self.d,
             driven_rate=self.dd,
@@ -331,7 +416,9 @@ class _Solver:
             found=found,
             blocks=blocks,
             systems=tuple(systems),
-            closures={name: self.iterated.placed(closure) for name, (closure, _) in self.closures.items()},
+            closures={
+                name: self.iterated.placed(closure) for name, (closure, _) in self.closures.items()
+            },
             gaps=gaps,
             misfits=misfits,
             newton=newton,
@@ -340,11 +427,18 @@ class _Solver:
         )
 
     def _side(self, ball: Ball) -> int:
-        """The sign of the cosine of a ball's second turn with which its turns at the start are nearest to the posture."""
+        """The sign of the cosine of a ball's second turn with which its turns at the start are
+        nearest to the posture.
+        """
         told = [self.posture.get(c.name, 0.0) for c in self.multibody.coordinates if c.ball is ball]
         turns = ca.vertcat(*self.multibody.turns_of(ball).angles)
         ways = {side: self.numbers.of(ca.substitute(turns, ball.side, side)) for side in (1, -1)}
-        apart = {side: sum(abs(math.remainder(a - b, math.tau)) for a, b in zip(told, ways[side], strict=True)) for side in ways}
+        apart = {
+            side: sum(
+                abs(math.remainder(a - b, math.tau)) for a, b in zip(told, ways[side], strict=True)
+            )
+            for side in ways
+        }
         return -1 if apart[-1] < apart[1] else 1
 
     def newton(self) -> NewtonLoop | None:
@@ -353,11 +447,25 @@ class _Solver:
             return None
         gaps = self.found.put_into(column(block.gap for block in self.residuals))
         correction, relative = self.iterated.step(gaps)
-        inputs = [self.iterated.symbols, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
-        step = ca.Function("loops", inputs, [correction, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
+        inputs = [
+            self.iterated.symbols,
+            self.multibody.mechanism.time,
+            self.d,
+            self.multibody.mechanism.symbols,
+        ]
+        step = ca.Function(
+            "loops",
+            inputs,
+            [correction, relative],
+            ["z", "t", "d", "p"],
+            ["correction", "size"],
+            {"cse": True},
+        )
         names = tuple(block.name for block in self.residuals)
         joints = ", ".join(block.joints for block in self.residuals)
-        return NewtonLoop(step, tuple(self.iterated.guess), tuple(self.iterated.turning), names, joints)
+        return NewtonLoop(
+            step, tuple(self.iterated.guess), tuple(self.iterated.turning), names, joints
+        )
 
 
 def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
@@ -369,13 +477,19 @@ def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
 def describe_coordinate(joint: str, kind: str, value: float) -> str:
     """A coordinate's value for a reader, to whom what is zero but for rounding is 0."""
     value = round(value, _READ[kind]) + 0.0
-    return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
+    return (
+        f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)"
+        if kind == "angle"
+        else f"{joint} = {value:.6g} m"
+    )
 
 
 def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coordinate, float]:
     found, rest = {}, list(values)
     for coordinate in unknown:
         size = coordinate.variables.numel()
-        found[coordinate] = math.atan2(rest[1] + 0.0, rest[0]) if coordinate.kind == "angle" else rest[0]
+        found[coordinate] = (
+            math.atan2(rest[1] + 0.0, rest[0]) if coordinate.kind == "angle" else rest[0]
+        )
         rest = rest[size:]
     return found

@@ -1,21 +1,25 @@
-"""The Lagrange terms of any system, by automatic differentiation of its kinetic energy and force function.
+"""The Lagrange terms of any system, by automatic differentiation of its kinetic energy and force
+function.
 
-The equations are those of Nguyen, Petre, Stroe, *Application of Lagrange equations for calculus of internal forces in a
-mechanism*, eq. (10)-(13): with E the kinetic energy, U the force function (the negative of the potential energy), Q* the other
-generalized forces, and U_Phi = sum lambda_i Phi_i for constraints Phi = 0,
+The equations are those of Nguyen, Petre, Stroe, *Application of Lagrange equations for calculus of
+internal forces in a mechanism*, eq. (10)-(13): with E the kinetic energy, U the force function (the
+negative of the potential energy), Q* the other generalized forces, and U_Phi = sum lambda_i Phi_i
+for constraints Phi = 0,
 
     R = d/dt(dE/dq') - dE/dq - dU/dq - dU_Phi/dq - Q*.
 
-Along the coordinates R is the effort that the motion needs (zero where nothing drives); along an extra mobility, taken at
-rest, it is the internal force that the mobility would release.
+Along the coordinates R is the effort that the motion needs (zero where nothing drives); along an
+extra mobility, taken at rest, it is the internal force that the mobility would release.
 
-Where E is written in velocities w = dx/dt of places x(q) (of points in axes at rest, of angles), half of R cancels the other
-half: dw/dq' = dx/dq, so d/dt(dw/dq') = dw/dq, and by the chain rule
+Where E is written in velocities w = dx/dt of places x(q) (of points in axes at rest, of angles),
+half of R cancels the other half: dw/dq' = dx/dq, so d/dt(dw/dq') = dw/dq, and by the chain rule
 
-    d/dt(dE/dq') - dE/dq = (dw/dq')' d/dt(dE/dw) + d/dt((dw/dq')') dE/dw - (dw/dq)' dE/dw = (dw/dq')' d/dt(dE/dw).
+    d/dt(dE/dq') - dE/dq = (dw/dq')' d/dt(dE/dw) + d/dt((dw/dq')') dE/dw - (dw/dq)' dE/dw =
+    (dw/dq')' d/dt(dE/dw).
 
-Then nothing is differentiated but E by w, and one reverse sweep of w by the rates does the rest: forces on w, and fields, too.
-All this holds too where places and energies depend on time itself, as those of a pivot that is moved: d/dt is the total derivative.
+Then nothing is differentiated but E by w, and one reverse sweep of w by the rates does the rest:
+forces on w, and fields, too. All this holds too where places and energies depend on time itself, as
+those of a pivot that is moved: d/dt is the total derivative.
 """
 
 from __future__ import annotations
@@ -30,7 +34,15 @@ from ..arguments import Graph, public
 from ..errors import DeclarationError
 from .integrability import Course, no_rates
 
-_SYMBOLS = ("coordinates", "rates", "accelerations", "mobilities", "mobility_rates", "multipliers", "velocities")
+_SYMBOLS = (
+    "coordinates",
+    "rates",
+    "accelerations",
+    "mobilities",
+    "mobility_rates",
+    "multipliers",
+    "velocities",
+)
 _TIMES = ("t", "time")
 
 
@@ -52,32 +64,35 @@ class LagrangeSystem:
     coordinates
         Symbols p in which E and U are written: by default the n coordinates q themselves.
     tangent, drift
-        The matrix T(p, t) and the column r(p, t) of p' = T q' + r, where p is more convenient than q: a rotation carried as
-        p = (cos q, sin q) has T = (-p[1], p[0]), and no sine is ever taken; p = (cos(q + W t), sin(q + W t)) has r = W T as well.
-        The defaults are the identity and zero.
+        The matrix T(p, t) and the column r(p, t) of p' = T q' + r, where p is more convenient than
+        q: a rotation carried as p = (cos q, sin q) has T = (-p[1], p[0]), and no sine is ever
+        taken; p = (cos(q + W t), sin(q + W t)) has r = W T as well. The defaults are the identity
+        and zero.
     mobilities, mobility_rates
-        Symbols e and e' of extra mobilities, columns of k. To first order in e is enough, and where only velocities depend on
-        them, e may be left out.
+        Symbols e and e' of extra mobilities, columns of k. To first order in e is enough, and where
+        only velocities depend on them, e may be left out.
     forces, mobility_forces
         Q*, columns of n and k; zero by default.
     constraints, multipliers
         Phi(p, e), a column of c, and the symbols lambda of their multipliers.
     velocities, velocity_graphs
-        Symbols w in which E may be written, and w(p, q', e, e', t) itself: rates of places and angles, so in axes at rest. Where
-        only forces work along one, it may be any velocity.
+        Symbols w in which E may be written, and w(p, q', e, e', t) itself: rates of places and
+        angles, so in axes at rest. Where only forces work along one, it may be any velocity.
     velocity_rates
-        w' at e = e' = 0, less the acceleration of a field like gravity where U leaves it out; by default w differentiated.
+        w' at e = e' = 0, less the acceleration of a field like gravity where U leaves it out; by
+        default w differentiated.
     velocity_forces
-        Forces that do work along w, zero by default: of loads, and of multipliers where Phi leaves them out.
+        Forces that do work along w, zero by default: of loads, and of multipliers where Phi leaves
+        them out.
     time
-        The symbol t, where any graph depends on time itself. A symbol that is none of all these is a parameter and does not change.
+        The symbol t, where any graph depends on time itself. A symbol that is none of all these is
+        a parameter and does not change.
 
-    Notes
-    -----
-    Raises :class:`DeclarationError` where the columns do not fit each other, or where a graph holds what may not be in it. So it
-    does for w that are no rates of places, and for p that are no functions of coordinates with the rates q': both are looked at at
-    random points and named by number. And so it does where E, w, T or r depend on a symbol called t or time, and no ``time`` is
-    given.
+    Notes ----- Raises :class:`DeclarationError` where the columns do not fit each other, or where a
+    graph holds what may not be in it. So it does for w that are no rates of places, and for p that
+    are no functions of coordinates with the rates q': both are looked at at random points and named
+    by number. And so it does where E, w, T or r depend on a symbol called t or time, and no
+    ``time`` is given.
     """
 
     kinetic: Graph
@@ -104,7 +119,9 @@ class LagrangeSystem:
         for name in _SYMBOLS:
             if not getattr(self, name).is_valid_input():
                 raise DeclarationError(f"{name} must be symbols, got {getattr(self, name)}")
-        if self.time is not None and not (isinstance(self.time, ca.SX) and self.time.is_symbolic() and self.time.numel() == 1):
+        if self.time is not None and not (
+            isinstance(self.time, ca.SX) and self.time.is_symbolic() and self.time.numel() == 1
+        ):
             raise DeclarationError(f"time must be one symbol, got {self.time}")
         self._check_roles()
         _expect("kinetic", self.kinetic, 1)
@@ -119,9 +136,14 @@ class LagrangeSystem:
             if getattr(self, name) is not None:
                 _expect(name, getattr(self, name), size)
         if self.tangent is None and p != n:
-            raise DeclarationError(f"{p} coordinates and {n} rates: say by 'tangent' how coordinates change with the rates")
+            raise DeclarationError(
+                f"{p} coordinates and {n} rates: say by 'tangent' how coordinates change with the"
+                " rates"
+            )
         if self.tangent is not None and ca.SX(self.tangent).shape != (p, n):
-            raise DeclarationError(f"tangent must have shape {(p, n)}, got {ca.SX(self.tangent).shape}")
+            raise DeclarationError(
+                f"tangent must have shape {(p, n)}, got {ca.SX(self.tangent).shape}"
+            )
         if self.drift is not None:
             _expect("drift", self.drift, p)
         self._check_graphs()
@@ -134,11 +156,16 @@ class LagrangeSystem:
             symbols = getattr(self, name)
             for symbol in ca.vertsplit(symbols) if symbols is not None and symbols.numel() else ():
                 if symbol.element_hash() in seen:
-                    raise DeclarationError(f"symbol '{symbol}' stands both in {seen[symbol.element_hash()]} and in {name}")
+                    raise DeclarationError(
+                        f"symbol '{symbol}' stands both in {seen[symbol.element_hash()]} and in"
+                        f" {name}"
+                    )
                 seen[symbol.element_hash()] = name
 
     def _check_graphs(self) -> None:
-        """Raise for a graph that depends on what it may not, and for a time that is not said to be one."""
+        """Raise for a graph that depends on what it may not, and for a time that is not said to be
+        one.
+        """
         accelerations = ("accelerations",)
         others = ("rates", "mobility_rates", "velocities", *accelerations)
         barred = {
@@ -153,14 +180,23 @@ class LagrangeSystem:
             graph = ca.vec(ca.SX(0 if getattr(self, name) is None else getattr(self, name)))
             for kind in kinds:
                 if ca.depends_on(graph, getattr(self, kind)):
-                    advice = "; put what does into 'forces'" if name == "force_function" and kind != "accelerations" else ""
-                    raise DeclarationError(f"{name} must not depend on {kind.replace('_', ' ')}{advice}")
+                    advice = (
+                        "; put what does into 'forces'"
+                        if name == "force_function" and kind != "accelerations"
+                        else ""
+                    )
+                    raise DeclarationError(
+                        f"{name} must not depend on {kind.replace('_', ' ')}{advice}"
+                    )
             # Only what is differentiated goes wrong where time is taken for a parameter.
-            fixed = name in ("force_function", "constraints") or (name == "velocity_graphs" and self.velocity_rates is not None)
+            fixed = name in ("force_function", "constraints") or (
+                name == "velocity_graphs" and self.velocity_rates is not None
+            )
             for symbol in ca.symvar(graph) if self.time is None and not fixed else ():
                 if symbol.name() in _TIMES:
                     raise DeclarationError(
-                        f"{name} depends on '{symbol}': give time={symbol} if it is the time, else give the parameter another name"
+                        f"{name} depends on '{symbol}': give time={symbol} if it is the time, else"
+                        " give the parameter another name"
                     )
 
     def _check_rates(self) -> None:
@@ -170,19 +206,30 @@ class LagrangeSystem:
         wrong = no_rates(course.coordinate_rates, course, _none(), _none()) if carried else []
         if wrong:
             raise DeclarationError(
-                f"tangent{'' if self.drift is None else ' and drift'}: {_listed('coordinate', wrong)} no function of coordinates "
-                "whose rates are the given rates; the angular velocity of a body in space, for one, is the rate of no coordinates"
+                f"tangent{'' if self.drift is None else ' and drift'}:"
+                f" {_listed('coordinate', wrong)} no function of coordinates whose rates are the"
+                " given rates; the angular velocity of a body in space, for one, is the rate of no"
+                " coordinates"
             )
         # Along what bears no energy, forces do work whatever it is.
         symbols = {symbol.element_hash() for symbol in ca.symvar(ca.SX(self.kinetic))}
-        bearing = [k for k in range(self.velocities.numel()) if self.velocities[k].element_hash() in symbols]
-        own = no_rates(ca.SX(self.velocity_graphs)[bearing], course, self.mobilities, self.mobility_rates)
+        bearing = [
+            k
+            for k in range(self.velocities.numel())
+            if self.velocities[k].element_hash() in symbols
+        ]
+        own = no_rates(
+            ca.SX(self.velocity_graphs)[bearing], course, self.mobilities, self.mobility_rates
+        )
         wrong = [bearing[k] for k in own]
         if wrong:
-            late = "" if self.time is not None else ", or it depends on time and 'time' is not given"
+            late = (
+                "" if self.time is not None else ", or it depends on time and 'time' is not given"
+            )
             raise DeclarationError(
-                f"velocity_graphs: {_listed('velocity', wrong)} no rate of a place or angle in axes at rest, for d/dt(dw/dq') is "
-                f"not dw/dq{late}; of a body that turns in space take the velocities of points or axes, not its angular velocity"
+                f"velocity_graphs: {_listed('velocity', wrong)} no rate of a place or angle in axes"
+                f" at rest, for d/dt(dw/dq') is not dw/dq{late}; of a body that turns in space take"
+                " the velocities of points or axes, not its angular velocity"
             )
 
     @property
@@ -194,33 +241,52 @@ class LagrangeSystem:
         return Course(self.coordinates, self.rates, self.accelerations, time, tangent, drift)
 
     def terms(self) -> tuple[Any, Any]:
-        """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0, as CasADi SX columns.
+        """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0, as CasADi
+        SX columns.
 
-        Each entry has the unit of E over that of its coordinate: N along a length, N m along an angle. Along a coordinate R is the
-        effort that the motion needs. Along a mobility it is the internal force on what the mobility moves (paper eq. 13, 20): where
-        the mobility stretches a rope, minus the tension.
+        Each entry has the unit of E over that of its coordinate: N along a length, N m along an
+        angle. Along a coordinate R is the effort that the motion needs. Along a mobility it is the
+        internal force on what the mobility moves (paper eq. 13, 20): where the mobility stretches a
+        rope, minus the tension.
 
-        The cost is a small multiple of E's, whatever n and k: one reverse sweep of E, one forward sweep of its result, and one
-        reverse sweep of the velocities.
+        The cost is a small multiple of E's, whatever n and k: one reverse sweep of E, one forward
+        sweep of its result, and one reverse sweep of the velocities.
         """
         n, p, k = self.rates.numel(), self.coordinates.numel(), self.mobility_rates.numel()
         course = self._course
         energies = self.kinetic + self.force_function + ca.dot(self.multipliers, self.constraints)
         rates = ca.vertcat(self.rates, self.mobility_rates)
-        slopes = self._at_rest(ca.gradient(energies, ca.vertcat(self.coordinates, self.mobilities, rates)))
-        by_place, by_mobility, momenta = ca.vertsplit(slopes, [0, p, p + self.mobilities.numel(), slopes.numel()])
-        # What several velocities share, they share by name, so that the reverse sweep adds up the forces that meet there first.
+        slopes = self._at_rest(
+            ca.gradient(energies, ca.vertcat(self.coordinates, self.mobilities, rates))
+        )
+        by_place, by_mobility, momenta = ca.vertsplit(
+            slopes, [0, p, p + self.mobilities.numel(), slopes.numel()]
+        )
+        # What several velocities share, they share by name, so that the reverse sweep adds up the
+        # forces that meet there first.
         w, graphs = self.velocities, ca.cse(ca.SX(self.velocity_graphs))
         seen = self._at_rest(graphs)
-        # The mobilities stay at rest: neither e nor e' moves in the total time derivative of the momenta.
-        w_change = course.derivative(seen) if self.velocity_rates is None else self._at_rest(self.velocity_rates)
-        # E by w twice, not its gradient once: for a sum of squares CasADi then leaves no factor 2 beside a half.
+        # The mobilities stay at rest: neither e nor e' moves in the total time derivative of the
+        # momenta.
+        w_change = (
+            course.derivative(seen)
+            if self.velocity_rates is None
+            else self._at_rest(self.velocity_rates)
+        )
+        # E by w twice, not its gradient once: for a sum of squares CasADi then leaves no factor 2
+        # beside a half.
         hessian, by_velocity = ca.hessian(ca.SX(self.kinetic), w)
         forces = hessian @ w_change + course.derivative(by_velocity)
         if self.velocity_forces is not None:
             forces -= self.velocity_forces
-        terms = course.derivative(momenta) + ca.jtimes(momenta, w, w_change) + self._at_rest(ca.jtimes(graphs, rates, forces, True))
-        terms -= ca.vertcat(course.tangent.T @ by_place, by_mobility if self.mobilities.numel() else ca.SX.zeros(k))
+        terms = (
+            course.derivative(momenta)
+            + ca.jtimes(momenta, w, w_change)
+            + self._at_rest(ca.jtimes(graphs, rates, forces, True))
+        )
+        terms -= ca.vertcat(
+            course.tangent.T @ by_place, by_mobility if self.mobilities.numel() else ca.SX.zeros(k)
+        )
         along, across = ca.vertsplit(ca.substitute(terms, w, seen), [0, n, n + k])
         if self.forces is not None:
             along -= self.forces
@@ -242,4 +308,8 @@ def _listed(what: str, numbers: Sequence[int]) -> str:
     """Entries by number, with the verb."""
     plural = f"{what[:-1]}ies" if what.endswith("y") else f"{what}s"
     named = ", ".join(map(str, numbers))
-    return f"{what} {named} (counted from 0) is" if len(numbers) == 1 else f"{plural} {named} (counted from 0) are"
+    return (
+        f"{what} {named} (counted from 0) is"
+        if len(numbers) == 1
+        else f"{plural} {named} (counted from 0) are"
+    )

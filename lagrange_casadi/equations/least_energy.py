@@ -1,15 +1,19 @@
-"""Forces that equilibrium leaves open, by least strain energy (Menabrea 1858; Castigliano 1879), as an expression of an instant.
+"""Forces that equilibrium leaves open, by least strain energy (Menabrea 1858; Castigliano 1879), as
+an expression of an instant.
 
-All forces are f + S x: those of an equilibrium, and what is open, x. Of all equilibria the true one has the least strain energy,
-where parts fit without strain (Timoshenko, *Strength of Materials*, part I, on least work). Strain energy is the sum of squares of
-section forces, each times a factor of its cross-section, over all links: a problem of least squares. Section forces are
-polynomials between two marks, so Gauss's nodes sum it exactly.
+All forces are f + S x: those of an equilibrium, and what is open, x. Of all equilibria the true one
+has the least strain energy, where parts fit without strain (Timoshenko, *Strength of Materials*,
+part I, on least work). Strain energy is the sum of squares of section forces, each times a factor
+of its cross-section, over all links: a problem of least squares. Section forces are polynomials
+between two marks, so Gauss's nodes sum it exactly.
 
-Of links without a beam the stiffness is not known. What loads one of them is open, and so is whatever else depends on it; what
-loads no link at all, as two bearings on one pin do, is open too. Points and the ground are rigid.
+Of links without a beam the stiffness is not known. What loads one of them is open, and so is
+whatever else depends on it; what loads no link at all, as two bearings on one pin do, is open too.
+Points and the ground are rigid.
 
-So x is chosen along ways that load nothing firm, and that load something elastic; Gram and Schmidt's method makes their strains
-orthogonal, one way after another, at every instant anew (Björck, *Numerical Methods for Least Squares Problems*, 1996).
+So x is chosen along ways that load nothing firm, and that load something elastic; Gram and
+Schmidt's method makes their strains orthogonal, one way after another, at every instant anew
+(Björck, *Numerical Methods for Least Squares Problems*, 1996).
 """
 
 from __future__ import annotations
@@ -44,7 +48,9 @@ _NONE = 1e-6
 """Of all that forces change with something: what is no change, in numbers of either precision."""
 
 _MORE, _FINER = 12, 4
-"""Nodes more where the cross-section changes, and more than that by which it is checked that the energy is least."""
+"""Nodes more where the cross-section changes, and more than that by which it is checked that the
+energy is least.
+"""
 
 _NO_BEAM = "no beam"
 _POINTS = ("revolute", "spherical", "universal", "weld")
@@ -53,17 +59,21 @@ _POINTS = ("revolute", "spherical", "universal", "weld")
 
 def feeling(mechanism: Mechanism, want: Wanted) -> Wanted:
     """Add to what is wanted all section forces and reactions, by which it is found what is open."""
-    sections = tuple(name for name, link in mechanism.links.items() if isinstance(link.mass, Density))
+    sections = tuple(
+        name for name, link in mechanism.links.items() if isinstance(link.mass, Density)
+    )
     return replace(want, reactions=tuple(mechanism.joints), sections=sections)
 
 
 @dataclass(frozen=True, eq=False)
 class LeastEnergy:
-    """Choice of what is open as ``x + ways y``: ``x`` by least energy, ``y`` by what stays open; ways of what does not are nil.
+    """Choice of what is open as ``x + ways y``: ``x`` by least energy, ``y`` by what stays open;
+    ways of what does not are nil.
 
-    Of each link whose stiffness is not known, ``firm`` says why, and ``through`` whether it is loaded by what is open. ``idle``
-    and ``chosen`` tell whether something of it loads no link, and whether something was chosen. ``residual`` is how far the energy
-    is from its least: the largest cosine between the strains of what was chosen and those of the whole, summed at other places.
+    Of each link whose stiffness is not known, ``firm`` says why, and ``through`` whether it is
+    loaded by what is open. ``idle`` and ``chosen`` tell whether something of it loads no link, and
+    whether something was chosen. ``residual`` is how far the energy is from its least: the largest
+    cosine between the strains of what was chosen and those of the whole, summed at other places.
     """
 
     x: Any
@@ -75,7 +85,9 @@ class LeastEnergy:
     residual: Any
 
     def completed(self, acting: Mapping[Column, Any], free: Any) -> Forces:
-        """Forces ``acting`` that are expressions of what equilibrium leaves open, ``free``, with what is chosen in its place."""
+        """Forces ``acting`` that are expressions of what equilibrium leaves open, ``free``, with
+        what is chosen in its place.
+        """
         still = ca.SX.sym("still", free.numel())
         whole = ca.substitute(column(map(ca.SX, acting.values())), free, self.x + self.ways @ still)
         found = Forces.over(dict(zip(acting, ca.vertsplit(whole), strict=True)), still)
@@ -86,8 +98,9 @@ class LeastEnergy:
 class Completion:
     """Account of least strain energy beside the columns of a graph.
 
-    ``function(t, d, d_rate, d_acceleration, z, p)`` has a row for each of ``doubted``, outputs, how much it changes with what
-    equilibrium leaves open; for each of ``firm``, links, whether it is loaded by that; and what else :class:`LeastEnergy` tells.
+    ``function(t, d, d_rate, d_acceleration, z, p)`` has a row for each of ``doubted``, outputs, how
+    much it changes with what equilibrium leaves open; for each of ``firm``, links, whether it is
+    loaded by that; and what else :class:`LeastEnergy` tells.
     """
 
     doubted: tuple[Output, ...]
@@ -95,24 +108,55 @@ class Completion:
     function: Any
 
     @classmethod
-    def of(cls, least: LeastEnergy, forces: Forces, columns: Mapping[Column, Any], inputs: Sequence[Any]) -> Completion:
-        """Put together what is told of ``forces`` that are among the ``columns`` of a graph, over its ``inputs``."""
-        doubted = {output: size for output, size in (forces.before or {}).items() if output in columns}
-        rows = ca.densify(ca.vertcat(*doubted.values(), least.through, least.idle, least.chosen, least.residual))
+    def of(
+        cls,
+        least: LeastEnergy,
+        forces: Forces,
+        columns: Mapping[Column, Any],
+        inputs: Sequence[Any],
+    ) -> Completion:
+        """Put together what is told of ``forces`` that are among the ``columns`` of a graph, over
+        its ``inputs``.
+        """
+        doubted = {
+            output: size for output, size in (forces.before or {}).items() if output in columns
+        }
+        rows = ca.densify(
+            ca.vertcat(*doubted.values(), least.through, least.idle, least.chosen, least.residual)
+        )
         names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-        return cls(tuple(doubted), least.firm, ca.Function("completion", inputs, [rows], names, ["out"], {"cse": True}))
+        return cls(
+            tuple(doubted),
+            least.firm,
+            ca.Function("completion", inputs, [rows], names, ["out"], {"cse": True}),
+        )
 
     def reasons(self, through: Iterable[bool], *, idle: bool) -> tuple[str, ...]:
-        """Tell why something stays open: by which of the firm links it goes ``through``, and whether some of it is ``idle``."""
-        loaded = [(link, why) for (link, why), does in zip(self.firm.items(), through, strict=True) if does]
+        """Tell why something stays open: by which of the firm links it goes ``through``, and
+        whether some of it is ``idle``.
+        """
+        loaded = [
+            (link, why)
+            for (link, why), does in zip(self.firm.items(), through, strict=True)
+            if does
+        ]
         bare = [f"'{link}'" for link, why in loaded if why == _NO_BEAM]
-        found = [f"they go through {', '.join(bare)}, which {'has' if len(bare) == 1 else 'have'} no beam"] if bare else []
+        found = (
+            [
+                f"they go through {', '.join(bare)}, which"
+                + (" has no beam" if len(bare) == 1 else " have no beam")
+            ]
+            if bare
+            else []
+        )
         found += [why for _, why in loaded if why != _NO_BEAM]
         return (*found, "some bend no link") if idle else tuple(found)
 
     def dumps(self) -> str:
         """Write it as text."""
-        return json.dumps([list(map(str, self.doubted)), dict(self.firm), self.function.serialize()])
+        return json.dumps(
+            [list(map(str, self.doubted)), dict(self.firm), self.function.serialize()]
+        )
 
     @classmethod
     def loads(cls, text: str) -> Completion:
@@ -121,7 +165,9 @@ class Completion:
         return cls(tuple(map(Output.of, doubted)), firm, ca.Function.deserialize(function))
 
 
-def least_energy(mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column, Any], free: Any) -> LeastEnergy:
+def least_energy(
+    mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column, Any], free: Any
+) -> LeastEnergy:
     """Choose ``free``, which ``columns`` are linear in; ``elastic`` is as in :class:`.Scene`.
 
     Raises :class:`.DeclarationError` where a link that was named has no elasticity.
@@ -129,11 +175,20 @@ def least_energy(mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column
     soft, firm = _links(mechanism, elastic)
     known = {key: ca.SX(value) for key, value in columns.items()}
     forces = {name: _loading(mechanism, mechanism.links[name], known) for name in (*soft, *firm)}
-    reactions = ((key, value) for key, value in known.items() if isinstance(key, Output) and key.group == "reaction")
+    reactions = (
+        (key, value)
+        for key, value in known.items()
+        if isinstance(key, Output) and key.group == "reaction"
+    )
     forces[""] = [value / _unit(mechanism, key.member) for key, value in reactions]
-    loaded = {name: ca.densify(ca.jacobian(column(values), free)) for name, values in forces.items()}
+    loaded = {
+        name: ca.densify(ca.jacobian(column(values), free)) for name, values in forces.items()
+    }
     least = _NONE**2 * sum(ca.sumsqr(rows) for rows in loaded.values())
-    beams = [(Loaded(mechanism.space, mechanism.links[name], known), moduli) for name, moduli in soft.items()]
+    beams = [
+        (Loaded(mechanism.space, mechanism.links[name], known), moduli)
+        for name, moduli in soft.items()
+    ]
 
     through = [ca.sumsqr(loaded[name]) > least for name in firm]
     stiff = ca.vertcat(ca.SX(0, free.numel()), *(loaded[name] for name in firm))
@@ -148,10 +203,14 @@ def least_energy(mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column
         share = ca.dot(way.weighed, left) * way.inverse
         x, left = x - share * way.way, left - share * way.made
 
-    idle = sum((1 - stiffened.does) * (1 - way.does) for stiffened, way in zip(apart, chosen, strict=True))
+    idle = sum(
+        (1 - stiffened.does) * (1 - way.does) for stiffened, way in zip(apart, chosen, strict=True)
+    )
     return LeastEnergy(
         x=x,
-        ways=ca.horzcat(*((1 - way.does) * _relaxed(way, chosen[k + 1 :]) for k, way in enumerate(chosen))),
+        ways=ca.horzcat(
+            *((1 - way.does) * _relaxed(way, chosen[k + 1 :]) for k, way in enumerate(chosen))
+        ),
         firm=firm,
         through=column(through),
         idle=ca.SX(idle),
@@ -162,7 +221,8 @@ def least_energy(mechanism: Mechanism, elastic: Elastic, columns: Mapping[Column
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """A way in which what is open may change, and what it ``made`` of rows, times their weights ``weighed``.
+    """A way in which what is open may change, and what it ``made`` of rows, times their weights
+    ``weighed``.
 
     ``does`` tells whether it did anything, and ``inverse`` is one over the sum of squares, or zero.
     """
@@ -174,10 +234,13 @@ class _Way:
     inverse: Any
 
 
-def _apart(ways: Iterable[tuple[Any, Any]], rows: Any, weights: Any, measure: Any, least: Any) -> list[_Way]:
+def _apart(
+    ways: Iterable[tuple[Any, Any]], rows: Any, weights: Any, measure: Any, least: Any
+) -> list[_Way]:
     """Make what ``rows`` make of ways orthogonal, each to those before it that did something.
 
-    A way comes with whether it may. It does something if ``measure`` makes more of it than ``least``, a square.
+    A way comes with whether it may. It does something if ``measure`` makes more of it than
+    ``least``, a square.
     """
     found: list[_Way] = []
     for way, may in ways:
@@ -187,29 +250,43 @@ def _apart(ways: Iterable[tuple[Any, Any]], rows: Any, weights: Any, measure: An
             way, made = way - share * before.way, made - share * before.made
         does = may * (ca.sumsqr(measure @ way) > least) if measure.numel() else ca.SX(0)
         weighed = weights * made
-        found.append(_Way(way, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1)))
+        found.append(
+            _Way(way, made, weighed, does, does / ca.if_else(does, ca.dot(weighed, made), 1))
+        )
     return found
 
 
 def _relaxed(way: _Way, later: Sequence[_Way]) -> Any:
     """A way, with what is chosen along later ones when it changes."""
-    return way.way - sum((ca.dot(other.weighed, way.made) * other.inverse * other.way for other in later), ca.SX(0))
+    return way.way - sum(
+        (ca.dot(other.weighed, way.made) * other.inverse * other.way for other in later), ca.SX(0)
+    )
 
 
-def _strains(beams: Sequence[tuple[Loaded, Moduli]], free: Any, more: int = 0) -> tuple[Any, Any, Any]:
-    """Return what strains links at Gauss's nodes with nothing for what is open, by each number of that, and weights of squares."""
+def _strains(
+    beams: Sequence[tuple[Loaded, Moduli]], free: Any, more: int = 0
+) -> tuple[Any, Any, Any]:
+    """Return what strains links at Gauss's nodes with nothing for what is open, by each number of
+    that, and weights of squares.
+    """
     found, weights = [], []
     for link, moduli in beams:
         for part in link.spans:
             first, last = link.course.cells[part.cell]
-            x, w = np.polynomial.legendre.leggauss((link.degree + 1) // 2 + 1 + (0 if first is last else _MORE) + more)
+            x, w = np.polynomial.legendre.leggauss(
+                (link.degree + 1) // 2 + 1 + (0 if first is last else _MORE) + more
+            )
             for place, weight in zip(((x + 1) / 2).tolist(), (w / 2).tolist(), strict=True):
                 force = {name: link.force_within(name, part, place) for name in link.cross.forces}
                 for value, soft in resultants(link.at(part, place), force, moduli).values():
                     found.append(value)
                     weights.append(weight * link.link.length * part.width * soft)
     rows = column(found)
-    return ca.substitute(rows, free, ca.SX.zeros(free.numel())), ca.densify(ca.jacobian(rows, free)), column(weights)
+    return (
+        ca.substitute(rows, free, ca.SX.zeros(free.numel())),
+        ca.densify(ca.jacobian(rows, free)),
+        column(weights),
+    )
 
 
 def _residual(chosen: Sequence[_Way], x: Any, strained: Any, bent: Any, weights: Any) -> Any:
@@ -220,7 +297,10 @@ def _residual(chosen: Sequence[_Way], x: Any, strained: Any, bent: Any, weights:
     for way in chosen:
         made = bent @ way.way
         product = ca.dot(weights * made, made) * size
-        found = ca.fmax(found, way.does * ca.dot(weights * made, whole) ** 2 / ca.if_else(product > 0, product, 1))
+        found = ca.fmax(
+            found,
+            way.does * ca.dot(weights * made, whole) ** 2 / ca.if_else(product > 0, product, 1),
+        )
     return ca.sqrt(found)
 
 
@@ -246,12 +326,18 @@ def _unit(mechanism: Mechanism, member: str) -> Any:
 
 
 def _loading(mechanism: Mechanism, link: Link, columns: Mapping[Column, Any]) -> list[Any]:
-    """Tell how a link is loaded, in forces: by its section forces, or those of its joints, where they act at one place as one."""
+    """Tell how a link is loaded, in forces: by its section forces, or those of its joints, where
+    they act at one place as one.
+    """
     if isinstance(link.mass, Density):
         section = Section(link.name, table_of(mechanism.space), columns, link.length, link.mass)
         places = [Place(0.0), *section.marks, Place(1.0, side="base")]
         names = FORCES[mechanism.space]
-        return [section.at(name, place, END["single"]) / _unit(mechanism, name) for place in places for name in names]
+        return [
+            section.at(name, place, END["single"]) / _unit(mechanism, name)
+            for place in places
+            for name in names
+        ]
     sums: dict[tuple[str, ...], Any] = {}
     for name, joint in mechanism.joints.items():
         for point, sign in ((joint.parent, -1.0), (joint.child, 1.0)):
@@ -261,5 +347,7 @@ def _loading(mechanism: Mechanism, link: Link, columns: Mapping[Column, Any]) ->
             for member in force_members(mechanism.space):
                 if (output := Output("reaction", name, member)) in columns:
                     key = (*place, member)
-                    sums[key] = sums.get(key, 0.0) + sign * columns[output] / _unit(mechanism, member)
+                    sums[key] = sums.get(key, 0.0) + sign * columns[output] / _unit(
+                        mechanism, member
+                    )
     return list(sums.values())

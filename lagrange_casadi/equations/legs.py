@@ -1,14 +1,16 @@
-"""Closed forms of legs in space: two ends that meet, one of which turns about an axis that is known.
+"""Closed forms of legs in space: two ends that meet, one of which turns about an axis that is
+known.
 
-A turn about an axis u through A keeps two numbers of the end X that it turns: how far it is from A, and its height along the axis.
-So of X = P two equations are free of the turn,
+A turn about an axis u through A keeps two numbers of the end X that it turns: how far it is from A,
+and its height along the axis. So of X = P two equations are free of the turn,
 
     |X - A|^2 = |P - A|^2    and    u . (X - P) = 0,
 
-and where one of them holds a single freedom, the two are solved one after another; the turn is then what leads X to P. So
-the slide of a leg with a universal joint at its foot (UPS) is known by the distance and its second turn by the height; the same way
-go a leg that bends (URS), a link between a turn and a slide, and a point in cylindrical coordinates. Across the axis, where heights
-meet already, the distance alone is left: so go planar dyads, however their plane lies.
+and where one of them holds a single freedom, the two are solved one after another; the turn is then
+what leads X to P. So the slide of a leg with a universal joint at its foot (UPS) is known by the
+distance and its second turn by the height; the same way go a leg that bends (URS), a link between a
+turn and a slide, and a point in cylindrical coordinates. Across the axis, where heights meet
+already, the distance alone is left: so go planar dyads, however their plane lies.
 """
 
 from __future__ import annotations
@@ -26,8 +28,12 @@ from .multibody import Coordinate, Multibody
 from .sampling import vanish
 
 
-def solve_leg(phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody) -> tuple[ClosedForm, ...]:
-    """The closed forms, one after another, by which the two points of a joint meet; none where no pattern was verified."""
+def solve_leg(
+    phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody
+) -> tuple[ClosedForm, ...]:
+    """The closed forms, one after another, by which the two points of a joint meet; none where no
+    pattern was verified.
+    """
     if not multibody.mechanism.space or joint.slides or phi.numel() < len(unknown):
         return ()
     for first in unknown:
@@ -38,11 +44,20 @@ def solve_leg(phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: 
     return ()
 
 
-def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody: Multibody) -> tuple[ClosedForm, ...]:
-    branch = next(branch for branch in multibody.tree.branches if first.name in [one.coordinate for one in branch.joint.axes])
+def _leg(
+    joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody: Multibody
+) -> tuple[ClosedForm, ...]:
+    branch = next(
+        branch
+        for branch in multibody.tree.branches
+        if first.name in [one.coordinate for one in branch.joint.axes]
+    )
     foot = multibody.frames[branch.near.body.name].place_of(branch.near.place)
     axis = times(branch.sign, multibody.axes[first.name])
-    ends = [multibody.frames[point.body.name].place_of(point.place) for point in (joint.parent, joint.child)]
+    ends = [
+        multibody.frames[point.body.name].place_of(point.place)
+        for point in (joint.parent, joint.child)
+    ]
     ends.sort(key=lambda end: not held(end, (first,)))
     head, target = (minus(end, foot) for end in ends)
     if held((*target, *foot), (first,)) or held(axis, (first, *later)):
@@ -51,7 +66,9 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
         head, target = cross(axis, head), cross(axis, target)
     squares = in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
     # One of the two is a length that nothing changes: beside it the gap is one in metres.
-    fixed = next((square for square in squares if square is not None and not held((square,), later)), None)
+    fixed = next(
+        (square for square in squares if square is not None and not held((square,), later)), None
+    )
     if squares[0] is None or fixed is None:
         return ()
     length = ca.sqrt(fixed)
@@ -66,8 +83,12 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
     return (*forms, _turned(first, axis, head, target, across=len(later) == 1)) if forms else ()
 
 
-def in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> Any | None:
-    """An expression with all coordinates at rest but as few of the ``later`` ones as change it; None where others change it too."""
+def in_fewest(
+    expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> Any | None:
+    """An expression with all coordinates at rest but as few of the ``later`` ones as change it;
+    None where others change it too.
+    """
     for count in range(len(later) + 1):
         for kept in combinations(later, count):
             plain = at_rest(expression, [c for c in coordinates if c not in kept])
@@ -76,8 +97,11 @@ def in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequenc
     return None
 
 
-def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, across: bool) -> ClosedForm:
-    """The turn about an axis that leads from where the head is without it to the target, or where both are ``across`` the axis.
+def _turned(
+    first: Coordinate, axis: Vector, head: Vector, target: Vector, *, across: bool
+) -> ClosedForm:
+    """The turn about an axis that leads from where the head is without it to the target, or where
+    both are ``across`` the axis.
 
     A target on the axis tells no turn: the closure is the square of the sine between the two.
     """

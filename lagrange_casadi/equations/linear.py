@@ -1,4 +1,6 @@
-"""Small linear systems as graphs: one factorization serves rates, accelerations and, transposed, multipliers."""
+"""Small linear systems as graphs: one factorization serves rates, accelerations and, transposed,
+multipliers.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +12,13 @@ import casadi as ca
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """A matrix of m rows and n <= m columns: the adjugate for square ones up to 2 x 2, else Householder's reflections.
+    """A matrix of m rows and n <= m columns: the adjugate for square ones up to 2 x 2, else
+    Householder's reflections.
 
-    With more rows than columns, what it solves are consistent systems; the transposed one then has m - n free unknowns.
-    ``volume`` is the determinant over the product of the columns' lengths, between -1 and 1, or for more rows than columns the
-    ratio of volumes: zero where the system is singular.
+    With more rows than columns, what it solves are consistent systems; the transposed one then has
+    m - n free unknowns. ``volume`` is the determinant over the product of the columns' lengths,
+    between -1 and 1, or for more rows than columns the ratio of volumes: zero where the system is
+    singular.
     """
 
     matrix: Any
@@ -68,16 +72,22 @@ class LinearSystem:
         n = self.matrix.shape[1]
         x = [ca.SX(0)] * n
         for i in reversed(range(n)):
-            x[i] = (turned[i] - sum(self.triangle[i, j] * x[j] for j in range(i + 1, n))) / self.triangle[i, i]
+            x[i] = (
+                turned[i] - sum(self.triangle[i, j] * x[j] for j in range(i + 1, n))
+            ) / self.triangle[i, i]
         return ca.vertcat(ca.SX(0, 1), *x)
 
     def solve_transposed(self, right: Any, free: Any) -> Any:
-        """x of ``matrix' x = right``, for values of the free unknowns, a column of ``self.free``."""
+        """x of ``matrix' x = right``, for values of the free unknowns,
+        a column of ``self.free``.
+        """
         if self.inverse is not None:
             return self.inverse.T @ right
         x: list[Any] = []
         for i in range(self.matrix.shape[1]):
-            x.append((right[i] - sum(self.triangle[j, i] * x[j] for j in range(i))) / self.triangle[i, i])
+            x.append(
+                (right[i] - sum(self.triangle[j, i] * x[j] for j in range(i))) / self.triangle[i, i]
+            )
         turned = ca.vertcat(ca.SX(0, 1), *x, free)
         for j, reflection in reversed(list(enumerate(self.reflections))):
             turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))

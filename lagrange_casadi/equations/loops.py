@@ -1,18 +1,21 @@
-"""Closed forms of planar loops: a loop's equations solved for its unknown coordinates without iteration.
+"""Closed forms of planar loops: a loop's equations solved for its unknown coordinates without
+iteration.
 
 The planar dyads, and points that are guided along lines in any way, come down to two problems:
 
-* one direction on a line, A c + B s + C = 0: a point guided along a line; and what is left of equations that are linear in one
-  direction and one slide, when the slide is eliminated (RRP, RPR, a bar guided at two of its points, ladders and trammels);
+* one direction on a line, A c + B s + C = 0: a point guided along a line; and what is left of
+  equations that are linear in one direction and one slide, when the slide is eliminated (RRP, RPR,
+  a bar guided at two of its points, ladders and trammels);
 * two directions, L1 e1 + L2 e2 + p = 0: two circles meet, RRR.
 
-Each has two solutions, told apart by a sign. What stands under the root is a product of a sum and a difference, so nothing
-cancels near a dead centre; divided by its largest value it is the square of the sine of the transmission angle, here called
-the *closure*: negative where the links do not reach, zero at a dead centre.
+Each has two solutions, told apart by a sign. What stands under the root is a product of a sum and a
+difference, so nothing cancels near a dead centre; divided by its largest value it is the square of
+the sine of the transmission angle, here called the *closure*: negative where the links do not
+reach, zero at a dead centre.
 
-Two equations may be the x and y of one pin, or be written by different joints and constraints, and look alike. So a form is
-applied where its pattern was verified, coefficient by coefficient, and what it gives was put back into the equations
-(:mod:`.sampling`); what has no form is iterated.
+Two equations may be the x and y of one pin, or be written by different joints and constraints, and
+look alike. So a form is applied where its pattern was verified, coefficient by coefficient, and
+what it gives was put back into the equations (:mod:`.sampling`); what has no form is iterated.
 """
 
 from __future__ import annotations
@@ -31,10 +34,11 @@ from .sampling import vanish
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """Solved variables of ``unknown`` coordinates, one column each, as expressions in what is known and in ``branches``.
+    """Solved variables of ``unknown`` coordinates, one column each, as expressions in what is known
+    and in ``branches``.
 
-    Each of the branches is a symbol of a sign (+1 or -1); there are none where the solution is unique. ``closure`` is None where
-    it cannot fail but by a division by zero.
+    Each of the branches is a symbol of a sign (+1 or -1); there are none where the solution is
+    unique. ``closure`` is None where it cannot fail but by a division by zero.
     """
 
     variables: tuple[Any, ...]
@@ -43,18 +47,23 @@ class ClosedForm:
     unknown: tuple[Coordinate, ...] = ()
 
     def without(self, absent: Sequence[Coordinate]) -> ClosedForm:
-        """The form with coordinates that it must not hold at rest, for they stand in it by rounding alone."""
+        """The form with coordinates that it must not hold at rest, for they stand in it by rounding
+        alone.
+        """
         absent = held((*self.variables, *(() if self.closure is None else (self.closure,))), absent)
         if not absent:
             return self
         closure = None if self.closure is None else at_rest(self.closure, absent)
-        return replace(self, variables=tuple(at_rest(v, absent) for v in self.variables), closure=closure)
+        return replace(
+            self, variables=tuple(at_rest(v, absent) for v in self.variables), closure=closure
+        )
 
 
 def solve_loop(
     phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate], *, bar: bool = False
 ) -> ClosedForm | None:
-    """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is none that was verified.
+    """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is
+    none that was verified.
 
     Phi of a ``bar`` is half of a square, and may be one of the unknown.
     """
@@ -69,7 +78,8 @@ def solve_loop(
 def solve_in_turn(
     equations: Sequence[Any], unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
 ) -> tuple[ClosedForm, ...]:
-    """The closed forms of equations, one after another, each of which holds one unknown more; none where they do not.
+    """The closed forms of equations, one after another, each of which holds one unknown more; none
+    where they do not.
 
     An equation may be half of a square. The solutions are not put back.
     """
@@ -77,7 +87,11 @@ def solve_in_turn(
     rest = list(unknown)
     for equation in sorted(equations, key=lambda equation: len(held((equation,), unknown))):
         own = held((equation,), rest)
-        form = _matching(equation, own, coordinates) or _spanned(equation, own, coordinates) if len(own) == 1 else None
+        form = (
+            _matching(equation, own, coordinates) or _spanned(equation, own, coordinates)
+            if len(own) == 1
+            else None
+        )
         if form is None:
             return ()
         forms.append(replace(form, unknown=tuple(own)))
@@ -97,10 +111,14 @@ def at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
     return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
 
 
-def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
-    """A bar's end that turns about one axis, or slides along one: two points of a circle or a line are so far from another one.
+def _spanned(
+    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> ClosedForm | None:
+    """A bar's end that turns about one axis, or slides along one: two points of a circle or a line
+    are so far from another one.
 
-    What turns may also lie askew, and its distance from an axis be told: a sine, or a cosine, of either sign, and both ways round.
+    What turns may also lie askew, and its distance from an axis be told: a sine, or a cosine, of
+    either sign, and both ways round.
     """
     (coordinate,) = unknown
     symbols = _pair(coordinate) if coordinate.kind == "angle" else coordinate.variables
@@ -115,7 +133,10 @@ def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coor
             return _askew(phi, coordinate, curvature, coordinates)
         # Where the squares of cosine and sine have one factor, they are one number.
         straight = phi - curvature[0, 0] * (ca.sumsqr(symbols) - 1) / 2
-        slope, rest = (ca.substitute(e, symbols, ca.SX.zeros(2)) for e in (ca.jacobian(straight, symbols), straight))
+        slope, rest = (
+            ca.substitute(e, symbols, ca.SX.zeros(2))
+            for e in (ca.jacobian(straight, symbols), straight)
+        )
         solved = _direction_on_line(slope @ symbols + rest, coordinate, branch)
         return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
     slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
@@ -124,15 +145,20 @@ def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coor
     return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, (branch,))
 
 
-def _askew(phi: Any, angle: Coordinate, curvature: Any, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
-    """A square of a sine, or of a cosine, and that sine are known to be of one sum: of two signs, each with two ways round."""
+def _askew(
+    phi: Any, angle: Coordinate, curvature: Any, coordinates: Sequence[Coordinate]
+) -> ClosedForm | None:
+    """A square of a sine, or of a cosine, and that sine are known to be of one sum: of two signs,
+    each with two ways round.
+    """
     pair = _pair(angle)
     slope, rest = (ca.substitute(e, pair, ca.SX.zeros(2)) for e in (ca.jacobian(phi, pair), phi))
     number = 0 if curvature[1, 1].is_zero() or not vanish(slope[0], coordinates, curvature) else 1
     other = 1 - number
     if not vanish(slope[other], coordinates, curvature):
         return None
-    # With the square of the other one, which is one less this one's: bend x x + 2 slope x + rest = 0.
+    # With the square of the other one, which is one less this one's: bend x x + 2 slope x + rest =
+    # 0.
     bend = curvature[number, number] - curvature[other, other]
     rest = rest + rest + curvature[other, other]
     signs = ca.SX.sym("branch"), ca.SX.sym("other_branch")
@@ -144,10 +170,16 @@ def _askew(phi: Any, angle: Coordinate, curvature: Any, coordinates: Sequence[Co
         found = signs[0] * ca.sqrt(squared) - slope[number] / bend
     beside = (1 - found) * (1 + found)
     direction = ca.vertcat(found, signs[1] * ca.sqrt(beside))
-    return ClosedForm((_variables(direction if number == 0 else direction[::-1]),), ca.fmin(squared, beside), signs)
+    return ClosedForm(
+        (_variables(direction if number == 0 else direction[::-1]),),
+        ca.fmin(squared, beside),
+        signs,
+    )
 
 
-def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+def _matching(
+    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> ClosedForm | None:
     """The closed form of the pattern that the equations have; None where they have none."""
     kinds = "".join(sorted(c.kind[0] for c in unknown))
     if phi.numel() != len(unknown):
@@ -161,29 +193,44 @@ def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coo
     if kinds == "as":
         angle, slide = sorted(unknown, key=lambda c: c.kind)
         form = _direction_and_slide(phi, angle, slide, coordinates)
-        return replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
+        return (
+            replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
+        )
     return _slides(phi, unknown) if set(kinds) == {"s"} else None
 
 
 def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordinate]) -> bool:
-    """Whether solutions, each of which may hold what those before it solved, are ones of Phi = 0 on all branches."""
+    """Whether solutions, each of which may hold what those before it solved, are ones of Phi = 0 on
+    all branches.
+    """
     symbols = column(c.variables for form in forms for c in form.unknown)
     # The size of what is added up in an equation: its slopes times what they are slopes of.
     size = ca.mmax(ca.fabs(ca.jacobian(phi, symbols)) @ ca.fabs(symbols))
     left = ca.vertcat(phi, size)
     for form in reversed(forms):
-        # Beside their squares: where links do not reach, by far where they are short, both are large and imaginary.
+        # Beside their squares: where links do not reach, by far where they are short, both are
+        # large and imaginary.
         pairs = [c[:2] for c in form.variables if c.numel() > 1]
-        directions = [(ca.sumsqr(pair) - 1) / (ca.sumsqr(ca.fabs(pair[0]) + ca.fabs(pair[1])) + 1) for pair in pairs]
+        directions = [
+            (ca.sumsqr(pair) - 1) / (ca.sumsqr(ca.fabs(pair[0]) + ca.fabs(pair[1])) + 1)
+            for pair in pairs
+        ]
         left = ca.vertcat(left[:-1], *(left[-1] * off for off in directions), left[-1])
-        left = ca.substitute(left, column(c.variables for c in form.unknown), column(form.variables))
+        left = ca.substitute(
+            left, column(c.variables for c in form.unknown), column(form.variables)
+        )
     branches = column(branch for form in forms for branch in form.branches)
-    ways = [ca.substitute(left, branches, ca.SX(ca.DM(signs))) for signs in product((1, -1), repeat=branches.numel())]
+    ways = [
+        ca.substitute(left, branches, ca.SX(ca.DM(signs)))
+        for signs in product((1, -1), repeat=branches.numel())
+    ]
     return vanish(column(way[:-1] for way in ways), coordinates, column(way[-1] for way in ways))
 
 
 def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
-    """Slope and rest of Phi = slope @ symbols + rest, or None where the slope depends on an unknown."""
+    """Slope and rest of Phi = slope @ symbols + rest, or None where the slope depends on an
+    unknown.
+    """
     slope = ca.jacobian(phi, symbols)
     if ca.depends_on(slope, all_unknown):
         return None
@@ -196,8 +243,12 @@ def _one_direction(phi: Any, angle: Coordinate) -> ClosedForm | None:
     return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
 
 
-def _direction_on_line(phi: Any, angle: Coordinate, branch: Any, largest: Any = None) -> tuple[Any, Any] | None:
-    """The direction for which phi = 0, and the closure: beside the square of its slope, or beside the ``largest`` there may be."""
+def _direction_on_line(
+    phi: Any, angle: Coordinate, branch: Any, largest: Any = None
+) -> tuple[Any, Any] | None:
+    """The direction for which phi = 0, and the closure: beside the square of its slope, or beside
+    the ``largest`` there may be.
+    """
     affine = _affine(phi, _pair(angle), _pair(angle))
     if affine is None:
         return None
@@ -214,16 +265,24 @@ def _direction_on_line(phi: Any, angle: Coordinate, branch: Any, largest: Any = 
     squared = _square(a) + _square(b)
     reach = ca.sqrt(squared)
     if rest.is_zero():
-        return branch * ca.vertcat(-b, a) / reach, ca.SX(1) if largest is None else squared / largest
+        return branch * ca.vertcat(-b, a) / reach, ca.SX(
+            1
+        ) if largest is None else squared / largest
     root = (reach - rest) * (reach + rest)
     w = branch * ca.sqrt(root)
-    return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / (squared if largest is None else largest)
+    return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / (
+        squared if largest is None else largest
+    )
 
 
-def _two_circles(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+def _two_circles(
+    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> ClosedForm | None:
     symbols = ca.vertcat(*(_pair(c) for c in unknown))
     affine = _affine(phi, symbols, symbols)
-    if affine is None or not all(_turns(affine[0][:, 2 * i : 2 * i + 2], coordinates) for i in range(2)):
+    if affine is None or not all(
+        _turns(affine[0][:, 2 * i : 2 * i + 2], coordinates) for i in range(2)
+    ):
         return None
     slope, rest = affine
     branch = ca.SX.sym("branch")
@@ -233,7 +292,8 @@ def _two_circles(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[
     squared = _square(px) + _square(py)
     d = ca.sqrt(squared)
     further, nearer = d + l2, d - l2
-    # Four times the square of twice the triangle's area, and twice the projection of the first arm on p, times p.
+    # Four times the square of twice the triangle's area, and twice the projection of the first arm
+    # on p, times p.
     root = ((further + l1) * (l1 - nearer)) * ((further - l1) * (nearer + l1))
     w = branch * ca.sqrt(root)
     reach = _square(l1) + nearer * further
@@ -241,16 +301,22 @@ def _two_circles(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[
     first = ((px * reach - py * w) / twice, (py * reach + px * w) / twice)
     # What is left of p: its error is what p's own rounding makes of this arm.
     second = (px - first[0], py - first[1])
-    directions = tuple(_variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True))
+    directions = tuple(
+        _variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True)
+    )
     return ClosedForm(directions, root / _square(2 * (l1 * l2)), (branch,))
 
 
 def _turns(columns: Any, coordinates: Sequence[Coordinate]) -> bool:
-    """Whether two columns, slopes by a cosine and a sine, are those of an arm that turns: (u, v) and (-v, u)."""
+    """Whether two columns, slopes by a cosine and a sine, are those of an arm that turns: (u, v)
+    and (-v, u).
+    """
     return vanish(columns[:, 1] - ca.vertcat(-columns[1, 0], columns[0, 0]), coordinates, columns)
 
 
-def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+def _direction_and_slide(
+    phi: Any, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]
+) -> ClosedForm | None:
     """Eliminate the slide; what is left is a direction on a line."""
     pair, branch = _pair(angle), ca.SX.sym("branch")
     unknown = ca.vertcat(pair, slide.variables)
@@ -259,12 +325,18 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordin
     if not ca.depends_on(ca.vertcat(axis, ca.vec(turned)), unknown):
         along_axis, equations = axis, (phi[0], phi[1])
         if not (vanish(ca.sumsqr(axis) - 1, coordinates) and _turns(turned, coordinates)):
-            # Not the x and y of one point that slides along a line: the lines may come to be parallel.
+            # Not the x and y of one point that slides along a line: the lines may come to be
+            # parallel.
             largest = ca.sumsqr(axis) * ca.sumsqr(turned)
     else:
-        # The axis turns with the angle: Phi = p + R (b + axis sigma), and R' Phi is affine where R' R need not be formed.
+        # The axis turns with the angle: Phi = p + R (b + axis sigma), and R' Phi is affine where R'
+        # R need not be formed.
         fixed = ca.substitute(phi, pair, ca.SX.zeros(2))
-        if ca.depends_on(fixed, slide.variables) or ca.depends_on(turned, pair) or not _turns(turned, coordinates):
+        if (
+            ca.depends_on(fixed, slide.variables)
+            or ca.depends_on(turned, pair)
+            or not _turns(turned, coordinates)
+        ):
             return None
         along_axis = ca.jacobian(turned[:, 0], slide.variables)
         arm = ca.substitute(turned[:, 0], slide.variables, 0)
@@ -285,7 +357,9 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordin
 
 
 def _tied(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
-    """Angles that count turns, and slides, that follow others, as in a train of gears; of several, by their volume."""
+    """Angles that count turns, and slides, that follow others, as in a train of gears; of several,
+    by their volume.
+    """
     if any(c.kind == "ball" for c in unknown):
         return None
     affine = _affine(phi, column(c.value for c in unknown), column(c.variables for c in unknown))
@@ -295,7 +369,10 @@ def _tied(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
         return ClosedForm((_told(unknown[0], -affine[1] / affine[0]),))
     system = LinearSystem.of(affine[0])
     values = ca.vertsplit(system.solve(-affine[1]))
-    return ClosedForm(tuple(_told(c, value) for c, value in zip(unknown, values, strict=True)), _square(system.volume))
+    return ClosedForm(
+        tuple(_told(c, value) for c, value in zip(unknown, values, strict=True)),
+        _square(system.volume),
+    )
 
 
 def _told(coordinate: Coordinate, value: Any) -> Any:
@@ -303,14 +380,18 @@ def _told(coordinate: Coordinate, value: Any) -> Any:
 
 
 def _slides(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
-    """Slides along lines that none of them turns; of several, the closure is the square of the volume that their slopes span."""
+    """Slides along lines that none of them turns; of several, the closure is the square of the
+    volume that their slopes span.
+    """
     symbols = ca.vertcat(*(c.variables for c in unknown))
     affine = _affine(phi, symbols, symbols)
     if affine is None:
         return None
     system = LinearSystem.of(affine[0])
     places = system.solve(-affine[1])
-    return ClosedForm(tuple(ca.vertsplit(places)), _square(system.volume) if len(unknown) > 1 else None)
+    return ClosedForm(
+        tuple(ca.vertsplit(places)), _square(system.volume) if len(unknown) > 1 else None
+    )
 
 
 def _norm(x: Any, y: Any) -> Any:

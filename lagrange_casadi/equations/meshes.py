@@ -1,8 +1,9 @@
 """Forces of teeth, belts and chains on the bodies that they couple.
 
-The equation of a transmission ties coordinates, as that of a gear does. Its multiplier does not act along these, between each gear
-and its carrier, but where the gears touch, and so pushes them apart too: for every motion that the joints allow both do the same
-work. So the multipliers are those of the equation, and reactions and sections feel what acts where they touch.
+The equation of a transmission ties coordinates, as that of a gear does. Its multiplier does not act
+along these, between each gear and its carrier, but where the gears touch, and so pushes them apart
+too: for every motion that the joints allow both do the same work. So the multipliers are those of
+the equation, and reactions and sections feel what acts where they touch.
 """
 
 from __future__ import annotations
@@ -22,15 +23,27 @@ from .pressing import Contact, Rubbing, slowest_of
 
 
 def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> Iterator[Applied]:
-    """What a transmission does to bodies: in each of its meshes the multiplier along the teeth, and what presses apart."""
+    """What a transmission does to bodies: in each of its meshes the multiplier along the teeth, and
+    what presses apart.
+    """
     for mesh in transmission.meshes:
         frame = resting.frames[mesh.carrier.name]
         force, couple = _summed(transmission, mesh, multiplier)
         back = plus(times(-1, couple), cross(mesh.reach, force))
-        yield Applied(transmission.name, mesh.first, frame.rotation.apply(force), frame.rotation.apply(couple))
-        x, y, z = (value if isinstance(value, float) else resting.at_state(value) for value in mesh.second.place)
+        yield Applied(
+            transmission.name, mesh.first, frame.rotation.apply(force), frame.rotation.apply(couple)
+        )
+        x, y, z = (
+            value if isinstance(value, float) else resting.at_state(value)
+            for value in mesh.second.place
+        )
         second = Point(mesh.second.body, x, y, mesh.second.end, z)
-        yield Applied(transmission.name, second, frame.rotation.apply(times(-1, force)), frame.rotation.apply(back))
+        yield Applied(
+            transmission.name,
+            second,
+            frame.rotation.apply(times(-1, force)),
+            frame.rotation.apply(back),
+        )
 
 
 def transmissions_of(mechanism: Mechanism) -> dict[str, Transmission]:
@@ -58,7 +71,10 @@ def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> Rubbing:
 def _summed(transmission: Transmission, mesh: Mesh, multiplier: ca.SX) -> tuple[Vector, Vector]:
     """The force on the first body, and the couple about its point, in the carrier's axes."""
     force, couple = _times(multiplier, mesh.along)
-    beside = [(transmission.symbol, mesh.apart), (transmission.loss and transmission.loss.symbol, mesh.braking)]
+    beside = [
+        (transmission.symbol, mesh.apart),
+        (transmission.loss and transmission.loss.symbol, mesh.braking),
+    ]
     for factor, wrench in beside:
         if factor is not None and wrench is not None:
             more, about = _times(factor, wrench)
@@ -67,5 +83,8 @@ def _summed(transmission: Transmission, mesh: Mesh, multiplier: ca.SX) -> tuple[
 
 
 def _times(factor: ca.SX, wrench: Wrench) -> tuple[Vector, Vector]:
-    force, couple = (tuple(0.0 if nil(x) else factor * x for x in vector) for vector in (wrench.force, wrench.couple))
+    force, couple = (
+        tuple(0.0 if nil(x) else factor * x for x in vector)
+        for vector in (wrench.force, wrench.couple)
+    )
     return (force[0], force[1], force[2]), (couple[0], couple[1], couple[2])

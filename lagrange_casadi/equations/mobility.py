@@ -1,16 +1,19 @@
-"""Internal forces from extra mobilities: multipliers and efforts, joint reactions, and the section law of a link.
+"""Internal forces from extra mobilities: multipliers and efforts, joint reactions, and the section
+law of a link.
 
-The law (exact for a straight link of any density): with mu0 and mu1 the mass and the first moment, about the base, of the
-material from the section to the tip,
+The law (exact for a straight link of any density): with mu0 and mu1 the mass and the first moment,
+about the base, of the material from the section to the tip,
 
     axial   = n0 + n1 mu0 + n2 mu1,
     shear   = f0 + f1 mu0 + f2 mu1,
     bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
 
-Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's Lagrange terms by the moments (paper
-eq. 20): n2 and f2 are the square of the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear,
-the equilibrium of an element. n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
-between base and tip is seen by the sections on its base side. What acts along the link has terms of its own (:mod:`.spreads`).
+Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's
+Lagrange terms by the moments (paper eq. 20): n2 and f2 are the square of the link's rate and less
+its change. They repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element.
+n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
+between base and tip is seen by the sections on its base side. What acts along the link has terms of
+its own (:mod:`.spreads`).
 """
 
 from __future__ import annotations
@@ -49,11 +52,13 @@ from .tree import Branch
 
 @dataclass(frozen=True, eq=False)
 class InternalForces:
-    """Every force that was asked for, over time, the driven motion, the iterated unknowns and the parameters.
+    """Every force that was asked for, over time, the driven motion, the iterated unknowns and the
+    parameters.
 
-    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among the columns, a check tells how
-    far drives are from a place where they cannot make the motion, where they are others than the joints whose motion is given.
-    ``rubbed`` are the forces of frictions.
+    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among
+    the columns, a check tells how far drives are from a place where they cannot make the motion,
+    where they are others than the joints whose motion is given. ``rubbed`` are the forces of
+    frictions.
     """
 
     columns: dict[Column, Any]
@@ -61,8 +66,12 @@ class InternalForces:
     rubbed: Solved
 
 
-def needed_reactions(mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]) -> tuple[str, ...]:
-    """The joints whose reaction some output needs: those wanted, those that load a wanted link beyond its base, those that rub."""
+def needed_reactions(
+    mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]
+) -> tuple[str, ...]:
+    """The joints whose reaction some output needs: those wanted, those that load a wanted link
+    beyond its base, those that rub.
+    """
     needed = {*reactions, *(friction.joint.name for friction in frictions_of(mechanism).values())}
     for joint in mechanism.joints.values():
         for point in (joint.parent, joint.child):
@@ -84,44 +93,70 @@ def internal_forces(
     weights: Mapping[str, Any] | None,
     signs: Mapping[str, Any] | None = None,
 ) -> InternalForces:
-    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links.
+    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows,
+    and the laws of links.
 
-    ``weights`` are those of the drives, where these are others than the joints whose motion is given; ``frictions`` those that are
-    wanted themselves. ``signs`` are those of frictions at rest, which are open without: see :func:`.solve`.
+    ``weights`` are those of the drives, where these are others than the joints whose motion is
+    given; ``frictions`` those that are wanted themselves. ``signs`` are those of frictions at rest,
+    which are open without: see :func:`.solve`.
     """
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
     unknowns, values, free = multipliers_of(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
-    drives = {c.name: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.name not in unaided}
+    drives = {
+        c.name: along[i]
+        for i, c in enumerate(multibody.coordinates)
+        if c.driven and c.name not in unaided
+    }
     held: dict[Column, Any] = {}
     if weights is not None and multibody.efforts:
-        needs = {name: ca.substitute(ca.SX(need), unknowns, values) for name, need in drives.items()}
-        needs = {name: need for name, need in needs.items() if name in multibody.efforts or name not in weights}
+        needs = {
+            name: ca.substitute(ca.SX(need), unknowns, values) for name, need in drives.items()
+        }
+        needs = {
+            name: need
+            for name, need in needs.items()
+            if name in multibody.efforts or name not in weights
+        }
         size = reach(multibody.mechanism)
-        units = {name: 1 if axis.kind == "angle" else size for name, (_, axis) in multibody.mechanism.coordinates.items()}
+        units = {
+            name: 1 if axis.kind == "angle" else size
+            for name, (_, axis) in multibody.mechanism.coordinates.items()
+        }
         efforts = solve_efforts(multibody.efforts, needs, weights, units)
         drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
         values = ca.substitute(values, efforts.symbols, efforts.values)
         unknowns, values = ca.vertcat(unknowns, efforts.symbols), ca.vertcat(values, efforts.values)
         held = {Check("hold", ", ".join(weights)): efforts.hold}
-    starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
+    starts = itertools.accumulate(
+        (rates.numel() for rates in multibody.mobilities.values()), initial=0
+    )
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
     borne_by = needed_reactions(multibody.mechanism, reactions, sections)
     found = {name: _reaction(multibody, joints[name], by_joint) for name in borne_by}
-    columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
+    columns: dict[Column, Any] = (
+        {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
+    )
     for name in reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
-        columns |= {Output("reaction", name, member): found[name].ground.member(member) for member in members}
+        columns |= {
+            Output("reaction", name, member): found[name].ground.member(member)
+            for member in members
+        }
         if multibody.mechanism.space:
             columns |= _on_own_axes(joints[name], found[name].own)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in multipliers}
     if reactions:
-        columns |= {Check("multiplier", name): multiplier for name, multiplier in tying.items() if name not in multipliers}
+        columns |= {
+            Check("multiplier", name): multiplier
+            for name, multiplier in tying.items()
+            if name not in multipliers
+        }
     for name in sections:
         columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
@@ -137,14 +172,21 @@ def internal_forces(
             rubbed[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
     rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
     resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
-    every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
+    every = iter(
+        ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ()
+    )
     columns = {name: next(every) for name in columns}
     rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
-    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free, signs)
+    acting = solve(
+        [rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free, signs
+    )
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
     columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
     for name in frictions:
-        columns |= {Output("friction", name, "along"): acting.forces[name], Output("friction", name, "loss"): acting.lost[name]}
+        columns |= {
+            Output("friction", name, "along"): acting.forces[name],
+            Output("friction", name, "loss"): acting.lost[name],
+        }
     return InternalForces(columns | acting.checks | held, free, acting)
 
 
@@ -178,8 +220,12 @@ class Reaction:
     own: Action
 
 
-def _section_law(multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Any) -> dict[Column, Any]:
-    """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
+def _section_law(
+    multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Any
+) -> dict[Column, Any]:
+    """The coefficients of a link's law: of its material from the section mobility, of the tip and
+    stations from what acts there.
+    """
     link, space = multibody.mechanism.links[name], multibody.mechanism.space
     slopes = _material(multibody, name)
     tip = Action()
@@ -192,22 +238,34 @@ def _section_law(multibody: Multibody, name: str, found: Mapping[str, Reaction],
             continue
         members = (*_by_plane(acting, space), place[0] / link.length)
         stations |= {
-            Output("station", name, member, source): value for member, value in zip(station_members(space), members, strict=True)
+            Output("station", name, member, source): value
+            for member, value in zip(station_members(space), members, strict=True)
         }
     by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
     at_tip, about = list(tip.force), tip.couple
     if _between_pins(multibody, link, drives):
-        # The moment about the base is zero: of a light link between heavy bodies the tip's reaction would leave rounding only.
+        # The moment about the base is zero: of a light link between heavy bodies the tip's reaction
+        # would leave rounding only.
         assert isinstance(link.mass, Density)
         _, first, inertia = link.mass.ends(link.length)
-        at_tip[1] = -(by_mass[1] * first + by_moment[1] * (first * link.length + inertia / link.length))
+        at_tip[1] = -(
+            by_mass[1] * first + by_moment[1] * (first * link.length + inertia / link.length)
+        )
     along, beside, *above = zip(at_tip, by_mass, by_moment, strict=False)
     law = [*along, *beside, about[2]]
     for plane in above:
         law += [*plane, about[1], about[0]]
-    own = {Output("law", name, member): ca.SX(value) for member, value in zip(law_members(space), law, strict=True)}
+    own = {
+        Output("law", name, member): ca.SX(value)
+        for member, value in zip(law_members(space), law, strict=True)
+    }
     frame = multibody.felt[name].along_axis()
-    return own | stations | spreads(multibody, link) | rotary(multibody, link, frame.rate, frame.angular)
+    return (
+        own
+        | stations
+        | spreads(multibody, link)
+        | rotary(multibody, link, frame.rate, frame.angular)
+    )
 
 
 def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
@@ -216,22 +274,28 @@ def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
-    """Whether pins of a plane without effort at a link's base and at its tip are all that acts on it."""
+    """Whether pins of a plane without effort at a link's base and at its tip are all that acts on
+    it.
+    """
     if multibody.mechanism.space:
         return False
     if any(part.point.body is link for part in (*multibody.applied, *multibody.held)):
         return False
     joints = [joint for joint in multibody.mechanism.joints.values() if link in joint.bodies]
-    ends = [point.end for joint in joints for point in (joint.parent, joint.child) if point.body is link]
+    ends = [
+        point.end for joint in joints for point in (joint.parent, joint.child) if point.body is link
+    ]
     pins = all(joint.kind == "revolute" and joint.name not in drives for joint in joints)
     return pins and set(ends) == {"base", "tip"}
 
 
 def _material(multibody: Multibody, name: str) -> Any:
-    """What holds the piece of a link beyond a section, along the link and across, for a unit of its mass and of its first moment.
+    """What holds the piece of a link beyond a section, along the link and across, for a unit of its
+    mass and of its first moment.
 
-    In axes at rest that lie along the link at the instant: the energy does not see which axes at rest it is written in, and in
-    these the first moment's forces are the rate squared and its change, to the last bit.
+    In axes at rest that lie along the link at the instant: the energy does not see which axes at
+    rest it is written in, and in these the first moment's forces are the rate squared and its
+    change, to the last bit.
     """
     frame, space = multibody.felt[name].along_axis(), multibody.mechanism.space
     slopes, symbols = _of_any_link(space)
@@ -241,11 +305,15 @@ def _material(multibody: Multibody, name: str) -> Any:
 
 @functools.cache
 def _of_any_link(space: bool) -> tuple[Any, Any]:
-    """The same for symbols of the velocity and acceleration of the link's base, its angular velocity, and its change; and these."""
+    """The same for symbols of the velocity and acceleration of the link's base, its angular
+    velocity, and its change; and these.
+    """
     symbols = ca.SX.sym("motion", 12)
     at_rest = () if space else (2, 5, 6, 7, 9, 10)
     entries = [0.0 if k in at_rest else symbols[k] for k in range(12)]
-    speed, acceleration, rate, angular = ((entries[k], entries[k + 1], entries[k + 2]) for k in (0, 3, 6, 9))
+    speed, acceleration, rate, angular = (
+        (entries[k], entries[k + 1], entries[k + 2]) for k in (0, 3, 6, 9)
+    )
     base_frame = Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
     mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
     released, velocities = ca.SX.sym("ed_section", 3 if space else 2), Velocities()
@@ -253,7 +321,9 @@ def _of_any_link(space: bool) -> tuple[Any, Any]:
     base = velocities.vector(base_frame.displaced(translation, ZERO).motion_of(ZERO))
     lever = velocities.vector(Frame(rate=rate, angular=angular).motion_of((1.0, 0.0, 0.0)))
     piece = LagrangeSystem(
-        kinetic=mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2,
+        kinetic=mass * ca.sumsqr(base) / 2
+        + first * ca.dot(base, lever)
+        + second * ca.sumsqr(lever) / 2,
         force_function=ca.SX(0),
         coordinates=ca.SX(0, 1),
         rates=ca.SX(0, 1),
@@ -269,7 +339,10 @@ def _of_any_link(space: bool) -> tuple[Any, Any]:
 def _loads_on(
     multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Any
 ) -> Iterator[tuple[str, tuple[Any, Any, Any], Action]]:
-    """What acts on a link beyond its base: by whom, and in the link's axes where and what. At the tip x is None."""
+    """What acts on a link beyond its base: by whom, and in the link's axes where and what.
+
+    At the tip x is None.
+    """
     rotation = multibody.frames[link.name].rotation
     for joint in multibody.mechanism.joints.values():
         for point, sign in ((joint.parent, -1), (joint.child, 1)):
@@ -317,7 +390,9 @@ def _at_base(point: Point) -> bool:
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Reaction:
-    """What a joint's parent does to its child, without efforts; the moment is about the child's point."""
+    """What a joint's parent does to its child, without efforts; the moment is about the child's
+    point.
+    """
     rotation = multibody.frames[joint.parent.body.name].rotation
     if joint.name in multibody.own_axes:
         own = _on_parent(multibody, joint, actions)
@@ -340,10 +415,16 @@ def _in_ground_axes(multibody: Multibody, joint: Joint, actions: Mapping[str, An
 
 
 def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
-    """A reaction in the parent's axes, of what is in those of the body that hangs on the joint, by the joint's own turns."""
+    """A reaction in the parent's axes, of what is in those of the body that hangs on the joint, by
+    the joint's own turns.
+    """
     force, moment = _on_child(multibody, joint, actions)
-    turns = [own_coordinate(axis, multibody.coordinates) for axis in joint.axes if axis.kind == "angle"]
-    turned = [Rotation.about(c.axis.direction, *ca.vertsplit(c.variables)) for c in turns if c is not None] + [orientation(joint)]
+    turns = [
+        own_coordinate(axis, multibody.coordinates) for axis in joint.axes if axis.kind == "angle"
+    ]
+    turned = [
+        Rotation.about(c.axis.direction, *ca.vertsplit(c.variables)) for c in turns if c is not None
+    ] + [orientation(joint)]
     if joint.child.body is _branch(multibody, joint).far.body:
         for rotation in reversed(turned):
             force, moment = rotation.apply(force), rotation.apply(moment)
@@ -355,8 +436,12 @@ def _branch(multibody: Multibody, joint: Joint) -> Branch:
     return next(branch for branch in multibody.tree.branches if branch.joint is joint)
 
 
-def _on_child(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> tuple[Vector, Vector]:
-    """What a mobility of the tree tells of a joint, on its child: force and moment, in the axes of the mobility."""
+def _on_child(
+    multibody: Multibody, joint: Joint, actions: Mapping[str, Any]
+) -> tuple[Vector, Vector]:
+    """What a mobility of the tree tells of a joint, on its child: force and moment, in the axes of
+    the mobility.
+    """
     action = _branch(multibody, joint).sign * actions[joint.name]
     if multibody.mechanism.space:
         x, y, z, *about = ca.vertsplit(action)
@@ -365,12 +450,23 @@ def _on_child(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) ->
 
 
 def _on_own_axes(joint: Joint, own: Action) -> dict[Column, Any]:
-    """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave open lies along one of these."""
+    """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave
+    open lies along one of these.
+    """
     values = [dot(one, vector) for vector in (own.force, own.couple) for one in joint.triad]
     names = own_members(moment=joint.bears_moment)
-    return {Output("reaction", joint.name, name): ca.SX(value) for name, value in zip(names, values, strict=False)}
+    return {
+        Output("reaction", joint.name, name): ca.SX(value)
+        for name, value in zip(names, values, strict=False)
+    }
 
 
 def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:
     """The stations of a link that outputs name, in their order."""
-    return tuple(dict.fromkeys(output.station for output in outputs if output.group == "station" and output.part == link))
+    return tuple(
+        dict.fromkeys(
+            output.station
+            for output in outputs
+            if output.group == "station" and output.part == link
+        )
+    )

@@ -1,4 +1,6 @@
-"""What is asked of a mechanism once it is compiled: its tables as plain data, and its numbers as functions of the parameters."""
+"""What is asked of a mechanism once it is compiled: its tables as plain data, and its numbers as
+functions of the parameters.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,14 @@ from ..beams.material import Material
 from ..declare.corners import Corners
 from ..declare.declared import Declared
 from ..declare.density import Density
-from ..declare.description import Description, Template, beams_of, in_space, kinds_of_described, template_of
+from ..declare.description import (
+    Description,
+    Template,
+    beams_of,
+    in_space,
+    kinds_of_described,
+    template_of,
+)
 from ..declare.laws import Laws
 from ..declare.masses import ALL, masses_of
 from ..declare.parts import LineLoad, Link, Parameter
@@ -38,12 +47,17 @@ from .tree import span
 
 def materials_of(description: Description) -> dict[str, Material]:
     """Return what links with a beam are made of."""
-    return {name: Material(**description["bodies"][name]["beam"]["material"]) for name in beams_of(description)}
+    return {
+        name: Material(**description["bodies"][name]["beam"]["material"])
+        for name in beams_of(description)
+    }
 
 
 @symbolic
 def beam_at(described: Template, link: str, p: Any) -> Beam:
-    """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers where these are numbers."""
+    """Return the beam of a link, its numbers as expressions of parameters ``p``, or as numbers
+    where these are numbers.
+    """
     return beam_of(described.placed(described.content["bodies"][link]["beam"], p))
 
 
@@ -52,30 +66,42 @@ def beam_at(described: Template, link: str, p: Any) -> Beam:
 def template(scene: Scene) -> Template:
     """The description of a scene's mechanism but for its numbers.
 
-    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be none, and the coordinates that are
-    ``unmeasured``.
+    In space it names the ``bars``, links whose spin about their own axis is idle and taken to be
+    none, and the coordinates that are ``unmeasured``.
     """
     mechanism = scene.mechanism
-    found = template_of(mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights))
+    found = template_of(
+        mechanism, tuple(scene.laws), None if scene.weights is None else tuple(scene.weights)
+    )
     if not mechanism.space:
         return found
     tree = span(scene.guided, scene.laws)
-    unmeasured = [name for name, (joint, axis) in mechanism.coordinates.items() if not tree.measures(joint, axis)]
-    return replace(found, content=found.content | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured})
+    unmeasured = [
+        name
+        for name, (joint, axis) in mechanism.coordinates.items()
+        if not tree.measures(joint, axis)
+    ]
+    return replace(
+        found,
+        content=found.content
+        | {"bars": [bar.link.name for bar in tree.bars], "unmeasured": unmeasured},
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class ModelData(Graphs):
     """A mechanism and its motion as plain data, beside the functions of a :class:`.Program`.
 
-    ``laws`` are the motions of the driven coordinates.
-    ``timing`` is how the scene's own instants are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes
-    were corrected for loops to close, or zero.
+    ``laws`` are the motions of the driven coordinates. ``timing`` is how the scene's own instants
+    are asked for, and ``span`` [s] their first and last. ``rounding`` is how far axes were
+    corrected for loops to close, or zero.
 
-    ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all together [kg]. ``margins`` are what a
-    precision demands of the parameters; motions and constraints may have kinks at ``corners``. The loads ``partial`` act along a
-    part of their link; ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints, rows, motions
-    and laws of loads as they were declared, for certificates, and ``template`` is the description but for the numbers.
+    ``extent(p)`` is its size [m], and ``masses(p)`` are those of its bodies, and last of all
+    together [kg]. ``margins`` are what a precision demands of the parameters; motions and
+    constraints may have kinks at ``corners``. The loads ``partial`` act along a part of their link;
+    ``jumps`` are the ratios at which the mass along a link jumps. ``stated`` are the constraints,
+    rows, motions and laws of loads as they were declared, for certificates, and ``template`` is the
+    description but for the numbers.
     """
 
     rounding: float
@@ -102,18 +128,37 @@ class ModelData(Graphs):
             laws=laws,
             timing=scene.timing(),
             span=scene.span,
-            extent=ca.Function("extent", [symbols], [ca.densify(ca.SX(extent(mechanism)))], ["p"], ["extent"], {"cse": True}),
+            extent=ca.Function(
+                "extent",
+                [symbols],
+                [ca.densify(ca.SX(extent(mechanism)))],
+                ["p"],
+                ["extent"],
+                {"cse": True},
+            ),
             margins={precision: scene.demands(precision).margins() for precision in PRECISIONS},
             corners=Corners.of(scene),
-            masses=ca.Function("masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}),
-            partial=tuple(name for name, load in mechanism.loads.items() if isinstance(load, LineLoad) and not load.whole),
-            jumps={name: _jumps(link.mass) for name, link in mechanism.links.items() if isinstance(link.mass, Density)},
+            masses=ca.Function(
+                "masses", [symbols], [masses_of(mechanism)], ["p"], ["masses"], {"cse": True}
+            ),
+            partial=tuple(
+                name
+                for name, load in mechanism.loads.items()
+                if isinstance(load, LineLoad) and not load.whole
+            ),
+            jumps={
+                name: _jumps(link.mass)
+                for name, link in mechanism.links.items()
+                if isinstance(link.mass, Density)
+            },
             stated=Stated.of(mechanism, scene.laws),
             template=template(scene),
         )
 
     def asked_by(self, scene: Scene) -> ModelData:
-        """The same, with how a scene of the same name asks for instants and lets axes be rounded."""
+        """The same, with how a scene of the same name asks for instants
+        and lets axes be rounded.
+        """
         return replace(self, timing=scene.timing(), rounding=_rounding(scene))
 
     @property
@@ -128,7 +173,9 @@ class ModelData(Graphs):
 
     @cached_property
     def kinds(self) -> Kinds:
-        """The kinds of coordinates, those of guides too, and of frictions, and the units of the user's outputs."""
+        """The kinds of coordinates, those of guides too, and of frictions, and the units of the
+        user's outputs.
+        """
         return kinds_of_described(self.template.content)
 
     @cached_property
@@ -145,18 +192,25 @@ class ModelData(Graphs):
         return self.template.filled(self.values(p))
 
     def declared(self, p: Sequence[float] | Array) -> Declared:
-        """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is derived."""
+        """Return what certificates read of the mechanism, for parameters ``p``: nothing of it is
+        derived.
+        """
         return Declared.of(self.at(p), self.stated, p)
 
     @property
     @symbolic
     def symbols(self) -> Any:
         """The parameters' symbols, in a column."""
-        return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
+        return ca.vertcat(
+            ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values())
+        )
 
     @symbolic
     def mass(self, part: str, p: Any) -> Any:
-        """Express the mass of a body, or of ``all`` of them [kg]. Raises :class:`.UnknownNameError` for anything else."""
+        """Express the mass of a body, or of ``all`` of them [kg].
+
+        Raises :class:`.UnknownNameError` for anything else.
+        """
         parts = [*self.template.content["bodies"], ALL]
         if part not in parts:
             raise UnknownNameError("part with a mass", part, parts)
@@ -169,7 +223,9 @@ class ModelData(Graphs):
 
     @symbolic
     def matter(self, link: str, p: Any) -> tuple[Any, Density]:
-        """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters ``p``."""
+        """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters
+        ``p``.
+        """
         body = self.template.placed(self.template.content["bodies"][link], p)
         cells = tuple(map(tuple, body["density"]["cells"]))
         return body["length"], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
@@ -186,7 +242,11 @@ class ModelData(Graphs):
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""
         content = self.template.content
-        kinds = (("joint", content["joints"]), ("path", content.get("paths", ())), ("bar", content["bodies"]))
+        kinds = (
+            ("joint", content["joints"]),
+            ("path", content.get("paths", ())),
+            ("bar", content["bodies"]),
+        )
         return f"{next((kind for kind, parts in kinds if part in parts), 'constraint')} '{part}'"
 
     def words(self) -> dict[str, Any]:
@@ -205,7 +265,10 @@ def _as_it_is(value: Any) -> Any:
 
 def _parameters(words: Mapping[str, Any]) -> dict[str, Parameter]:
     known = words.items()
-    return {name: Parameter(name, default, unit, low, high, ca.SX.sym(name)) for name, (default, unit, low, high) in known}
+    return {
+        name: Parameter(name, default, unit, low, high, ca.SX.sym(name))
+        for name, (default, unit, low, high) in known
+    }
 
 
 _FUNCTION = ca.Function.serialize, ca.Function.deserialize
@@ -213,7 +276,10 @@ _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "rounding": (_as_it_is, _as_it_is),
     **dict.fromkeys(("span", "partial"), (_as_it_is, tuple)),
     **dict.fromkeys(("extent", "masses"), _FUNCTION),
-    "parameters": (lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()}, _parameters),
+    "parameters": (
+        lambda own: {name: [p.default, p.unit, p.low, p.high] for name, p in own.items()},
+        _parameters,
+    ),
     "laws": (Laws.words, Laws.loads),
     "timing": (asdict, lambda words: Timing(**words)),
     "margins": (

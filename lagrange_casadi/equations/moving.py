@@ -1,4 +1,6 @@
-"""A scene whose motion is solved, and what takes no force to tell: motions, poses and loads, and checks of loops and curves."""
+"""A scene whose motion is solved, and what takes no force to tell: motions, poses and loads, and
+checks of loops and curves.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,8 @@ from .turns import count_turns
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """A scene whose motion is solved: bodies and coordinates over time and the driven motion, and where the motion starts.
+    """A scene whose motion is solved: bodies and coordinates over time and the driven motion, and
+    where the motion starts.
 
     ``swings`` are how far angles that are seen with their turns are from the middle of their swing.
     """
@@ -51,7 +54,14 @@ class Moving:
         """Assemble the mechanism, and solve its loops."""
         mechanism, tree = scene.mechanism, span(scene.guided, scene.laws)
         borne = needed_reactions(mechanism, want.reactions, want.sections)
-        body = assemble(scene.guided, tree, scene.laws, borne, pushed(scene.needs_drives, scene.weights), want.own)
+        body = assemble(
+            scene.guided,
+            tree,
+            scene.laws,
+            borne,
+            pushed(scene.needs_drives, scene.weights),
+            want.own,
+        )
         laws = scene.prescribed.only([c.name for c in body.coordinates if c.driven])
         motion = laws.motion
         values = list(mechanism.values(scene.assembly).values())
@@ -65,16 +75,30 @@ class Moving:
     def inputs(self) -> list[Any]:
         """What every column is a function of."""
         solved, mechanism = self.solved, self.scene.mechanism
-        return [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, mechanism.symbols]
+        return [
+            mechanism.time,
+            solved.driven,
+            solved.driven_rate,
+            solved.driven_acceleration,
+            solved.iterated,
+            mechanism.symbols,
+        ]
 
     def begins(self, expression: Any) -> Any:
         """An expression in the inputs where the motion starts."""
         start, newton = self.start, self.solved.newton
-        at_start = (start.t, *self.laws.motion(start.t, start.parameters), newton.guess if newton else [], start.parameters)
+        at_start = (
+            start.t,
+            *self.laws.motion(start.t, start.parameters),
+            newton.guess if newton else [],
+            start.parameters,
+        )
         return ca.Function("start", self.inputs, [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
-        """What takes no force to tell: checks, motion and loads; and what the angles that loops set are sums of."""
+        """What takes no force to tell: checks, motion and loads; and what the angles that loops set
+        are sums of.
+        """
         columns, loop_angles = self._checks(), dict[Output, dict[Column, int]]()
         if self.want.motion:
             told, loop_angles = self._motions()
@@ -82,7 +106,9 @@ class Moving:
         for part in reversed(self.body.applied):
             if part.source in self.want.loads:
                 members = force_members(self.scene.mechanism.space)
-                columns |= {Output("load", part.source, member): part.members[member] for member in members}
+                columns |= {
+                    Output("load", part.source, member): part.members[member] for member in members
+                }
         placed = self.solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
         return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
 
@@ -90,46 +116,84 @@ class Moving:
         """Whether loops close, and rows and curves are kept to."""
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
-        seen = ((loop.name, ca.vertsplit(loop.seen)) for loop in body.loop_equations if loop.seen is not None)
-        columns |= {Check("seen", f"{name}:{k}"): value for name, values in seen for k, value in enumerate(values)}
+        seen = (
+            (loop.name, ca.vertsplit(loop.seen))
+            for loop in body.loop_equations
+            if loop.seen is not None
+        )
+        columns |= {
+            Check("seen", f"{name}:{k}"): value
+            for name, values in seen
+            for k, value in enumerate(values)
+        }
         columns |= _locks(self.scene.mechanism, body, forces=self.want.forces)
         columns |= _rolls(body, self.want)
         columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
         columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
         columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
         for graph in body.rows:
-            columns |= {Check("row", graph.row.name): graph.residual, Check("rowsize", graph.row.name): graph.size}
-        return columns | {Check("turned", name): swing for name, swing in {**solved.swings, **self.swings}.items()}
+            columns |= {
+                Check("row", graph.row.name): graph.residual,
+                Check("rowsize", graph.row.name): graph.size,
+            }
+        return columns | {
+            Check("turned", name): swing for name, swing in {**solved.swings, **self.swings}.items()
+        }
 
     def _motions(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
-        """Motions and poses; and of angles that loops set, how often each coordinate's turns go into them."""
+        """Motions and poses; and of angles that loops set, how often each coordinate's turns go
+        into them.
+        """
         mechanism, body, solved = self.scene.mechanism, self.body, self.solved
         motions = _motion_columns(mechanism, body, solved, self.laws.joints)
         kinds = kinds_of_described(template(self.scene).content)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
-        counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
+        counted: dict[Column, Any] = {
+            Check("turns", c.name): c.value for c in angles if c.name not in solved.loose
+        }
         told = {
-            output: value for output, value in motions.items() if output.member in ("", "angle") and output.unit(kinds) == ANGLE
+            output: value
+            for output, value in motions.items()
+            if output.member in ("", "angle") and output.unit(kinds) == ANGLE
         }
         loop_angles = {output: _turns(value, loose | counted) for output, value in told.items()}
-        loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
+        loop_angles = {
+            output: turns
+            for output, turns in loop_angles.items()
+            if not loose.keys().isdisjoint(turns)
+        }
         loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
         within = column(value - math.tau * whole[check] for check, value in counted.items())
-        motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in loop_angles}
-        columns = {check: value for check, value in whole.items() if any(check in turns for turns in loop_angles.values())}
+        motions |= {
+            output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within)
+            for output in loop_angles
+        }
+        columns = {
+            check: value
+            for check, value in whole.items()
+            if any(check in turns for turns in loop_angles.values())
+        }
         return columns | dict(motions.items()) | _untold(body, motions), loop_angles
 
 
 def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
-    parts = [part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads]
-    found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
+    parts = [
+        part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads
+    ]
+    found = {
+        f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows
+    }
     found |= {f"output '{name}'": expression for name, expression in body.own.items()}
     for part in parts:
         kind = (
-            "load" if part.source in body.mechanism.loads else "constraint" if part.source in body.mechanism.constraints else "row"
+            "load"
+            if part.source in body.mechanism.loads
+            else "constraint"
+            if part.source in body.mechanism.constraints
+            else "row"
         )
         name = f"{kind} '{part.source}'"
         found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), *part.force, *part.couple)
@@ -137,23 +201,31 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
 
 
 def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
-    """How far what is put into curves with ends is beyond them, by the constraint, load or row that does it."""
+    """How far what is put into curves with ends is beyond them, by the constraint, load or row that
+    does it.
+    """
     found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.declared}
     columns: dict[Column, Any] = {}
     for name, expression in (found | dict(seeing)).items():
         far = enumerate(beyond_ends(expression), 1)
-        columns |= {Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far}
+        columns |= {
+            Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far
+        }
     return columns
 
 
 def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Column, Any]:
-    """Of joints whose three turns are coordinates, the square of the cosine of the second: nil where the third axis is the first.
+    """Of joints whose three turns are coordinates, the square of the cosine of the second: nil
+    where the third axis is the first.
 
-    There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is told where it is given.
+    There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is
+    told where it is given.
     """
     found: dict[Column, Any] = {}
     for joint in mechanism.joints.values():
-        turns = [own_coordinate(axis, body.coordinates) for axis in joint.axes if axis.kind == "angle"]
+        turns = [
+            own_coordinate(axis, body.coordinates) for axis in joint.axes if axis.kind == "angle"
+        ]
         own = [turn for turn in turns if turn is not None]
         if len(own) == 3 and (forces or not all(turn.driven for turn in own)):
             found[Check("gimbal", joint.name)] = ca.cos(own[1].value) ** 2
@@ -161,7 +233,8 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
 
 
 def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
-    """Of bars whose y axis was declared, the square of the sine of their angle with that direction: nil where it tells none.
+    """Of bars whose y axis was declared, the square of the sine of their angle with that direction:
+    nil where it tells none.
 
     Of those whose cross-section is not round, and whose sections are wanted.
     """
@@ -175,14 +248,22 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
 
 
 def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
-    """Of the turns of balls, by a check that they are ``open``, where they are not told, in gimbal lock; the second's angle is."""
+    """Of the turns of balls, by a check that they are ``open``, where they are not told, in gimbal
+    lock; the second's angle is.
+    """
     columns: dict[Column, Any] = {}
     for ball in body.balls:
         turns = [axis.coordinate for axis in ball.joint.axes if axis.kind == "angle"]
         locked = body.turns_of(ball).locked
-        outputs = (Output("motion", name, member) for name in turns for member in ("", "rate", "acceleration"))
+        outputs = (
+            Output("motion", name, member)
+            for name in turns
+            for member in ("", "rate", "acceleration")
+        )
         columns |= {
-            Check("open", output): locked for output in outputs if output != Output("motion", turns[1]) and output in motions
+            Check("open", output): locked
+            for output in outputs
+            if output != Output("motion", turns[1]) and output in motions
         }
     return columns
 
@@ -207,28 +288,52 @@ def _motion_columns(
         columns |= {Output("pose", part.name, component): value for component, value in place}
         if part.oriented and mechanism.space:
             axes = zip("xyz", (frame.rotation.x, frame.rotation.y, frame.rotation.z), strict=True)
-            cosines = ((f"{name}{component}", value) for name, axis in axes for component, value in zip("xyz", axis, strict=True))
-            columns |= {Output("pose", part.name, member): ca.SX(value) for member, value in cosines}
+            cosines = (
+                (f"{name}{component}", value)
+                for name, axis in axes
+                for component, value in zip("xyz", axis, strict=True)
+            )
+            columns |= {
+                Output("pose", part.name, member): ca.SX(value) for member, value in cosines
+            }
         elif part.oriented:
             columns[Output("pose", part.name, "angle")] = frame.rotation.angle
     return columns
 
 
-def _within_a_turn(mechanism: Mechanism, body: Multibody, motions: Collection[Output]) -> list[Output]:
-    """The angles of joints in space that are known by a direction alone: none of them is a coordinate of the tree."""
-    angles = [axis for _, axis in mechanism.coordinates.values() if mechanism.space and axis.kind == "angle"]
-    seen = [Output("motion", axis.coordinate) for axis in angles if own_coordinate(axis, body.coordinates) is None]
+def _within_a_turn(
+    mechanism: Mechanism, body: Multibody, motions: Collection[Output]
+) -> list[Output]:
+    """The angles of joints in space that are known by a direction alone: none of them is a
+    coordinate of the tree.
+    """
+    angles = [
+        axis
+        for _, axis in mechanism.coordinates.values()
+        if mechanism.space and axis.kind == "angle"
+    ]
+    seen = [
+        Output("motion", axis.coordinate)
+        for axis in angles
+        if own_coordinate(axis, body.coordinates) is None
+    ]
     return [output for output in seen if output in motions]
 
 
 def _known_by(coordinate: Coordinate) -> Output:
     """The output that an angle that a loop sets is the same as."""
-    return Output("motion", coordinate.name) if coordinate.relative else Output("pose", coordinate.body, "angle")
+    return (
+        Output("motion", coordinate.name)
+        if coordinate.relative
+        else Output("pose", coordinate.body, "angle")
+    )
 
 
 def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:
     """How often each coordinate's angle goes into another angle: once, or less once."""
     if not parts:
         return {}
-    slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
+    slopes = (
+        ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
+    )
     return {part: int(slope) for part, slope in zip(parts, slopes, strict=True) if slope}

@@ -1,9 +1,11 @@
-"""A mechanism as graphs: kinetic energy over velocities, forces that do work along them, loop equations, extra mobilities.
+"""A mechanism as graphs: kinetic energy over velocities, forces that do work along them, loop
+equations, extra mobilities.
 
-Every undriven pin on the tree takes the *absolute* direction of the body that hangs on it for its coordinate, which keeps the
-energy of a chain short. A driven pin takes the angle between its two bodies, on which its effort works. Where drives alone set the
-direction of a body, its cosine and sine are taken of the sum of the drives' angles: a sum costs fewer instructions than a product
-of rotations.
+Every undriven pin on the tree takes the *absolute* direction of the body that hangs on it for its
+coordinate, which keeps the energy of a chain short. A driven pin takes the angle between its two
+bodies, on which its effort works. Where drives alone set the direction of a body, its cosine and
+sine are taken of the sum of the drives' angles: a sum costs fewer instructions than a product of
+rotations.
 """
 
 from __future__ import annotations
@@ -30,14 +32,16 @@ from .tree import Tree
 
 @dataclass(frozen=True, eq=False)
 class Coordinate:
-    """A coordinate of the tree: its name, the body it places, the axis of a joint along which it does, and its symbols.
+    """A coordinate of the tree: its name, the body it places, the axis of a joint along which it
+    does, and its symbols.
 
-    ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``change`` their rates.
-    Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or a turn about the axis
-    alone (``relative``).
+    ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the
+    value last; ``change`` their rates. Cosine and sine are those of ``turn``, an expression in
+    coordinates: the direction of the body, or a turn about the axis alone (``relative``).
 
-    Of a ``ball`` there are three coordinates, by the names of its joint's turns: each has one of the body's axes for its variables,
-    and for its rate the angular velocity's component on it, which is the rate of nothing.
+    Of a ``ball`` there are three coordinates, by the names of its joint's turns: each has one of
+    the body's axes for its variables, and for its rate the angular velocity's component on it,
+    which is the rate of nothing.
     """
 
     name: str
@@ -61,7 +65,11 @@ class Coordinate:
     def resting(self) -> tuple[float, ...]:
         """Its variables where it is zero."""
         if self.ball is not None:
-            return AXES[[axis.coordinate for axis in self.ball.joint.axes if axis.kind == "angle"].index(self.name)]
+            return AXES[
+                [axis.coordinate for axis in self.ball.joint.axes if axis.kind == "angle"].index(
+                    self.name
+                )
+            ]
         return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
     @property
@@ -71,28 +79,37 @@ class Coordinate:
 
     @property
     def told_as(self) -> str:
-        """By which name a posture tells it where it is not driven: the link whose direction it is, or its own."""
+        """By which name a posture tells it where it is not driven: the link whose direction it is,
+        or its own.
+        """
         return self.body if self.kind == "angle" and not self.relative else self.name
 
     def placed(self, symbols: Any, values: Any) -> Any:
         """Its variables for values of the coordinates ``symbols``."""
         if self.kind == "slide":
             return ca.substitute(self.value, symbols, values)
-        turn, angle = ca.vertsplit(ca.substitute(ca.vertcat(self.turn, self.value), symbols, values))
+        turn, angle = ca.vertsplit(
+            ca.substitute(ca.vertcat(self.turn, self.value), symbols, values)
+        )
         return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
 
     @cached_property
     def keys(self) -> tuple[int, ...]:
         """What its variables are known by, and then its rate and its acceleration."""
-        return tuple(symbol.element_hash() for symbol in ca.vertsplit(ca.vertcat(self.variables, self.rate, self.acceleration)))
+        return tuple(
+            symbol.element_hash()
+            for symbol in ca.vertsplit(ca.vertcat(self.variables, self.rate, self.acceleration))
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class LoopEquations:
-    """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the symbols of their multipliers.
+    """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the
+    symbols of their multipliers.
 
-    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a ``bar``, which has its length, and for a constraint of
-    the user's. Of one that may have kinks, ``seen`` is what it sees.
+    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a ``bar``, which has its
+    length, and for a constraint of the user's. Of one that may have kinks, ``seen`` is what it
+    sees.
     """
 
     name: str
@@ -117,10 +134,12 @@ class LoopEquations:
 
 @dataclass(frozen=True, eq=False)
 class Applied:
-    """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
+    """What a load, or the multiplier of a constraint or row, does at a point of a body, as
+    expressions of the state.
 
-    Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what is ``spread`` along a link they
-    are the resultant; ``spread`` are then the coefficients on its axes [N/m], as of a :class:`.LineLoad`.
+    Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what
+    is ``spread`` along a link they are the resultant; ``spread`` are then the coefficients on its
+    axes [N/m], as of a :class:`.LineLoad`.
     """
 
     source: str
@@ -138,7 +157,8 @@ class Applied:
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """An angle that loads and rows see, of an undriven joint or a link, by its name; ``symbol`` stands for it in their expressions.
+    """An angle that loads and rows see, of an undriven joint or a link, by its name; ``symbol``
+    stands for it in their expressions.
 
     ``angle`` is known up to whole turns where loops set it.
     """
@@ -157,7 +177,9 @@ class Turned:
 
 @dataclass(frozen=True, eq=False)
 class RowGraph:
-    """A non-holonomic row: its expression at rest, the sum of the sizes of its terms, and its multiplier's symbol."""
+    """A non-holonomic row: its expression at rest, the sum of the sizes of its terms, and its
+    multiplier's symbol.
+    """
 
     row: Row
     residual: Any
@@ -167,13 +189,16 @@ class RowGraph:
 
 @dataclass(frozen=True, eq=False)
 class Multibody:
-    """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
+    """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and
+    time.
 
-    The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body that hangs on the joint.
-    ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
-    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, and ``along``
-    what a unit of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the directions in ground axes
-    about which turns relative to a body turn, by coordinate; ``own`` are the user's outputs, in symbols of results too.
+    The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body
+    that hangs on the joint. ``frames`` are without mobilities; ``felt`` are with them, and their
+    accelerations are less that of gravity, as matter feels them. ``efforts`` are the symbols of
+    efforts along other coordinates than those whose motion is given, and ``along`` what a unit of
+    effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the directions
+    in ground axes about which turns relative to a body turn, by coordinate; ``own`` are the user's
+    outputs, in symbols of results too.
     """
 
     mechanism: Mechanism
@@ -226,14 +251,17 @@ class Multibody:
         return column(self.mobilities.values())
 
     def terms(self) -> tuple[Any, Any]:
-        """What the Lagrange system of the whole says along the coordinates and along the mobilities.
+        """What the Lagrange system of the whole says along the coordinates and along the
+        mobilities.
 
-        In space velocities are along axes that rest, and lie along the bodies' own at the instant: so what these axes and the
-        levers in them depend on is put in at the end, by symbols that are ``still`` until then.
+        In space velocities are along axes that rest, and lie along the bodies' own at the instant:
+        so what these axes and the levers in them depend on is put in at the end, by symbols that
+        are ``still`` until then.
         """
         still = ca.SX.sym("still", self.variables.numel() if self.mechanism.space else 0)
         moving = self.variables if self.mechanism.space else still
-        # The axes of a ball change with rates that are those of nothing, and stand still here as all that moves in space does.
+        # The axes of a ball change with rates that are those of nothing, and stand still here as
+        # all that moves in space does.
         integrable = [c for c in self.coordinates if c.ball is None]
         system = LagrangeSystem(
             kinetic=self.kinetic,
@@ -253,7 +281,8 @@ class Multibody:
         return along, across
 
     def motion_along(self, joint: Joint, axis: Axis) -> tuple[Any, Any, Any]:
-        """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or closing a loop.
+        """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or
+        closing a loop.
 
         Where loops set an angle, it is known up to whole turns.
         """
@@ -261,8 +290,12 @@ class Multibody:
         return place, *rates_along(joint, axis, self.frames, self.coordinates)
 
 
-def place_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
-    """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up to them only."""
+def place_along(
+    joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
+) -> Any:
+    """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up
+    to them only.
+    """
     own = own_coordinate(axis, coordinates)
     if own is not None:
         return own.value
@@ -275,7 +308,9 @@ def place_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates:
     return ca.SX(turned(joint, _number(joint, axis), parent, child))
 
 
-def rates_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> tuple[Any, Any]:
+def rates_along(
+    joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]
+) -> tuple[Any, Any]:
     """Rate and acceleration of a joint's coordinate along an axis."""
     own = own_coordinate(axis, coordinates)
     if own is not None:
@@ -295,13 +330,16 @@ def rates_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates:
 def _refuse_three(joint: Joint) -> None:
     if joint.turns > 2:
         raise DeclarationError(
-            f"joint '{joint.name}' closes a loop, and the angles of a joint that turns about three axes are not measured there"
+            f"joint '{joint.name}' closes a loop, and the angles of a joint that turns about three"
+            " axes are not measured there"
         )
 
 
 def _ball(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Ball | None:
     """The ball one of whose turns an axis is."""
-    return next((c.ball for c in coordinates if c.ball is not None and c.name == axis.coordinate), None)
+    return next(
+        (c.ball for c in coordinates if c.ball is not None and c.name == axis.coordinate), None
+    )
 
 
 def _number(joint: Joint, axis: Axis) -> int:
@@ -312,13 +350,17 @@ def _number(joint: Joint, axis: Axis) -> int:
 def own_coordinate(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Coordinate | None:
     """The coordinate of the tree that is along an axis; an absolute direction is not."""
     for coordinate in coordinates:
-        if coordinate.name == axis.coordinate and (coordinate.driven or coordinate.relative or coordinate.kind == "slide"):
+        if coordinate.name == axis.coordinate and (
+            coordinate.driven or coordinate.relative or coordinate.kind == "slide"
+        ):
             return coordinate
     return None
 
 
 def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> Any:
-    """The total time derivative of an expression in coordinates' variables, their rates, and time."""
+    """The total time derivative of an expression in coordinates' variables,
+    their rates, and time.
+    """
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
     speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)

@@ -1,4 +1,6 @@
-"""Multipliers of loops, constraints and non-holonomic rows, from the rows of Lagrange's equations in which they are alone."""
+"""Multipliers of loops, constraints and non-holonomic rows, from the rows of Lagrange's equations
+in which they are alone.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +15,13 @@ from .meshes import transmissions_of
 from .multibody import LoopEquations, Multibody, column
 
 
-def multipliers_of(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any, Any]:
+def multipliers_of(
+    multibody: Multibody, kinematics: Kinematics, along: Any
+) -> tuple[Any, Any, Any]:
     """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
 
-    lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of the loops last one first; mu
-    from the driven rows that bear no effort.
+    lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of
+    the loops last one first; mu from the driven rows that bear no effort.
     """
     rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
@@ -27,32 +31,45 @@ def multipliers_of(multibody: Multibody, kinematics: Kinematics, along: Any) -> 
         own = block.multipliers
         left = column(rows[c] for c in block.unknown)
         left = ca.substitute(left, symbols, values)
-        # What no equation of theirs moves, others may still be written in, with factors that cancel.
+        # What no equation of theirs moves, others may still be written in, with factors that
+        # cancel.
         left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
         open_here = ca.SX.sym(f"free_{block.loop_equations[0].name}", system.free)
         free = ca.vertcat(free, open_here)
         found = system.solve_transposed(left, open_here)
         if touching := [loop for loop in block.loop_equations if loop.name in meshed]:
-            found, values = _where_they_touch(multibody, block.loop_equations, touching, found, values)
+            found, values = _where_they_touch(
+                multibody, block.loop_equations, touching, found, values
+            )
         symbols, values = ca.vertcat(own, symbols), ca.vertcat(found, values)
     if multibody.rows:
         mu = column(graph.multiplier for graph in multibody.rows)
-        replaced = [next(c for c in rows if c.name == graph.row.replaces) for graph in multibody.rows]
+        replaced = [
+            next(c for c in rows if c.name == graph.row.replaces) for graph in multibody.rows
+        ]
         unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
-        solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel())))
+        solved = ca.solve(
+            ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel()))
+        )
         values = ca.substitute(values, mu, solved)
         symbols, values = ca.vertcat(symbols, mu), ca.vertcat(values, solved)
     return symbols, values, free
 
 
 def _where_they_touch(
-    multibody: Multibody, loops: Sequence[LoopEquations], touching: Sequence[LoopEquations], found: Any, values: Any
+    multibody: Multibody,
+    loops: Sequence[LoopEquations],
+    touching: Sequence[LoopEquations],
+    found: Any,
+    values: Any,
 ) -> tuple[Any, Any]:
-    """Multipliers of a block in which transmissions are, and of those before: with forces where their parts touch.
+    """Multipliers of a block in which transmissions are, and of those before: with forces where
+    their parts touch.
 
-    ``found`` are multipliers of the equations, beside forces where they touch, which are symbols: those for which the equations'
-    own are zero are looked for. They are the equations' own without them, where each acts in one mesh, for the two do the same
-    work; and what presses apart does none.
+    ``found`` are multipliers of the equations, beside forces where they touch, which are symbols:
+    those for which the equations' own are zero are looked for. They are the equations' own without
+    them, where each acts in one mesh, for the two do the same work; and what presses apart does
+    none.
     """
     sizes = [0, *itertools.accumulate(loop.multipliers.numel() for loop in loops)]
     rows = [sizes[k] for k, loop in enumerate(loops) if loop in touching]
@@ -64,7 +81,10 @@ def _where_they_touch(
         others = column(loop.multipliers for loop in multibody.loop_equations if loop.name in every)
         solved = ca.substitute(own, others, ca.SX.zeros(others.numel()))
     else:
-        slopes, rest = ca.jacobian(own, symbols), ca.substitute(own, symbols, ca.SX.zeros(symbols.numel()))
+        slopes, rest = (
+            ca.jacobian(own, symbols),
+            ca.substitute(own, symbols, ca.SX.zeros(symbols.numel())),
+        )
         solved = -ca.solve(slopes, rest)
     found, values = (ca.substitute(part, symbols, solved) for part in (found, values))
     for k, row in enumerate(rows):

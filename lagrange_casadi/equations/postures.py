@@ -1,4 +1,6 @@
-"""What a rough posture tells of a mechanism's start, and what it leaves open: all of it at once, in lines to paste."""
+"""What a rough posture tells of a mechanism's start, and what it leaves open: all of it at once, in
+lines to paste.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,12 @@ def turns(multibody: Multibody, name: str) -> bool:
     return name in multibody.frames or multibody.mechanism.coordinates[name][1].kind == "angle"
 
 
-def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[Any, set[Coordinate]]]:
-    """What a posture tells of by these names, as expressions, and the coordinates that each is of."""
+def measured(
+    multibody: Multibody, names: Collection[str]
+) -> dict[str, tuple[Any, set[Coordinate]]]:
+    """What a posture tells of by these names, as expressions, and the
+    coordinates that each is of.
+    """
     owner = {key: c for c in multibody.coordinates for key in c.keys}
     told: dict[str, tuple[Any, set[Coordinate]]] = {}
     for name in names:
@@ -41,11 +47,16 @@ def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[An
 
 
 def directions(
-    multibody: Multibody, posture: Mapping[str, float], numbers: Numbers, known: Collection[Coordinate]
+    multibody: Multibody,
+    posture: Mapping[str, float],
+    numbers: Numbers,
+    known: Collection[Coordinate],
 ) -> dict[str, float]:
-    """Rough directions of bodies [rad]: those that are known by now or told, and those that joints carry on from these.
+    """Rough directions of bodies [rad]: those that are known by now or told, and those that joints
+    carry on from these.
 
-    A joint carries a direction from one of its bodies to the other where it holds it, or where the posture tells its angle.
+    A joint carries a direction from one of its bodies to the other where it holds it, or where the
+    posture tells its angle.
     """
     mechanism, found = multibody.mechanism, {}
     for name, (direction, of) in measured(multibody, multibody.frames).items():
@@ -74,7 +85,9 @@ def directions(
 
 @dataclass(eq=False)
 class Undecided:
-    """What a posture leaves open of loops: the ways of each that has a closed form, and names that iterated ones need."""
+    """What a posture leaves open of loops: the ways of each that has a closed form, and names that
+    iterated ones need.
+    """
 
     ways: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)
     lacking: list[tuple[str, list[tuple[str, bool]]]] = field(default_factory=list)
@@ -83,25 +96,47 @@ class Undecided:
     def __bool__(self) -> bool:
         return bool(self.ways or self.lacking)
 
-    def note_ways(self, block: Block, ways: Sequence[Mapping[Coordinate, float]], words: Sequence[str], length: float) -> None:
-        """Note that a loop can be assembled in some ways; the coordinate that differs most is to tell them apart."""
+    def note_ways(
+        self,
+        block: Block,
+        ways: Sequence[Mapping[Coordinate, float]],
+        words: Sequence[str],
+        length: float,
+    ) -> None:
+        """Note that a loop can be assembled in some ways; the coordinate that differs most is to
+        tell them apart.
+        """
 
         def apart(coordinate: Coordinate) -> float:
-            gaps = (one[coordinate] - other[coordinate] for one, other in itertools.combinations(ways, 2))
-            return min(abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length for gap in gaps)
+            gaps = (
+                one[coordinate] - other[coordinate]
+                for one, other in itertools.combinations(ways, 2)
+            )
+            return min(
+                (
+                    abs(math.remainder(gap, math.tau))
+                    if coordinate.kind == "angle"
+                    else abs(gap) / length
+                )
+                for gap in gaps
+            )
 
         chosen = max(ways[0], key=apart)
         self.ways.append((block.joints, tuple({chosen.told_as: way[chosen]} for way in ways)))
         many = "two" if len(ways) == 2 else "several"
         self.words.append(
-            f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the motion: {' or '.join(words)}"
+            f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the"
+            f" motion: {' or '.join(words)}"
         )
 
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
         """Note that an iteration needs rough values of coordinates to begin with."""
         names = [c.told_as for c in missing]
         self.lacking.append((block.joints, [(c.told_as, c.kind != "slide") for c in missing]))
-        self.words.append(f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(names)} too")
+        self.words.append(
+            f"the loops closed by {block.joints} have no closed form; give a rough posture of"
+            f" {', '.join(names)} too"
+        )
 
     def refusal(self, multibody: Multibody) -> PostureError:
         """All of it as an error, with lines to paste."""
@@ -112,9 +147,27 @@ class Undecided:
             for _, ways in self.ways:
                 for name, value in ways[k].items():
                     values = [value, *(way[name] for way in ways)]
-                    told[name] = f"'{readable(*map(math.degrees, values))} deg'" if name in kinds else readable(*values)
-            told |= {name: "'... deg'" if angular else "..." for _, names in self.lacking for name, angular in names}
-            lines.append("posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}")
+                    told[name] = (
+                        f"'{readable(*map(math.degrees, values))} deg'"
+                        if name in kinds
+                        else readable(*values)
+                    )
+            told |= {
+                name: "'... deg'" if angular else "..."
+                for _, names in self.lacking
+                for name, angular in names
+            }
+            lines.append(
+                "posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}"
+            )
         say = f"say which by {' or '.join(lines)}" if self.ways else lines[0]
-        after = " or the like: each loop is told as it is with the first way of those before it" if len(self.ways) > 1 else ""
-        return PostureError(f"{'; '.join(self.words)}; {say}{after}", tuple(ways for _, ways in self.ways), bool(self.lacking))
+        after = (
+            " or the like: each loop is told as it is with the first way of those before it"
+            if len(self.ways) > 1
+            else ""
+        )
+        return PostureError(
+            f"{'; '.join(self.words)}; {say}{after}",
+            tuple(ways for _, ways in self.ways),
+            bool(self.lacking),
+        )

@@ -27,11 +27,12 @@ _TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
+    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its
+    friction has: 1 or a radius [m].
 
-    Two components are those of a force; or, of a guide that rests on its ``edges``, what presses both together, and what a moment
-    presses them together on opposite sides. Of a thread, ``lean`` tells how much more one direction of sliding presses than the
-    other [m].
+    Two components are those of a force; or, of a guide that rests on its ``edges``, what presses
+    both together, and what a moment presses them together on opposite sides. Of a thread, ``lean``
+    tells how much more one direction of sliding presses than the other [m].
     """
 
     arm: Any
@@ -43,7 +44,9 @@ class Contact:
         """How much components press together."""
         if self.edges and len(components) == 2:
             one, other = both_edges(components)
-            return ca.fabs(one) + ca.fabs(other)  # no fmax of the components: that passes over what is no number
+            return ca.fabs(one) + ca.fabs(
+                other
+            )  # no fmax of the components: that passes over what is no number
         if len(components) == 1:
             return ca.fabs(components[0])
         return ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
@@ -57,12 +60,15 @@ def both_edges(components: Sequence[Any]) -> tuple[Any, Any]:
 
 @dataclass(frozen=True, eq=False)
 class Rubbing:
-    """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
+    """A friction as expressions of an instant: its contacts, and rate and acceleration of its
+    coordinate.
 
-    What presses the parts of a transmission apart is found with frictions, because they depend on each other. It has no rate.
+    What presses the parts of a transmission apart is found with frictions, because they depend on
+    each other. It has no rate.
 
-    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to. ``beside`` is the speed [m/s] of
-    sliding along the joint's other coordinate, and its change, where it has one.
+    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to.
+    ``beside`` is the speed [m/s] of sliding along the joint's other coordinate, and its change,
+    where it has one.
     """
 
     friction: Friction | Transmission | Loss
@@ -86,7 +92,9 @@ class Rubbing:
     def of_rows(self, rows: Sequence[Any]) -> Rubbing:
         """The same with other expressions."""
         left = iter(rows)
-        contacts = tuple(replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts)
+        contacts = tuple(
+            replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts
+        )
         rate, acceleration, rests, goes_on, *beside = left
         return Rubbing(self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside))
 
@@ -97,7 +105,9 @@ def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
 
 
 def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
-    """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
+    """A friction in a joint whose parent does this to its child, in ground axes, the couple about
+    the child's point.
+    """
     joint, coordinates = friction.joint, multibody.coordinates
     if friction.every_way:
         rate, acceleration = (_size(x) for x in turning(joint, multibody.frames))
@@ -118,19 +128,25 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     beside: tuple[Any, ...] = ()
     if friction.beside is not None:
         lever = friction.radius if friction.beside.kind == "angle" else 1.0
-        beside = tuple(lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates))
+        beside = tuple(
+            lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates)
+        )
     slowest = slowest_of(multibody, slides=friction.axis.kind != "angle")
     return Rubbing(friction, contacts, rate, acceleration, slowest, beside)
 
 
 def turning(joint: Joint, frames: Mapping[str, Frame]) -> tuple[Vector, Vector]:
-    """The angular velocity and acceleration of a joint's child beside its parent, in ground axes."""
+    """The angular velocity and acceleration of a joint's child beside its
+    parent, in ground axes.
+    """
     parent, child = (frames[body.name] for body in joint.bodies)
     return minus(child.rate, parent.rate), minus(child.angular, parent.angular)
 
 
 def way_of(joint: Joint, grown: Grown) -> Vector:
-    """The axis about which a joint's child turns on its parent, or is about to where it turns back; any at rest."""
+    """The axis about which a joint's child turns on its parent, or is about to where it turns back;
+    any at rest.
+    """
     spin, change = turning(joint, grown.frames)
     moves = _size(spin) > slowest_of(grown, slides=False)[0]
     x, y, z = (ca.if_else(moves, now, soon) for now, soon in zip(spin, change, strict=True))
@@ -142,7 +158,9 @@ def _size(vector: Vector) -> Any:
 
 
 def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Any, Any]:
-    """The rate below which a coordinate rests, and the change of rate below which it goes on to: beside those of the drives."""
+    """The rate below which a coordinate rests, and the change of rate below which it goes on to:
+    beside those of the drives.
+    """
     unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
     for own in (coordinate for coordinate in multibody.coordinates if coordinate.driven):
         size = 1 if own.kind == "angle" else unit
@@ -150,16 +168,21 @@ def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Any, Any]
         quickest += ca.fabs(own.acceleration) / size
     quickest += fastest * fastest
     least = _REST * (unit if slides else 1)
-    # Where the drives themselves turn back, their rates are rounding; their accelerations tell how fast they go beside it.
+    # Where the drives themselves turn back, their rates are rounding; their accelerations tell how
+    # fast they go beside it.
     return least * ca.sqrt(quickest), least * quickest
 
 
-def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:
-    """Two bearings, ``length`` apart, and a collar that bears the thrust; a guide's two blocks, ``length`` apart, and what holds it
-    against turning about its line, at ``radius``; or the flanks of a thread.
+def _in_space(
+    multibody: Multibody, friction: Friction, force: Vector, couple: Vector
+) -> tuple[Contact, ...]:
+    """Two bearings, ``length`` apart, and a collar that bears the thrust; a guide's two blocks,
+    ``length`` apart, and what holds it against turning about its line, at ``radius``; or the flanks
+    of a thread.
 
-    With N on a thread's flank at the angle tan(angle) = pitch/radius, the force along the axis is N (cos -+ mu sin), and friction
-    takes mu N radius/cos from the couple: less or more where the load drives the thread, by the sign of what it does.
+    With N on a thread's flank at the angle tan(angle) = pitch/radius, the force along the axis is N
+    (cos -+ mu sin), and friction takes mu N radius/cos from the couple: less or more where the load
+    drives the thread, by the sign of what it does.
     """
     joint, rotation = friction.joint, multibody.frames[friction.joint.parent.body.name].rotation
     u, v, w = (rotation.apply(direction) for direction in joint.triad)
@@ -176,7 +199,9 @@ def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: V
     if friction.length is None:
         return (Contact(arm, (one, other)),)
     about = (dot(couple, v) / friction.length, dot(couple, w) / friction.length)
-    sides = tuple(Contact(arm, (one / 2 + sign * about[1], other / 2 - sign * about[0])) for sign in (1, -1))
+    sides = tuple(
+        Contact(arm, (one / 2 + sign * about[1], other / 2 - sign * about[0])) for sign in (1, -1)
+    )
     if joint.kind == "cylindrical":
         return sides
     if joint.kind == "prismatic":

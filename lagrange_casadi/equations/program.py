@@ -1,4 +1,6 @@
-"""What a scene computes, as CasADi functions that hold nothing else; and the same as text, to be kept."""
+"""What a scene computes, as CasADi functions that hold nothing else; and the same as text, to be
+kept.
+"""
 
 from __future__ import annotations
 
@@ -27,14 +29,17 @@ from .status import Bound, Rule, bounds_of, rules_of, status_of
 
 @dataclass(frozen=True, eq=False)
 class Program(Graphs):
-    """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be sent, and kept as text.
+    """A compiled scene: CasADi functions and plain data that hold nothing else, so that it can be
+    sent, and kept as text.
 
-    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
-    each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
-    loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
-    of a joint the whole turns of angles that count them, which are in these columns without them. ``completion`` is there where
-    elasticity tells what equilibrium leaves open. ``identity`` is the hash of all that it follows from (see
-    :func:`.fingerprint`), or None where the declaration holds something whose content cannot be told.
+    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p)
+    -> out``, one row of ``out`` for each of ``columns``, which are outputs and checks; ``newton``
+    where loops must be iterated. ``loop_angles`` are the angles that loops set, and what they are
+    sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
+    of a joint the whole turns of angles that count them, which are in these columns without them.
+    ``completion`` is there where elasticity tells what equilibrium leaves open. ``identity`` is the
+    hash of all that it follows from (see :func:`.fingerprint`), or None where the declaration holds
+    something whose content cannot be told.
     """
 
     data: ModelData
@@ -48,7 +53,9 @@ class Program(Graphs):
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The full names of the outputs, and names for the checks, which begin with ``_``: one a row of ``out``."""
+        """The full names of the outputs, and names for the checks, which begin with ``_``: one a
+        row of ``out``.
+        """
         return tuple(map(str, self.columns))
 
     @cached_property
@@ -58,7 +65,11 @@ class Program(Graphs):
 
     def checks(self, kind: Kind) -> dict[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""
-        return {str(c.part): k for k, c in enumerate(self.columns) if isinstance(c, Check) and c.kind == kind}
+        return {
+            str(c.part): k
+            for k, c in enumerate(self.columns)
+            if isinstance(c, Check) and c.kind == kind
+        }
 
     @property
     def bounds(self) -> tuple[Bound, ...]:
@@ -72,16 +83,22 @@ class Program(Graphs):
 
     @property
     def status(self) -> Any:
-        """The function ``status(checks, limits, beside, iterated)``: the number of the first of :attr:`rules` that is broken."""
+        """The function ``status(checks, limits, beside, iterated)``: the number of the first of
+        :attr:`rules` that is broken.
+        """
         return status_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
-        """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (..., columns, t)."""
+        """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (...,
+        columns, t).
+        """
         return np.asarray(out[..., self.seen_columns(constraint), :], float)
 
     def seen_columns(self, constraint: str) -> list[int]:
         """The rows of ``out`` that tell it."""
-        return [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
+        return [
+            k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint
+        ]
 
     @property
     def laws(self) -> Laws:
@@ -100,7 +117,9 @@ class Program(Graphs):
 
     @symbolic
     def extent(self, p: Array) -> float:
-        """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
+        """The size of the mechanism [m], beside which a gap is large or small, for parameters
+        ``p``.
+        """
         return float(self.data.extent(p))
 
     @cached_property
@@ -108,15 +127,21 @@ class Program(Graphs):
         """The links of which a whole section law was wanted, and is there."""
         space = self.data.space
         needed = {
-            link: [Output("law", link, member) for member in law_members(space)]
-            + [
-                Output("station", link, member, station)
-                for station in stations_of(self.outputs, link)
-                for member in station_members(space)
-            ]
+            link: (
+                [Output("law", link, member) for member in law_members(space)]
+                + [
+                    Output("station", link, member, station)
+                    for station in stations_of(self.outputs, link)
+                    for member in station_members(space)
+                ]
+            )
             for link in self.wanted.sections
         }
-        return tuple(link for link, outputs in needed.items() if all(output in self.outputs for output in outputs))
+        return tuple(
+            link
+            for link, outputs in needed.items()
+            if all(output in self.outputs for output in outputs)
+        )
 
     @cached_property
     def doubtful(self) -> dict[Output, int]:
@@ -131,8 +156,13 @@ class Program(Graphs):
     @property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""
-        functions = {"motion": self.motion, "instant": self.instant} | ({"loops": self.newton.step} if self.newton else {})
-        return {name: f.n_instructions() if f.is_a("SXFunction") else f.n_nodes() for name, f in functions.items()}
+        functions = {"motion": self.motion, "instant": self.instant} | (
+            {"loops": self.newton.step} if self.newton else {}
+        )
+        return {
+            name: f.n_instructions() if f.is_a("SXFunction") else f.n_nodes()
+            for name, f in functions.items()
+        }
 
     def dumps(self) -> str:
         """Write it as text."""
@@ -146,7 +176,10 @@ class Program(Graphs):
                 "names": loop.names,
                 "joints": loop.joints,
             }
-        loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
+        loop_angles = {
+            str(angle): {str(part): sign for part, sign in parts.items()}
+            for angle, parts in self.loop_angles.items()
+        }
         kept = {
             "data": self.data.words(),
             "wanted": asdict(self.wanted),
@@ -168,20 +201,34 @@ class Program(Graphs):
         if kept["newton"] is not None:
             loop = kept["newton"]
             step = ca.Function.deserialize(loop["step"])
-            newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
+            newton = NewtonLoop(
+                step,
+                tuple(loop["guess"]),
+                tuple(loop["turning"]),
+                tuple(loop["names"]),
+                loop["joints"],
+            )
         columns = tuple(map(column_of, kept["columns"]))
-        loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
+        loop_angles = {
+            Output.of(k): {column_of(part): sign for part, sign in v.items()}
+            for k, v in kept["loop_angles"].items()
+        }
         completion = Completion.loads(kept["completion"]) if "completion" in kept else None
         data = ModelData.loads(kept["data"])
-        told: dict[str, Any] = {name: tuple(own) if isinstance(own, list) else own for name, own in kept["wanted"].items()}
+        told: dict[str, Any] = {
+            name: tuple(own) if isinstance(own, list) else own
+            for name, own in kept["wanted"].items()
+        }
         wanted = Wanted(**told)
-        return cls(data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"])
+        return cls(
+            data, wanted, instant, newton, columns, loop_angles, completion, kept["identity"]
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
         if self.identity is None:
             raise PickleError(
-                f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives in this process alone; "
-                "expected expressions of CasADi's own functions"
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives"
+                " in this process alone; expected expressions of CasADi's own functions"
             )
         return Program.loads, (self.dumps(),)

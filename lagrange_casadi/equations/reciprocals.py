@@ -1,6 +1,8 @@
-"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted once; and fewer changes of sign.
+"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted
+once; and fewer changes of sign.
 
-A division takes as long as ten products, and a machine has few dividers; a product with a reciprocal rounds once more.
+A division takes as long as ten products, and a machine has few dividers; a product with a
+reciprocal rounds once more.
 """
 
 from __future__ import annotations
@@ -18,7 +20,8 @@ from ..base.symbolic import symbolic
 
 @symbolic
 def share_reciprocals(function: Any, parameters: str) -> Any:
-    """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay.
+    """The same function of one output with divisions shared; ``parameters`` names the input whose
+    reciprocals always pay.
 
     Less a difference is the opposite difference, to the last bit.
 
@@ -34,7 +37,9 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
         if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
             x = operands[-1]
             # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
-            inverse = inverses.setdefault(divisors[k][0], ca.SX.binary(ca.OP_COPYSIGN, ca.SX.binary(ca.OP_DIV, 1.0, x), x))
+            inverse = inverses.setdefault(
+                divisors[k][0], ca.SX.binary(ca.OP_COPYSIGN, ca.SX.binary(ca.OP_DIV, 1.0, x), x)
+            )
             return product(operands[0], inverse) if step.operation == ca.OP_DIV else inverse
         if step.operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
             return less(operands[0].dep(1), operands[0].dep(0))
@@ -53,7 +58,11 @@ def differentiable(function: Any) -> Any:
         return function
 
     def made(_k: int, step: Step, operands: list[Any]) -> Any:
-        if step.operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
+        if (
+            step.operation == ca.OP_COPYSIGN
+            and operands[0].op() == ca.OP_INV
+            and ca.is_equal(operands[0].dep(0), operands[1])
+        ):
             return operands[0]
         return expressed(step, operands)
 
@@ -61,7 +70,9 @@ def differentiable(function: Any) -> Any:
 
 
 def _replayed(function: Any, made: Callable[[int, Step, list[Any]], Any]) -> Any:
-    """The function of one output again, with what ``made`` makes of the number of a step, the step and its operands."""
+    """The function of one output again, with what ``made`` makes of the number of a step, the step
+    and its operands.
+    """
     inputs = function.sx_in()
     (nonzeros,) = replay(function, [given.nonzeros() for given in inputs], made)
     out = ca.SX(function.sparsity_out(0), ca.vertcat(ca.SX(0, 1), *nonzeros))
@@ -70,7 +81,9 @@ def _replayed(function: Any, made: Callable[[int, Step, list[Any]], Any]) -> Any
 
 
 def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:
-    """By step that divides: the step that made its divisor, and whether that depends on parameters alone."""
+    """By step that divides: the step that made its divisor, and whether that depends on parameters
+    alone.
+    """
     made: dict[int, int] = {}
     fixed: dict[int, bool] = {}
     found = {}

@@ -1,14 +1,16 @@
-"""Axes and places that are off by rounding: the nearest ones with which the loops of an over-constrained mechanism close.
+"""Axes and places that are off by rounding: the nearest ones with which the loops of an
+over-constrained mechanism close.
 
-A loop that closes because axes are parallel, or meet, closes no more where a CAD program has rounded them: it has more equations
-than its mobility leaves room for, and these miss by that rounding. In any posture the misses are seen along the left null space N
-of the loops' Jacobian, whose rank is told within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections x of axes and
-places. The least x is taken for which it holds in many postures, and for other parameters too where it can, by the method of Gauss
-and Newton.
+A loop that closes because axes are parallel, or meet, closes no more where a CAD program has
+rounded them: it has more equations than its mobility leaves room for, and these miss by that
+rounding. In any posture the misses are seen along the left null space N of the loops' Jacobian,
+whose rank is told within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections x of
+axes and places. The least x is taken for which it holds in many postures, and for other parameters
+too where it can, by the method of Gauss and Newton.
 
-Joints that must be moved are first tried without what is beside a coordinate axis, or an end of a link, by rounding: where loops
-close so, their graphs are as small as those of exact axes. And a link between two spherical joints is a bar where rounding alone
-puts these beside its axis.
+Joints that must be moved are first tried without what is beside a coordinate axis, or an end of a
+link, by rounding: where loops close so, their graphs are as small as those of exact axes. And a
+link between two spherical joints is a bar where rounding alone puts these beside its axis.
 """
 
 from __future__ import annotations
@@ -48,17 +50,23 @@ _OTHER = 0.05
 _ROUNDS = 8
 _CLOSING_STEPS = 30
 _APART = 100.0
-"""Between a rank that is told and what rounding within the tolerance leaves: so much lies between singular values."""
+"""Between a rank that is told and what rounding within the tolerance leaves: so much lies between
+singular values.
+"""
 
 _SEEN = 1e-4, 1e-10
-"""Of the largest singular value: at most and at least what corrections it tells of; less may be made of what loops miss."""
+"""Of the largest singular value: at most and at least what corrections it tells of; less may be
+made of what loops miss.
+"""
 
 _LEFT = 1e-14
 _FAINT = 1e-17
 
 
 def nearest(scene: Scene) -> Scene | None:
-    """The scene with axes and places of joints moved within its ``rounding``, so that loops close; None if that is not enough."""
+    """The scene with axes and places of joints moved within its ``rounding``, so that loops close;
+    None if that is not enough.
+    """
     declared = scene.mechanism
     if not declared.space or not scene.rounding:
         return None
@@ -69,17 +77,25 @@ def nearest(scene: Scene) -> Scene | None:
     if least is None:
         return None
     moved = _moves(barred, least, values)
-    plain = _with(barred, {name: _plain(declared.joints[name], scene.rounding, size) for name in moved})
+    plain = _with(
+        barred, {name: _plain(declared.joints[name], scene.rounding, size) for name in moved}
+    )
     for mechanism in (_closed(scene, plain, size) if moved else None, least):
         moves = {} if mechanism is None else _moves(declared, mechanism, values)
-        if mechanism is not None and moves and max(max(a, d / size) for a, d in moves.values()) <= scene.rounding:
+        if (
+            mechanism is not None
+            and moves
+            and max(max(a, d / size) for a, d in moves.values()) <= scene.rounding
+        ):
             mechanism.rounded = moves | _moved_loads(declared, mechanism, values)
             return replace(scene, mechanism=mechanism)
     return None
 
 
 def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None:
-    """A mechanism with the least corrections with which its loops close; None where there are none."""
+    """A mechanism with the least corrections with which its loops close; None
+    where there are none.
+    """
     symbols = ca.SX.sym("correction", 12 * len(mechanism.joints))
     found = _Search.of(scene, _shared(mechanism, symbols, size), symbols, size).corrections()
     if found is None:
@@ -88,28 +104,48 @@ def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None
     return _shared(mechanism, found, size)
 
 
-def _moves(declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    """By how much axes [rad] and places [m] of joints were moved, on one body or the other, by joint."""
-    changed = {name: joint for name, joint in mechanism.joints.items() if joint is not declared.joints[name]}
+def _moves(
+    declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]
+) -> dict[str, tuple[float, float]]:
+    """By how much axes [rad] and places [m] of joints were moved, on one body or the other, by
+    joint.
+    """
+    changed = {
+        name: joint
+        for name, joint in mechanism.joints.items()
+        if joint is not declared.joints[name]
+    }
     found = {}
     for name, joint in changed.items():
         gaps = [
             ca.norm_2(ca.vertcat(*minus(one, other)))
             for one, other in zip(_where(joint), _where(declared.joints[name]), strict=True)
         ]
-        *angles, near, far = np.ravel(ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full())
+        *angles, near, far = np.ravel(
+            ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full()
+        )
         found[name] = max(angles), max(near, far)
-    return {name: (float(angle), float(distance)) for name, (angle, distance) in found.items() if angle or distance}
+    return {
+        name: (float(angle), float(distance))
+        for name, (angle, distance) in found.items()
+        if angle or distance
+    }
 
 
-def _moved_loads(declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+def _moved_loads(
+    declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]
+) -> dict[str, tuple[float, float]]:
     """By how much points of loads were moved, as joints are told to be."""
     found = {}
     for name, load in mechanism.loads.items():
         if load is not declared.loads[name] and not isinstance(load, Friction):
             pairs = zip(load.points, declared.loads[name].points, strict=True)
             gaps = [ca.norm_2(ca.vertcat(*minus(one.place, other.place))) for one, other in pairs]
-            far = np.ravel(ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])([*values.values()]).full())
+            far = np.ravel(
+                ca.Function("gaps", [declared.symbols], [ca.vertcat(*gaps)])(
+                    [*values.values()]
+                ).full()
+            )
             found[name] = 0.0, float(far.max())
     return {name: by for name, by in found.items() if by[1]}
 
@@ -122,16 +158,23 @@ def _where(joint: Joint) -> list[Vector]:
 
 
 def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
-    """The mechanism whose links between two spherical joints have these, and loads, on their axis if within a limit [m]."""
+    """The mechanism whose links between two spherical joints have these, and loads, on their axis
+    if within a limit [m].
+    """
     links: set[Body] = set()
     for link in mechanism.links.values():
         own = [joint for joint in mechanism.joints.values() if link in joint.bodies]
-        if isinstance(link.mass, Density) and [joint.kind for joint in own] == ["spherical", "spherical"]:
+        if isinstance(link.mass, Density) and [joint.kind for joint in own] == [
+            "spherical",
+            "spherical",
+        ]:
             links.add(link)
 
     def put(point: Point) -> Point:
         off = point.body in links and not (nil(point.y) and nil(point.z))
-        return replace(point, y=_nothing(point.y, limit), z=_nothing(point.z, limit)) if off else point
+        return (
+            replace(point, y=_nothing(point.y, limit), z=_nothing(point.z, limit)) if off else point
+        )
 
     joints = {
         name: replace(joint, parent=put(joint.parent), child=put(joint.child))
@@ -146,12 +189,16 @@ def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
 
 
 def _loaded(load: Load, put: Callable[[Point], Point]) -> Load:
-    moved: dict[str, Any] = {own.name: put(getattr(load, own.name)) for own in fields(load) if own.type == "Point"}
+    moved: dict[str, Any] = {
+        own.name: put(getattr(load, own.name)) for own in fields(load) if own.type == "Point"
+    }
     return replace(load, **moved) if moved else load
 
 
 def _plain(joint: Joint, rounding: float, size: float) -> Joint:
-    """A joint whose numbers are zero where rounding may have made them what they are, and whose points are at ends of links."""
+    """A joint whose numbers are zero where rounding may have made them what they are, and whose
+    points are at ends of links.
+    """
     assert joint.directions is not None
     assert joint.turned is not None
     u, v, w = _squared(*joint.directions[:2], rounding)
@@ -161,8 +208,12 @@ def _plain(joint: Joint, rounding: float, size: float) -> Joint:
 
 
 def _squared(first: Vector, second: Vector, limit: float) -> tuple[Vector, Vector, Vector]:
-    """Two directions without components that are below a limit, at right angles, and the third one."""
-    u, v = ((_nothing(x, limit), _nothing(y, limit), _nothing(z, limit)) for x, y, z in (first, second))
+    """Two directions without components that are below a limit, at right angles,
+    and the third one.
+    """
+    u, v = (
+        (_nothing(x, limit), _nothing(y, limit), _nothing(z, limit)) for x, y, z in (first, second)
+    )
     u = times(1 / _size(u), u)
     v = minus(v, times(dot(u, v), u))
     v = times(1 / _size(v), v)
@@ -175,7 +226,9 @@ def _size(vector: Vector) -> Expression:
 
 
 def _put(point: Point, limit: float) -> Point:
-    """A point without what is below a limit [m]: of a link whose length is a number, at its end where that is so near."""
+    """A point without what is below a limit [m]: of a link whose length is a number, at its end
+    where that is so near.
+    """
     if point.end is not None or not point.body.oriented:
         return point
     x, y, z = (_nothing(component, limit) for component in point.place)
@@ -191,7 +244,9 @@ def _nothing(number: Expression, limit: float) -> Expression:
 
 @dataclass(frozen=True)
 class Share:
-    """A joint's share of corrections: turns of its axes on the parent and on the child [rad], shifts of its points [m]."""
+    """A joint's share of corrections: turns of its axes on the parent and on the child [rad],
+    shifts of its points [m].
+    """
 
     turns: tuple[Any, Any]
     shifts: tuple[Any, Any]
@@ -204,7 +259,10 @@ class Share:
         on_parent, on_child = self.turns
         u, v, w = (_turned(on_parent, one) for one in directions)
         x, y = (_turned(on_parent, _turned(on_child, one)) for one in turned)
-        parent, child = (_shifted(point, shift) for point, shift in zip((joint.parent, joint.child), self.shifts, strict=True))
+        parent, child = (
+            _shifted(point, shift)
+            for point, shift in zip((joint.parent, joint.child), self.shifts, strict=True)
+        )
         return replace(joint, parent=parent, child=child, directions=(u, v, w), turned=(x, y))
 
 
@@ -229,7 +287,9 @@ def _free(point: Point) -> bool:
 
 
 def _shared(mechanism: Mechanism, corrections: Any, size: float) -> Mechanism:
-    """The mechanism with corrections, joint by joint: twelve each, in radians and of the mechanism's size."""
+    """The mechanism with corrections, joint by joint: twelve each, in radians and of the
+    mechanism's size.
+    """
     found = {}
     for k, (name, joint) in enumerate(mechanism.joints.items()):
         each = [corrections[12 * k + 3 * i : 12 * k + 3 * i + 3] for i in range(4)]
@@ -243,11 +303,17 @@ def _with(mechanism: Mechanism, corrected: Mapping[str, Joint]) -> Mechanism:
     if not corrected:
         return mechanism
     found = copy.copy(mechanism)
-    found.asked = list(mechanism.asked)  # what corrected parts ask of parameters is not asked of the declared ones
-    joints = {joint: corrected[name] for name, joint in mechanism.joints.items() if name in corrected}
+    found.asked = list(
+        mechanism.asked
+    )  # what corrected parts ask of parameters is not asked of the declared ones
+    joints = {
+        joint: corrected[name] for name, joint in mechanism.joints.items() if name in corrected
+    }
     found.joints = {name: joints.get(joint, joint) for name, joint in mechanism.joints.items()}
     asked = [
-        replace(m, of=joints[m.of], axis=m.axis and found.coordinates[m.axis.coordinate][1]) if m.of in joints else m
+        replace(m, of=joints[m.of], axis=m.axis and found.coordinates[m.axis.coordinate][1])
+        if m.of in joints
+        else m
         for m in mechanism.measures.asked
     ]
     found.measures = Measures(asked, mechanism.measures.components)
@@ -299,7 +365,9 @@ class _Search:
         return cls(body, freed, [t, values], others, rows, columns, scene.rounding)
 
     def corrections(self) -> Array | None:
-        """The least ones with which loops close, for other parameters too if these can; None where there are none."""
+        """The least ones with which loops close, for other parameters too if these can; None where
+        there are none.
+        """
         for others in (self.others, ()) if self.others else ((),):
             found = self._corrections([self.values, *others])
             if found is not None:
@@ -310,7 +378,11 @@ class _Search:
         x = np.zeros(self.freed.gaps.size1_in(4))
         seen = [(case, posture) for case in cases for posture in self._walk(case, x)]
         for _ in range(_ROUNDS):
-            parts = [part for case, posture in seen if (part := self._along_null(case, posture, x)) is not None]
+            parts = [
+                part
+                for case, posture in seen
+                if (part := self._along_null(case, posture, x)) is not None
+            ]
             if not parts:
                 return None
             misses, slopes = (np.concatenate(each) for each in zip(*parts, strict=True))
@@ -332,7 +404,9 @@ class _Search:
             ways = np.linalg.svd(slope)[2][self._rank(slope) :]
             step = generator.normal(size=len(ways)) @ ways
             step *= _STRIDE * self.columns / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
-            posture = self._closed(self.freed.moved(posture, step), case, x) or self._closed(self.freed.first, case, x)
+            posture = self._closed(self.freed.moved(posture, step), case, x) or self._closed(
+                self.freed.first, case, x
+            )
 
     def _closed(self, posture: Posture, case: Sequence[Any], x: Array) -> Posture | None:
         """Where loops close but for rounding."""
@@ -341,11 +415,17 @@ class _Search:
             step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ gap)
             posture = self.freed.moved(posture, step)
             if np.max(np.abs(step / self.columns), initial=0.0) < 1e-13:
-                return posture if np.max(np.abs(gap), initial=0.0) < _APART * self.rounding else None
+                return (
+                    posture if np.max(np.abs(gap), initial=0.0) < _APART * self.rounding else None
+                )
         return None
 
-    def _along_null(self, case: Sequence[Any], posture: Posture, x: Array) -> tuple[Array, Array] | None:
-        """What loops miss in a posture that is closed anew, and the derivatives by corrections; None where its rank is not told."""
+    def _along_null(
+        self, case: Sequence[Any], posture: Posture, x: Array
+    ) -> tuple[Array, Array] | None:
+        """What loops miss in a posture that is closed anew, and the derivatives by corrections;
+        None where its rank is not told.
+        """
         closed = self._closed(posture, case, x)
         if closed is None:
             return None
@@ -360,7 +440,9 @@ class _Search:
     def _rank(self, slope: Array) -> int:
         return int(np.linalg.matrix_rank(slope, tol=self._singular * np.linalg.norm(slope, 2)))
 
-    def _scaled(self, posture: Posture, case: Sequence[Any], x: Array) -> tuple[Array, Array, Array]:
+    def _scaled(
+        self, posture: Posture, case: Sequence[Any], x: Array
+    ) -> tuple[Array, Array, Array]:
         """Gaps and their derivatives, in radians and beside the mechanism's size."""
         gap, slope, by = self.freed.at(posture, [*case, x])
         return gap / self.rows, slope * self.columns / self.rows[:, None], by / self.rows[:, None]

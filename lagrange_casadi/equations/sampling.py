@@ -1,7 +1,8 @@
-"""Expressions looked at at random points: an identity of smooth functions that holds at some of them holds at all.
+"""Expressions looked at at random points: an identity of smooth functions that holds at some of
+them holds at all.
 
-So a pattern is verified before a rule is applied that needs it, and what rounding leaves of a coefficient is told from a
-coefficient. The points are the same in every process.
+So a pattern is verified before a rule is applied that needs it, and what rounding leaves of a
+coefficient is told from a coefficient. The points are the same in every process.
 """
 
 from __future__ import annotations
@@ -26,11 +27,13 @@ Values = npt.NDArray[Any]
 
 
 def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
-    """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN where it has no value.
+    """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN
+    where it has no value.
 
-    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles; every other symbol is a number
-    from a half to one and a half, as lengths, masses and factors are. The root of a negative number is imaginary, so an identity
-    also holds where links do not reach.
+    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles;
+    every other symbol is a number from a half to one and a half, as lengths, masses and factors
+    are. The root of a negative number is imaginary, so an identity also holds where links do not
+    reach.
     """
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)
@@ -39,17 +42,31 @@ def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
     for coordinate in coordinates:
         if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
             angle = generator.uniform(-np.pi, np.pi, COUNT)
-            values |= dict(zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False))
+            values |= dict(
+                zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False)
+            )
         elif coordinate.ball is not None and not values.keys().isdisjoint(coordinate.keys):
             if coordinate.ball not in turned:
-                turned[coordinate.ball] = [np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))]
+                turned[coordinate.ball] = [
+                    np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))
+                ]
             number = int(np.argmax(coordinate.resting))
-            values |= dict(zip(coordinate.keys, turned[coordinate.ball][3 * number : 3 * number + 3], strict=False))
+            values |= dict(
+                zip(
+                    coordinate.keys,
+                    turned[coordinate.ball][3 * number : 3 * number + 3],
+                    strict=False,
+                )
+            )
     rows = [values[symbol.element_hash()] for symbol in symbols]
     function = ca.Function("drawn", [column(symbols)], [ca.densify(ca.vec(ca.SX(expression)))])
     with np.errstate(all="ignore"):
         try:
-            found = interpret(function, [rows], _ARITHMETIC)[0] if followable(function) else function(np.array(rows)).full()
+            found = (
+                interpret(function, [rows], _ARITHMETIC)[0]
+                if followable(function)
+                else function(np.array(rows)).full()
+            )
         except TypeError:  # no order of imaginary numbers
             found = [np.nan] * function.numel_out(0)
     return np.array([np.broadcast_to(row, COUNT) for row in found]).reshape(-1, COUNT)
@@ -62,7 +79,9 @@ def _turned(quaternions: Values) -> Values:
 
 
 def vanish(expressions: Any, coordinates: Iterable[Coordinate], beside: Any = 1.0) -> bool:
-    """Whether expressions are zero whatever their symbols are, but for rounding, beside the largest of others."""
+    """Whether expressions are zero whatever their symbols are, but for rounding, beside the largest
+    of others.
+    """
     expressions = ca.SX(expressions)
     if expressions.is_zero():
         return True

@@ -19,7 +19,9 @@ _LONG, _LOOKS, _MOST_JUMPS = 200, 1001, 8
 
 
 def scene_lines(scene: Scene) -> Iterator[str]:
-    """Freedoms, drives with their laws, loads, constraints, the posture, each with its expressions."""
+    """Freedoms, drives with their laws, loads, constraints, the posture,
+    each with its expressions.
+    """
     mechanism = scene.mechanism
     drives = scene.laws if scene.weights is None else scene.weights
     yield f"freedoms: {len(scene.laws)}, driven at {', '.join(drives) or 'nothing'}"
@@ -27,42 +29,75 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     for joint, law in scene.laws.items():
         yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
         yield from _moves(scene, joint) if law.stretches else ()
-    yield from (f"load {name}: {_load(load, space=mechanism.space)}" for name, load in mechanism.loads.items())
-    yield from (f"constraint {name}: 0 = {_constraint(constraint)}" for name, constraint in mechanism.constraints.items())
+    yield from (
+        f"load {name}: {_load(load, space=mechanism.space)}"
+        for name, load in mechanism.loads.items()
+    )
+    yield from (
+        f"constraint {name}: 0 = {_constraint(constraint)}"
+        for name, constraint in mechanism.constraints.items()
+    )
     for name, row in mechanism.rows.items():
-        yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
-    yield from (f"output {name} [{own.unit}]: {_short(own.expression)}" for name, own in mechanism.outputs.items())
+        yield (
+            f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint"
+            f" {row.replaces}, without an effort"
+        )
+    yield from (
+        f"output {name} [{own.unit}]: {_short(own.expression)}"
+        for name, own in mechanism.outputs.items()
+    )
     slides = [name for name, (_, axis) in mechanism.coordinates.items() if axis.kind == "slide"]
-    postures = [describe_coordinate(name, "slide" if name in slides else "angle", rough) for name, rough in scene.posture.items()]
+    postures = [
+        describe_coordinate(name, "slide" if name in slides else "angle", rough)
+        for name, rough in scene.posture.items()
+    ]
     if any(name not in scene.posture for name in reference_posture(mechanism)):
-        postures.append(f"{'else ' if postures else ''}that of reference, in which the parts are declared")
+        postures.append(
+            f"{'else ' if postures else ''}that of reference, in which the parts are declared"
+        )
     yield f"posture: {', '.join(postures) or 'none'}"
     if scene.elastic:
-        yield f"elastic: {'links that have a beam' if scene.elastic is True else ', '.join(scene.elastic)}"
+        yield (
+            "elastic:"
+            f" {'links that have a beam' if scene.elastic is True else ', '.join(scene.elastic)}"
+        )
     if scene.assembly:
-        yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
+        yield (
+            "assembled first with:"
+            f" {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
+        )
 
 
 def _constraint(constraint: Constraint) -> str:
     told = _short(constraint.phi)
     if constraint.transmission is None:
         return told
-    pairs = ", ".join(f"{mesh.first.body.name} and {mesh.second.body.name}" for mesh in constraint.transmission.meshes)
+    pairs = ", ".join(
+        f"{mesh.first.body.name} and {mesh.second.body.name}"
+        for mesh in constraint.transmission.meshes
+    )
     return f"{told}; it acts where these touch: {pairs}"
 
 
 def _law(law: Motion, symbol: Any) -> str:
     if law.knots:
-        return f"a spline through {len(law.knots)} samples from {law.span[0]:g} to {law.span[1]:g} s"
+        return (
+            f"a spline through {len(law.knots)} samples from {law.span[0]:g} to {law.span[1]:g} s"
+        )
     if law.told:
         return law.told
     if law.stretches:
-        return f"{len(law.stretches)} moves and dwells{', over and over' if law.period is not None else ''}"
+        return (
+            f"{len(law.stretches)} moves and"
+            f" dwells{', over and over' if law.period is not None else ''}"
+        )
     return f"{_short(law.graph(symbol))} of the time t"
 
 
 def _moves(scene: Scene, joint: str) -> Iterator[str]:
-    """What each move and dwell of a drive is with the default parameters, and where accelerations or jerks jump."""
+    """What each move and dwell of a drive is with the default parameters, and where accelerations
+    or jerks jump.
+    """
     table = scene.timetable(joint, scene.assembly)
     unit = "m" if scene.guided.coordinates[joint][1].kind == "slide" else "rad"
     for stretch in table.stretches:
@@ -72,8 +107,8 @@ def _moves(scene: Scene, joint: str) -> Iterator[str]:
             continue
         jerk = "" if math.isinf(stretch.jerk) else f", {stretch.jerk:.6g} {unit}/s^3"
         yield (
-            f"{when}, from {stretch.at:.6g} by {stretch.by:.6g} {unit} ({stretch.law}), at most {stretch.speed:.6g} {unit}/s, "
-            f"{stretch.acceleration:.6g} {unit}/s^2{jerk}"
+            f"{when}, from {stretch.at:.6g} by {stretch.by:.6g} {unit} ({stretch.law}), at most"
+            f" {stretch.speed:.6g} {unit}/s, {stretch.acceleration:.6g} {unit}/s^2{jerk}"
         )
     for what in ("acceleration", "jerk"):
         places = [f"{jump.t:.6g} s {jump.where}" for jump in table.jumps if jump.what == what]
@@ -87,9 +122,16 @@ def _course(scene: Scene, joint: str) -> str:
     mechanism, (start, stop) = scene.mechanism, scene.span
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
-    way = motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0].full().ravel()
+    way = (
+        motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0]
+        .full()
+        .ravel()
+    )
     kind = scene.guided.coordinates[joint][1].kind
-    words = f"from {describe_coordinate(joint, kind, way[0])} to {describe_coordinate(joint, kind, way[-1])}"
+    words = (
+        f"from {describe_coordinate(joint, kind, way[0])} to"
+        f" {describe_coordinate(joint, kind, way[-1])}"
+    )
     inside = min(way[0], way[-1]) <= way.min() and way.max() <= max(way[0], way[-1])
     ends = (describe_coordinate(joint, kind, x).partition(" = ")[2] for x in (way.min(), way.max()))
     return words.replace(f"{joint} = ", "") + ("" if inside else f", within {' and '.join(ends)}")
@@ -102,7 +144,11 @@ def _load(load: Load, *, space: bool) -> str:
     if isinstance(load, LineLoad):
         axes = f"in the axes of {first}" if load.turning else "in ground axes"
         told = [f"{x} = {_along(getattr(load, x))}" for x in ("xyz" if space else "xy")]
-        part = "" if load.whole else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
+        part = (
+            ""
+            if load.whole
+            else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
+        )
         return f"line load on {first}{part}, {', '.join(told)}, {axes}"
     second = load.points[1].body.name
     if isinstance(load, Friction):
@@ -112,22 +158,36 @@ def _load(load: Load, *, space: bool) -> str:
         if space:
             return f"torque on {first} against {second}, {_components(load, 'N m', space)}"
         return f"torque on {first} against {second}, {_short(load.value)} N m"
-    words = f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping {_short(load.damping)} N s/m"
+    words = (
+        f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping"
+        f" {_short(load.damping)} N s/m"
+    )
     return f"spring between {first} and {second}, {words}"
 
 
 def _along(powers: Sequence[Any]) -> str:
-    """A load along a link: what it is where it begins and where it ends, and its degree where it is not straight between."""
+    """A load along a link: what it is where it begins and where it ends, and its degree where it is
+    not straight between.
+    """
     first, last = sum(powers[1:], powers[0]), powers[0]
     words = " to ".join(dict.fromkeys((_short(first), _short(last))))
-    degree = max((j for j, power in enumerate(powers) if not (isinstance(power, float) and power == 0.0)), default=0)
+    degree = max(
+        (j for j, power in enumerate(powers) if not (isinstance(power, float) and power == 0.0)),
+        default=0,
+    )
     return f"{words} N/m" if degree < 2 else f"{words} N/m by a polynomial of degree {degree}"
 
 
 def _components(load: Force | Torque, unit: str, space: bool) -> str:
     """The components of a load, and in which axes they are."""
-    told = [f"{x} = {_short(value)} {unit}" for x, value in zip("xyz" if space else "xy", load.components, strict=False)]
-    return f"{', '.join(told)}, in {f'the axes of {load.point.body.name}' if load.turning else 'ground axes'}"
+    told = [
+        f"{x} = {_short(value)} {unit}"
+        for x, value in zip("xyz" if space else "xy", load.components, strict=False)
+    ]
+    return (
+        f"{', '.join(told)}, in"
+        f" {f'the axes of {load.point.body.name}' if load.turning else 'ground axes'}"
+    )
 
 
 def _short(expression: Any) -> str:

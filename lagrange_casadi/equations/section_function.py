@@ -1,12 +1,14 @@
 """The forces inside a link as one function of the ratio xi/l: ``section(law, acting, matter, xi)``.
 
-``law`` are the coefficients of the link's law, in the order of :attr:`.Table.law`. ``acting`` is what acts on it: of each
-load point the members of :attr:`.Table.place_first`, then of each load along it ``width``, ``end`` and, power by power, its
-coefficients. ``matter`` is what parameters say of the link (:meth:`.ModelData.matter`): its length, and the coefficients of
-its density per unit of the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
+``law`` are the coefficients of the link's law, in the order of :attr:`.Table.law`. ``acting`` is
+what acts on it: of each load point the members of :attr:`.Table.place_first`, then of each load
+along it ``width``, ``end`` and, power by power, its coefficients. ``matter`` is what parameters say
+of the link (:meth:`.ModelData.matter`): its length, and the coefficients of its density per unit of
+the ratio. The result are the forces of :attr:`.Table.forces`, resultants last.
 
-A section feels what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C and the functions along a
-link that grids are filled from (:mod:`..instants.basis`) all come from here.
+A section feels what acts beyond its :func:`edge`. Own outputs, derivatives, stresses, exported C
+and the functions along a link that grids are filled from (:mod:`..instants.basis`) all come from
+here.
 """
 
 from __future__ import annotations
@@ -33,18 +35,22 @@ SIDES: tuple[Side, ...] = ("tip", "base")
 
 
 def edge(ratio: Any, slack: float, side: Side = "tip") -> Any:
-    """The ratio beyond which a section at a ``ratio`` feels what acts at load points; of numbers, arrays or expressions.
+    """The ratio beyond which a section at a ``ratio`` feels what acts at load points; of numbers,
+    arrays or expressions.
 
-    A load point that is less than ``slack`` away is at the section, which then has two values. On the tip's side it does not
-    feel what acts there, on the base's side it does. At the ends of a link there is one value: a section at the tip feels
-    what acts at the tip, and no section feels what acts at the base.
+    A load point that is less than ``slack`` away is at the section, which then has two values. On
+    the tip's side it does not feel what acts there, on the base's side it does. At the ends of a
+    link there is one value: a section at the tip feels what acts at the tip, and no section feels
+    what acts at the base.
     """
     return smaller(ratio + slack, 1.0 - slack) if side == "tip" else larger(ratio - slack, slack)
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A place along a link, as an expression; ``side`` tells which value is meant where something acts: at a ``station``."""
+    """A place along a link, as an expression; ``side`` tells which value is meant where something
+    acts: at a ``station``.
+    """
 
     ratio: Any
     station: str = ""
@@ -53,7 +59,9 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """The section forces of a link as expressions of ``columns``, among which are its law and what acts on it."""
+    """The section forces of a link as expressions of ``columns``, among which are its law and what
+    acts on it.
+    """
 
     link: str
     table: Table
@@ -68,8 +76,14 @@ class Section:
 
     @cached_property
     def marks(self) -> list[Place]:
-        """Both sides of every load point, and where loads along the link begin and end: places that may move with parameters."""
-        found = [Place(self._of("station", "station", name), name, side) for name in self.stations for side in SIDES]
+        """Both sides of every load point, and where loads along the link begin and end: places that
+        may move with parameters.
+        """
+        found = [
+            Place(self._of("station", "station", name), name, side)
+            for name in self.stations
+            for side in SIDES
+        ]
         for name in self.spreads:
             width, end = (self._of("spread", member, name) for member in ("width", "end"))
             found += [Place(end), Place(end - width)]
@@ -87,10 +101,15 @@ class Section:
     def force(self, name: str, ratio: Any, beyond: Any) -> Any:
         """A section force at a ratio, with what acts at load points ``beyond`` a ratio."""
         if len(parts := self.table.parts("section", name)) > 1:
-            return ca.sqrt(sum(part * part for part in (self.force(one, ratio, beyond) for one in parts)))
+            return ca.sqrt(
+                sum(part * part for part in (self.force(one, ratio, beyond) for one in parts))
+            )
         terms = self.table.sections[name]
         law = (self._of("law", member) for member in terms.coefficients)
-        total = sum((column * row for column, row in zip(law, self._rows(terms, ratio), strict=True)), ca.SX(0))
+        total = sum(
+            (column * row for column, row in zip(law, self._rows(terms, ratio), strict=True)),
+            ca.SX(0),
+        )
         total += sum(self._acting(terms, station, ratio, beyond) for station in self.stations)
         return sum(felt_along(self.columns, self.link, self.length, terms, ratio), total)
 
@@ -104,12 +123,20 @@ class Section:
 
     def _acting(self, terms: Terms, station: str, ratio: Any, beyond: Any) -> Any:
         """What acts at a load point, where it is beyond a ratio."""
-        place, value = (self._of("station", member, station) for member in ("station", terms.acting))
+        place, value = (
+            self._of("station", member, station) for member in ("station", terms.acting)
+        )
         if terms.arm:
             across = self._of("station", self.table.sections[terms.shear].acting, station)
             value = value + across * (terms.arm * (self.length * (place - ratio)))
         felt = ca.SX(beyond) < place
-        return ca.SX(value) if felt.is_one() else ca.SX(0) if felt.is_zero() else ca.if_else(felt, value, 0)
+        return (
+            ca.SX(value)
+            if felt.is_one()
+            else ca.SX(0)
+            if felt.is_zero()
+            else ca.if_else(felt, value, 0)
+        )
 
     @property
     def _outputs(self) -> Iterator[Output]:
@@ -121,7 +148,9 @@ class Section:
 
 @dataclass(frozen=True)
 class SectionInputs:
-    """The outputs that a link's section forces are made of, in their order: its ``law``, and what is ``acting`` on it."""
+    """The outputs that a link's section forces are made of, in their order: its ``law``, and what
+    is ``acting`` on it.
+    """
 
     law: tuple[Output, ...]
     acting: tuple[Output, ...]
@@ -131,11 +160,23 @@ class SectionInputs:
         """Those of a link, among others; of a load along it the directions that it has."""
         own = dict.fromkeys(output for output in outputs if output.along and output.part == link)
         table = table_of(Output("law", link, "mx0") in own)
-        acting = [Output("station", link, member, name) for name in stations_of(own, link) for member in table.place_first]
+        acting = [
+            Output("station", link, member, name)
+            for name in stations_of(own, link)
+            for member in table.place_first
+        ]
         for name, powers in spreads_of(own, link).items():
             acting += [Output("spread", link, member, name) for member in ("width", "end")]
-            members = dict.fromkeys(output.member for output in own if output.station == name and output.power is not None)
-            acting += [Output("spread", link, member, name, power) for power in range(powers) for member in members]
+            members = dict.fromkeys(
+                output.member
+                for output in own
+                if output.station == name and output.power is not None
+            )
+            acting += [
+                Output("spread", link, member, name, power)
+                for power in range(powers)
+                for member in members
+            ]
         return cls(tuple(Output("law", link, member) for member in table.law), tuple(acting))
 
     @property
@@ -144,11 +185,20 @@ class SectionInputs:
         return table_of(self.law[-1].member == "mx0")
 
     def alike(self) -> SectionInputs:
-        """The same of a link and of loads whose names are numbers: links of one kind have one function."""
+        """The same of a link and of loads whose names are numbers: links of one kind have one
+        function.
+        """
         numbers: dict[str, str] = {"": ""}
         law, acting = (
             tuple(
-                Output(one.group, "", one.member, numbers.setdefault(one.station, str(len(numbers))), one.power) for one in outputs
+                Output(
+                    one.group,
+                    "",
+                    one.member,
+                    numbers.setdefault(one.station, str(len(numbers))),
+                    one.power,
+                )
+                for one in outputs
             )
             for outputs in (self.law, self.acting)
         )
@@ -163,42 +213,68 @@ def section(
     side: Side = "tip",
     name: str = "section",
 ) -> Any:
-    """``section(law, acting, matter, xi) -> forces`` of a link, whose density has so many coefficients in each cell.
+    """``section(law, acting, matter, xi) -> forces`` of a link, whose density has so many
+    coefficients in each cell.
 
-    ``matter`` are its length and these coefficients, per unit of the ratio. The function has a ``name``.
+    ``matter`` are its length and these coefficients, per unit of the ratio. The function has a
+    ``name``.
     """
     law, acting = ca.SX.sym("law", len(inputs.law)), ca.SX.sym("acting", len(inputs.acting))
     matter, xi = ca.SX.sym("matter", 1 + sum(sizes)), ca.SX.sym("xi")
-    columns: dict[Column, Any] = dict(zip((*inputs.law, *inputs.acting), (*ca.vertsplit(law), *ca.vertsplit(acting)), strict=True))
+    columns: dict[Column, Any] = dict(
+        zip((*inputs.law, *inputs.acting), (*ca.vertsplit(law), *ca.vertsplit(acting)), strict=True)
+    )
     length, *terms = ca.vertsplit(matter)
     coefficients = iter(terms)
-    density = Density(tuple(breaks), tuple(tuple(next(coefficients) for _ in range(size)) for size in sizes), per_length=False)
+    density = Density(
+        tuple(breaks),
+        tuple(tuple(next(coefficients) for _ in range(size)) for size in sizes),
+        per_length=False,
+    )
     link = Section(inputs.law[0].part, inputs.table, columns, length, density)
-    forces = ca.vertcat(*(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces))
+    forces = ca.vertcat(
+        *(link.at(force, Place(xi, side=side), slack) for force in inputs.table.forces)
+    )
     given, names = [law, acting, matter, xi], ["law", "acting", "matter", "xi"]
     return ca.Function(name, given, [ca.densify(forces)], names, ["forces"], {"cse": True})
 
 
 @functools.cache
 @symbolic
-def along(breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool) -> Any:
-    """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a moment, go with.
+def along(
+    breaks: Sequence[float], sizes: Sequence[int], powers: Sequence[int], *, bends: bool
+) -> Any:
+    """``along(matter, spans, xi) -> rows`` of a link: what coefficients of an axial force, or of a
+    moment, go with.
 
-    First are those of the law, then those of loads along the link, which have so many ``powers``; ``spans`` are width and end
-    of each. It ``bends`` where the moment is meant. Other forces have the same rows: a shear force those of an axial one, a
-    moment that has an arm of -1 the same but for the sign, and the couples of slices those of a force.
+    First are those of the law, then those of loads along the link, which have so many ``powers``;
+    ``spans`` are width and end of each. It ``bends`` where the moment is meant. Other forces have
+    the same rows: a shear force those of an axial one, a moment that has an arm of -1 the same but
+    for the sign, and the couples of slices those of a force.
     """
     coefficient = "qf" if bends else "qn"
     acting = [
         Output("spread", "", member, str(load), power)
         for load, many in enumerate(powers)
-        for member, power in (("width", None), ("end", None), *((coefficient, power) for power in range(many)))
+        for member, power in (
+            ("width", None),
+            ("end", None),
+            *((coefficient, power) for power in range(many)),
+        )
     ]
-    function = section(SectionInputs(tuple(Output("law", "", member) for member in PLANE.law), tuple(acting)), breaks, sizes, 0.0)
+    function = section(
+        SectionInputs(tuple(Output("law", "", member) for member in PLANE.law), tuple(acting)),
+        breaks,
+        sizes,
+        0.0,
+    )
     law, loads, matter, xi = function.sx_in()
     terms = PLANE.sections["bending" if bends else "axial"].coefficients
     spans = [k for k, output in enumerate(acting) if output.power is None]
-    given = [*(law[PLANE.law.index(term)] for term in terms), *(loads[k] for k in range(len(acting)) if k not in spans)]
+    given = [
+        *(law[PLANE.law.index(term)] for term in terms),
+        *(loads[k] for k in range(len(acting)) if k not in spans),
+    ]
     force = function(law, loads, matter, xi)[PLANE.forces.index("bending" if bends else "axial")]
     rows = ca.densify(ca.jacobian(force, ca.vertcat(*given)))
     inputs = [matter, ca.vertcat(ca.SX(0, 1), *(loads[k] for k in spans)), xi]

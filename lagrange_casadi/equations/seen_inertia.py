@@ -1,7 +1,9 @@
-"""The inertia that drives see: how the kinetic energy goes with the rates whose laws are given, and these with those of the drives.
+"""The inertia that drives see: how the kinetic energy goes with the rates whose laws are given, and
+these with those of the drives.
 
-With E = q'.M q'/2 for the rates q' whose laws are given, and v = R q' for those of the drives, a drive alone feels the inertia
-e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how fast the mechanism moves.
+With E = q'.M q'/2 for the rates q' whose laws are given, and v = R q' for those of the drives, a
+drive alone feels the inertia e.(R^-T M R^-1) e, the other drives at rest. Nothing depends on how
+fast the mechanism moves.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ from .tree import span
 
 @dataclass(frozen=True, eq=False)
 class SeenInertia:
-    """A program whose columns are the matrix M (``motions``, ``motions``), row by row, and then R (``drives``, ``motions``)."""
+    """A program whose columns are the matrix M (``motions``, ``motions``), row by row, and then R
+    (``drives``, ``motions``).
+    """
 
     program: Program
     motions: tuple[str, ...]
@@ -35,7 +39,10 @@ class SeenInertia:
 
 
 def seen_inertia(scene: Scene, parameters: Mapping[str, float]) -> SeenInertia:
-    """Compile what drives of a scene see, assembled as :func:`.compile_scene` does it. Raises as that does."""
+    """Compile what drives of a scene see, assembled as :func:`.compile_scene` does it.
+
+    Raises as that does.
+    """
     scene = assembled(scene, parameters, ["motion"])
     mechanism = scene.mechanism
     drives = scene.needs_drives if scene.weights is None else tuple(scene.weights)
@@ -46,17 +53,45 @@ def seen_inertia(scene: Scene, parameters: Mapping[str, float]) -> SeenInertia:
     first = [float(x) for x in ca.DM(laws.motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)
     solved = kinematics.solve(body, reference_posture(mechanism) | dict(scene.posture), start)
-    energy = ca.substitute(ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs))
+    energy = ca.substitute(
+        ca.SX(body.kinetic), column(body.velocities.symbols), column(body.velocities.graphs)
+    )
     still = body.mobility_rates
     energy = solved.evaluate(ca.substitute(energy, still, ca.SX.zeros(still.numel())))
-    own = {c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)}
+    own = {
+        c.name: solved.driven_rate[k] for k, c in enumerate(c for c in body.coordinates if c.driven)
+    }
     rates = [
-        own[name] if name in own else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1])) for name in drives
+        own[name]
+        if name in own
+        else solved.evaluate(ca.SX(body.motion_along(*mechanism.coordinates[name])[1]))
+        for name in drives
     ]
-    matrix, by_rate = ca.hessian(energy, solved.driven_rate)[0], ca.jacobian(column(rates), solved.driven_rate)
+    matrix, by_rate = (
+        ca.hessian(energy, solved.driven_rate)[0],
+        ca.jacobian(column(rates), solved.driven_rate),
+    )
     out = ca.densify(ca.vertcat(ca.vec(matrix.T), ca.vec(by_rate.T)))
-    inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, mechanism.symbols]
-    instant = ca.Function("instant", inputs, [out], ["t", "d", "d_rate", "d_acceleration", "z", "p"], ["out"], {"cse": True})
-    columns: list[Column] = [Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven]
+    inputs = [
+        mechanism.time,
+        solved.driven,
+        solved.driven_rate,
+        solved.driven_acceleration,
+        solved.iterated,
+        mechanism.symbols,
+    ]
+    instant = ca.Function(
+        "instant",
+        inputs,
+        [out],
+        ["t", "d", "d_rate", "d_acceleration", "z", "p"],
+        ["out"],
+        {"cse": True},
+    )
+    columns: list[Column] = [
+        Output("output", f"{a}:{b}") for a in (*driven, *drives) for b in driven
+    ]
     data, want = ModelData.of(scene, laws), Wanted.of(mechanism, ["motion"])
-    return SeenInertia(Program(data, want, instant, solved.newton, tuple(columns), {}), driven, drives)
+    return SeenInertia(
+        Program(data, want, instant, solved.newton, tuple(columns), {}), driven, drives
+    )

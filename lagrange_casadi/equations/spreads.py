@@ -1,8 +1,9 @@
-"""What loads along a link add to its section forces: terms of their own, beside those of its matter.
+"""What loads along a link add to its section forces: terms of their own, beside those of its
+matter.
 
-A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the value c_0 + c_1 s + c_2 s^2 + ...
-per length, where s = (end - u)/width. With x = s kept from 0 to 1, L = l width and a = l max(end - width - u, 0), the section at u
-feels of each coefficient
+A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
+value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
+1, L = l width and a = l max(end - width - u, 0), the section at u feels of each coefficient
 
     c_j L x^(j+1)/(j+1)                              of a force,
     c_j L x^(j+1)/(j+1) (L x/(j+2) + a)              of a moment.
@@ -29,7 +30,9 @@ from .multibody import Multibody
 
 
 def spreads(multibody: Multibody, link: Link) -> dict[Column, Any]:
-    """Of each load along a link where it ends, on how much of the link it acts, and its coefficients on the link's axes."""
+    """Of each load along a link where it ends, on how much of the link it acts, and its
+    coefficients on the link's axes.
+    """
     directions = table_of(multibody.mechanism.space).spread
     found: dict[Column, Any] = {}
     for part in multibody.applied:
@@ -46,17 +49,20 @@ def spreads(multibody: Multibody, link: Link) -> dict[Column, Any]:
 
 
 ROTARY = "rotary"
-"""By what the rotary inertia of slices is known among the loads along a link, unless something is called so."""
+"""By what the rotary inertia of slices is known among the loads along a link, unless something is
+called so.
+"""
 
 
 def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> dict[Column, Any]:
-    """The rotary inertia of a link's slices as couples along it, between each two places at which it may jump (d'Alembert).
+    """The rotary inertia of a link's slices as couples along it, between each two places at which
+    it may jump (d'Alembert).
 
-    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Of second moments yy, zz, yz per
-    length it is, per length,
+    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Of
+    second moments yy, zz, yz per length it is, per length,
 
-        c_x = -yy (a_x + w_y w_z) + zz (w_y w_z - a_x) + yz (w_y^2 - w_z^2),
-        c_y = -yz (w_x w_y - a_z) - zz (w_x w_z + a_y),    c_z = yy (w_x w_y - a_z) + yz (w_x w_z + a_y).
+        c_x = -yy (a_x + w_y w_z) + zz (w_y w_z - a_x) + yz (w_y^2 - w_z^2), c_y = -yz (w_x w_y -
+        a_z) - zz (w_x w_z + a_y),    c_z = yy (w_x w_y - a_z) + yz (w_x w_z + a_y).
     """
     assert isinstance(link.mass, Density)
     slices = link.mass.slices
@@ -71,7 +77,9 @@ def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> d
         found[Output("spread", link.name, "width", name)] = ca.SX(width)
         found[Output("spread", link.name, "end", name)] = ca.SX(stop)
         cells = (_from(moment.cell_at((start + stop) / 2), stop, width) for moment in slices.each)
-        for power, (own_yy, own_zz, own_yz) in enumerate(itertools.zip_longest(*cells, fillvalue=0.0)):
+        for power, (own_yy, own_zz, own_yz) in enumerate(
+            itertools.zip_longest(*cells, fillvalue=0.0)
+        ):
             couples = (
                 own_zz * (yz - ax) - own_yy * (yz + ax) + own_yz * (y * y - z * z),
                 -own_yz * xy - own_zz * xz,
@@ -85,7 +93,9 @@ def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> d
 def _from(cell: Sequence[Any], end: float, width: float) -> list[Any]:
     """A polynomial of u = end - width s as one of s."""
     return [
-        (-width) ** j * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))
+        (-width) ** j
+        * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j)
+        for j in range(len(cell))
     ]
 
 
@@ -106,18 +116,36 @@ def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
     return found
 
 
-def felt_along(outputs: Mapping[Column, Any], link: str, length: Any, terms: Terms, ratio: Any) -> Iterator[Any]:
-    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by their arms, couples of slices."""
-    for load, powers in spreads_of((key for key in outputs if isinstance(key, Output)), link).items():
-        for direction, sign, arm in ((terms.spread, terms.arm or 1, bool(terms.arm)), (terms.couple, 1, False)):
+def felt_along(
+    outputs: Mapping[Column, Any], link: str, length: Any, terms: Terms, ratio: Any
+) -> Iterator[Any]:
+    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by
+    their arms, couples of slices.
+    """
+    for load, powers in spreads_of(
+        (key for key in outputs if isinstance(key, Output)), link
+    ).items():
+        for direction, sign, arm in (
+            (terms.spread, terms.arm or 1, bool(terms.arm)),
+            (terms.couple, 1, False),
+        ):
             if Output("spread", link, direction, load, 0) in outputs:
                 yield sign * _felt(outputs, (link, load), length, powers, direction, ratio, arm=arm)
 
 
 def _felt(
-    outputs: Mapping[Column, Any], of: tuple[str, str], length: Any, powers: int, direction: str, ratio: Any, *, arm: bool
+    outputs: Mapping[Column, Any],
+    of: tuple[str, str],
+    length: Any,
+    powers: int,
+    direction: str,
+    ratio: Any,
+    *,
+    arm: bool,
 ) -> Any:
-    """The force of a link's load along it, the part that a section at a ratio feels in a direction, or with ``arm`` its moment."""
+    """The force of a link's load along it, the part that a section at a ratio feels in a direction,
+    or with ``arm`` its moment.
+    """
     link, load = of
 
     def value(member: str, power: int | None = None) -> Any:

@@ -1,9 +1,11 @@
-"""What acts on a link at one place, put together: each part's share of it may be open where what they do together is not.
+"""What acts on a link at one place, put together: each part's share of it may be open where what
+they do together is not.
 
-Two bearings on one pin share their load in a way that equilibrium does not tell; the sections on either side feel the sum alone. So
-where shares may be open, stations at one place act as one: the first of them bears what all of them do, the others nothing. Past
-the tip all places are one, for no section is between them; and what acts at the base or before it no section feels. Every section
-has the same force as before. Places are compared at each instant, for the parameters as they are.
+Two bearings on one pin share their load in a way that equilibrium does not tell; the sections on
+either side feel the sum alone. So where shares may be open, stations at one place act as one: the
+first of them bears what all of them do, the others nothing. Past the tip all places are one, for no
+section is between them; and what acts at the base or before it no section feels. Every section has
+the same force as before. Places are compared at each instant, for the parameters as they are.
 """
 
 from __future__ import annotations
@@ -29,21 +31,29 @@ _IN_SPACE = (
     (("fz0", "my0"), ("fz", "my"), -1),
     (("mx0",), ("mx",), 1),
 )
-"""What goes together, of the tip and of a station: a force across the link has an arm, one along it has none.
+"""What goes together, of the tip and of a station: a force across the link has an arm, one along it
+has none.
 
 And the sign of the moment that a force has further out.
 """
 
 _TWICE = 1e-14
-"""Of a link's length: what is no further apart at random values of all symbols is one place that is written in two ways."""
+"""Of a link's length: what is no further apart at random values of all symbols is one place that is
+written in two ways.
+"""
 
 
 def gathered(
-    columns: Mapping[Column, Any], free: Any, links: Iterable[Link], coordinates: Sequence[Coordinate]
+    columns: Mapping[Column, Any],
+    free: Any,
+    links: Iterable[Link],
+    coordinates: Sequence[Coordinate],
 ) -> dict[Column, Any]:
-    """The columns of forces, those stations of ``links`` put together that are at one place and have shares that may be open.
+    """The columns of forces, those stations of ``links`` put together that are at one place and
+    have shares that may be open.
 
-    ``free`` are the symbols of what equilibrium leaves open: what does not change with them is not open.
+    ``free`` are the symbols of what equilibrium leaves open: what does not change with them is not
+    open.
     """
     found = dict(columns)
 
@@ -58,8 +68,13 @@ def gathered(
             named = [([Output("law", link.name, member) for member in tip], ca.SX(1))]
             for name in stations:
                 place = columns[Output("station", link.name, "station", name)]
-                named.append(([Output("station", link.name, member, name) for member in station], place))
-            shares = [(outputs, column(columns[output] for output in outputs), place) for outputs, place in named]
+                named.append(
+                    ([Output("station", link.name, member, name) for member in station], place)
+                )
+            shares = [
+                (outputs, column(columns[output] for output in outputs), place)
+                for outputs, place in named
+            ]
             shares = [(outputs, load, place) for outputs, load, place in shares if is_open(load)]
             told, places = [load for _, load, _ in shares], [place for *_, place in shares]
             loads = _together(told, places, sign * link.length, coordinates, is_open)
@@ -69,14 +84,23 @@ def gathered(
 
 
 def _together(
-    loads: Sequence[Any], places: Sequence[Any], length: Any, coordinates: Sequence[Coordinate], is_open: Callable[[Any], bool]
+    loads: Sequence[Any],
+    places: Sequence[Any],
+    length: Any,
+    coordinates: Sequence[Coordinate],
+    is_open: Callable[[Any], bool],
 ) -> list[Any]:
-    """Loads at places, ratios xi/l: all at one place in the first of them, and none that is open where no section feels it."""
+    """Loads at places, ratios xi/l: all at one place in the first of them, and none that is open
+    where no section feels it.
+    """
     found = list(loads)
     twice = [[_twice(here, there, coordinates) for there in places] for here in places]
-    for j in reversed(range(len(places))):  # from the last one on, so that a chain of neighbours hands on what it has
+    for j in reversed(
+        range(len(places))
+    ):  # from the last one on, so that a chain of neighbours hands on what it has
         for i in range(j):
-            # Single precision tells no nearer than so whether places that are written in two ways are one.
+            # Single precision tells no nearer than so whether places that are written in two ways
+            # are one.
             near = END["single" if twice[i][j] else "double"]
             one = ca.fabs(ca.fmin(places[i], 1.0) - ca.fmin(places[j], 1.0)) <= near
             if not one.is_zero():
@@ -87,7 +111,9 @@ def _together(
     for k, place in enumerate(places):
         felt = place > END["double"]
         # A sum that is never open stays, for it is smooth where its place passes the base.
-        if not felt.is_one() and is_open(sum(load for load, same in zip(loads, twice[k], strict=True) if same)):
+        if not felt.is_one() and is_open(
+            sum(load for load, same in zip(loads, twice[k], strict=True) if same)
+        ):
             found[k] = _where(felt, found[k])
     return found
 

@@ -1,9 +1,11 @@
-"""Rules of an instant: when it has a result, as one function of its checks; and in which order broken ones are told.
+"""Rules of an instant: when it has a result, as one function of its checks; and in which order
+broken ones are told.
 
-``status(checks, limits, beside, iterated)`` is the number of the first rule that is broken, from one on, or zero. ``checks``
-are the columns that are bound, ``limits`` what they must keep to, and ``beside`` what else a bound is seen with: see
-:class:`Bound`. ``iterated`` is the status of the iterated loops. It is printed for packs of instants and for exported C, and
-interpreted by NumPy. That all columns are finite is for the one who evaluates them to see.
+``status(checks, limits, beside, iterated)`` is the number of the first rule that is broken, from
+one on, or zero. ``checks`` are the columns that are bound, ``limits`` what they must keep to, and
+``beside`` what else a bound is seen with: see :class:`Bound`. ``iterated`` is the status of the
+iterated loops. It is printed for packs of instants and for exported C, and interpreted by NumPy.
+That all columns are finite is for the one who evaluates them to see.
 """
 
 from __future__ import annotations
@@ -27,7 +29,18 @@ if TYPE_CHECKING:
     from .program import Program
 
 Kind: TypeAlias = Literal[
-    "BEYOND", "CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT", "JAM", "SLIP", "REST"
+    "BEYOND",
+    "CLOSURE",
+    "BRANCH",
+    "GAP",
+    "MISFIT",
+    "ROW",
+    "TURNED",
+    "OPEN",
+    "OPEN_MOMENT",
+    "JAM",
+    "SLIP",
+    "REST",
 ]
 
 _KINDS: Mapping[CheckKind, Kind] = {
@@ -50,14 +63,16 @@ _KINDS: Mapping[CheckKind, Kind] = {
 class Bound:
     """What a column must keep to.
 
-    A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above its limit, and above its
-    opposite unless links do not reach; so must a ``BRANCH``, whose loop is iterated. Of both ``beside`` tells, as one or zero,
-    whether it comes to zero before the next instant. ``GAP`` and ``TURNED`` must be within the limit by size; beside the latter
-    stands its change to the next instant. A ``MISFIT``, a ``SLIP``, which is what is left of frictions' laws, and what is
-    ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size, times what is beside it: the ``size`` of its
-    terms, a column. What tells of a ``JAM`` must be above its limit. A friction at ``REST`` is above it: what depends on it is
-    no number there, and the rest is. What is ``OPEN``, or an ``OPEN_MOMENT``, is above it where equilibrium does not determine
-    the output ``part``.
+    A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above
+    its limit, and above its opposite unless links do not reach; so must a ``BRANCH``, whose loop is
+    iterated. Of both ``beside`` tells, as one or zero, whether it comes to zero before the next
+    instant. ``GAP`` and ``TURNED`` must be within the limit by size; beside the latter stands its
+    change to the next instant. A ``MISFIT``, a ``SLIP``, which is what is left of frictions' laws,
+    and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size, times
+    what is beside it: the ``size`` of its terms, a column. What tells of a ``JAM`` must be above
+    its limit. A friction at ``REST`` is above it: what depends on it is no number there, and the
+    rest is. What is ``OPEN``, or an ``OPEN_MOMENT``, is above it where equilibrium does not
+    determine the output ``part``.
     """
 
     kind: Kind
@@ -68,9 +83,11 @@ class Bound:
 
 @dataclass(frozen=True)
 class Rule:
-    """A test of a bound, by number, or where that is None of iteration; what the ``status`` is where it fails.
+    """A test of a bound, by number, or where that is None of iteration; what the ``status`` is
+    where it fails.
 
-    Whoever asks for what is open gives it a limit; else an output that is left open is no reason against an instant.
+    Whoever asks for what is open gives it a limit; else an output that is left open is no reason
+    against an instant.
     """
 
     status: Status
@@ -86,10 +103,14 @@ def bounds_of(program: Program) -> tuple[Bound, ...]:
             continue
         part = check.part
         if isinstance(part, Output):
-            found.append(Bound("OPEN_MOMENT" if part.unit(program.data.kinds) == MOMENT else "OPEN", k, part))
+            found.append(
+                Bound("OPEN_MOMENT" if part.unit(program.data.kinds) == MOMENT else "OPEN", k, part)
+            )
         elif (kind := _KINDS.get(check.kind)) is not None:
             iterated = check.kind == "closure" and program.iterates(part)
-            found.append(Bound("BRANCH" if iterated else kind, k, part, sizes[part] if kind == "ROW" else -1))
+            found.append(
+                Bound("BRANCH" if iterated else kind, k, part, sizes[part] if kind == "ROW" else -1)
+            )
     return tuple(found)
 
 
@@ -110,11 +131,21 @@ def status_of(program: Program) -> Any:
         broken = fails(iterated, 0, 0) if k is None else fails(checks[k], limits[k], beside[k])
         first = ca.if_else(broken, number, first)
     names = ["checks", "limits", "beside", "iterated"]
-    return ca.Function("status", [checks, limits, beside, iterated], [ca.densify(first)], names, ["rule"], {"cse": True})
+    return ca.Function(
+        "status",
+        [checks, limits, beside, iterated],
+        [ca.densify(first)],
+        names,
+        ["rule"],
+        {"cse": True},
+    )
 
 
 _Fails: TypeAlias = Callable[[Any, Any, Any], Any]
-"""Whether a rule is broken, by a column, its limit, and what is beside it. What is no number breaks some rules, and not others."""
+"""Whether a rule is broken, by a column, its limit, and what is beside it.
+
+What is no number breaks some rules, and not others.
+"""
 
 
 def _above(x: Any, limit: Any, _: Any) -> Any:
@@ -155,20 +186,35 @@ _TESTS: Mapping[Kind, Sequence[tuple[Status, _Fails]]] = {
 def _tests(program: Program) -> list[tuple[Rule, _Fails]]:
     """The rules in their order, and when each is broken.
 
-    Loops that iteration did not close come right after the ends of curves, and those that it closes slowly after those that are
-    at a dead centre: what else is wrong follows from that. What is at rest or open comes where nothing is wrong.
+    Loops that iteration did not close come right after the ends of curves, and those that it closes
+    slowly after those that are at a dead centre: what else is wrong follows from that. What is at
+    rest or open comes where nothing is wrong.
     """
     numbered = [*enumerate(bounds_of(program))]
     first, last = ("BEYOND",), ("REST", "OPEN", "OPEN_MOMENT")
     between = [(k, bound) for k, bound in numbered if bound.kind not in (*first, *last)]
-    count = next((n for n, (_, bound) in enumerate(between) if bound.kind not in ("CLOSURE", "BRANCH")), len(between))
+    count = next(
+        (n for n, (_, bound) in enumerate(between) if bound.kind not in ("CLOSURE", "BRANCH")),
+        len(between),
+    )
 
     def told(some: Iterable[tuple[int, Bound]]) -> list[tuple[Rule, _Fails]]:
-        return [(Rule(status, k), fails) for k, bound in some for status, fails in _TESTS[bound.kind]]
+        return [
+            (Rule(status, k), fails) for k, bound in some for status, fails in _TESTS[bound.kind]
+        ]
 
-    found = [(Rule(status), _is(status)) for status in (Status.NOT_CONVERGED, Status.SLOW)] if program.newton is not None else []
+    found = (
+        [(Rule(status), _is(status)) for status in (Status.NOT_CONVERGED, Status.SLOW)]
+        if program.newton is not None
+        else []
+    )
     ends = told(one for one in numbered if one[1].kind in first)
-    rest = told(sorted((one for one in numbered if one[1].kind in last), key=lambda one: last.index(one[1].kind)))
+    rest = told(
+        sorted(
+            (one for one in numbered if one[1].kind in last),
+            key=lambda one: last.index(one[1].kind),
+        )
+    )
     return [*ends, *found[:1], *told(between[:count]), *found[1:], *told(between[count:]), *rest]
 
 

@@ -1,8 +1,9 @@
 """Strains of a link under its section forces, in numbers or expressions: a beam of Timoshenko's.
 
-Axial strain N/EA, curvatures by both bendings about any axes, twist T/GIt about the shear centre, and the shear strains V/GAs,
-along y and along z (Timoshenko, *Strength of Materials*, part I; Cowper, *The Shear Coefficient in Timoshenko's Beam Theory*,
-J. Appl. Mech. 33, 1966). Warping that is held adds nothing. In a planar mechanism bending is in its plane.
+Axial strain N/EA, curvatures by both bendings about any axes, twist T/GIt about the shear centre,
+and the shear strains V/GAs, along y and along z (Timoshenko, *Strength of Materials*, part I;
+Cowper, *The Shear Coefficient in Timoshenko's Beam Theory*, J. Appl. Mech. 33, 1966). Warping that
+is held adds nothing. In a planar mechanism bending is in its plane.
 """
 
 from __future__ import annotations
@@ -21,20 +22,27 @@ Moduli: TypeAlias = tuple[float, ...]
 def moduli_of(beam: Beam, what: str, *, space: bool) -> Moduli:
     """Return the moduli of a beam's material.
 
-    Raises :class:`.DeclarationError` where one is not there, or in space no torsion constant, which ``what`` needs.
+    Raises :class:`.DeclarationError` where one is not there, or in space no torsion constant, which
+    ``what`` needs.
     """
     found = beam.material.needs(what, "elasticity", "shear_modulus")
     for shape in beam.course.shapes() if space else ():
         if shape.properties().torsion is None:
             how = "give its properties by beams.given, with its torsion"
-            raise DeclarationError(f"{what}: for torsion of a {shape.kind} there is no formula; {how}")
+            raise DeclarationError(
+                f"{what}: for torsion of a {shape.kind} there is no formula; {how}"
+            )
     return found
 
 
-def resultants(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, tuple[Any, Any]]:
-    """Section forces put together so that each strains alone, with how much: a unit of length has half their squares' energy.
+def resultants(
+    p: Properties, force: Mapping[str, Any], moduli: Moduli
+) -> dict[str, tuple[Any, Any]]:
+    """Section forces put together so that each strains alone, with how much: a unit of length has
+    half their squares' energy.
 
-    Torsion is about the shear centre, and bending about y has with it the part of bending about z that strains as it does.
+    Torsion is about the shear centre, and bending about y has with it the part of bending about z
+    that strains as it does.
     """
     elasticity, shear_modulus = moduli
     whole = elasticity * (p.iy * p.iz - p.iyz**2)
@@ -55,7 +63,9 @@ def resultants(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[
 
 def strains(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, Any]:
     """By the names of section forces what each strains, for a unit of the link's length."""
-    found = dict.fromkeys(force, 0.0) | {name: value * soft for name, (value, soft) in resultants(p, force, moduli).items()}
+    found = dict.fromkeys(force, 0.0) | {
+        name: value * soft for name, (value, soft) in resultants(p, force, moduli).items()
+    }
     if "bending" in force:
         return found
     found["shear_y"] = found["shear_y"] + p.centre_z * found["torsion"]

@@ -1,9 +1,12 @@
-"""How near a link with a beam is to its limits, at an instant: stresses largest along it, and utilisation.
+"""How near a link with a beam is to its limits, at an instant: stresses largest along it, and
+utilisation.
 
-Between two stations, breaks of its density and of its cross-section, section forces are polynomials. Such a part is looked at at
-both ends and at places in between; from the summits that promise most, by the parabola through each and its neighbours, the largest
-value is followed by parabolas through places ever nearer. So what is told is the stress at some place, never above the largest.
-Where more than two summits of one part are as high within what the first parabolas err, a hundredth, it may be below by as much.
+Between two stations, breaks of its density and of its cross-section, section forces are
+polynomials. Such a part is looked at at both ends and at places in between; from the summits that
+promise most, by the parabola through each and its neighbours, the largest value is followed by
+parabolas through places ever nearer. So what is told is the stress at some place, never above the
+largest. Where more than two summits of one part are as high within what the first parabolas err, a
+hundredth, it may be below by as much.
 """
 
 from __future__ import annotations
@@ -31,7 +34,9 @@ from .section_function import Place, Section, Side, edge
 from .stress import KINDS, CrossSections, squared
 
 _LOOKS, _SUMMITS, _NEARER = 9, 2, 8.0
-"""Places at which a part is looked at, how many of its summits are followed, and how much nearer places come."""
+"""Places at which a part is looked at, how many of its summits are followed, and how much nearer
+places come.
+"""
 
 _MORE = 6
 """More places where the cross-section changes."""
@@ -42,7 +47,9 @@ _SLACK = END["single"]
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A part of a link between two ratios, the cell of its cross-section, and its section forces as polynomials from 0 to 1."""
+    """A part of a link between two ratios, the cell of its cross-section, and its section forces as
+    polynomials from 0 to 1.
+    """
 
     low: Any
     width: Any
@@ -69,12 +76,18 @@ class Loaded:
         self.section = Section(link.name, table_of(space), columns, link.length, link.mass)
         self.marks = [place.ratio for place in self.section.marks if place.side == "tip"]
         self.marks += [ca.SX(b) for b in link.mass.breaks[1:-1]]
-        self.degree = max(max(map(len, link.mass.cells)) + 2, *(many + 1 for many in self.section.spreads.values()), 0)
+        self.degree = max(
+            max(map(len, link.mass.cells)) + 2,
+            *(many + 1 for many in self.section.spreads.values()),
+            0,
+        )
 
     @property
     def told(self) -> bool:
         """Whether stresses have a formula: in space torsion must have one."""
-        return not self.space or all(shape.properties().torsion is not None for shape in self.course.shapes())
+        return not self.space or all(
+            shape.properties().torsion is not None for shape in self.course.shapes()
+        )
 
     @cached_property
     def parts(self) -> list[Part]:
@@ -83,7 +96,9 @@ class Loaded:
 
     @property
     def spans(self) -> list[Part]:
-        """Parts between stations, ends of loads along the link, and breaks of its density and its cross-section."""
+        """Parts between stations, ends of loads along the link, and breaks of its density and its
+        cross-section.
+        """
         found = []
         for cell, (low, high) in enumerate(itertools.pairwise(self.course.breaks)):
             inner = _in_order([ca.fmin(ca.fmax(ca.SX(mark), low), high) for mark in self.marks])
@@ -106,13 +121,20 @@ class Loaded:
         found = {}
         for name in self.cross.forces:
             values = [self.force_within(name, part, x) for x in nodes.tolist()]
-            found[name] = [sum(w * value for w, value in zip(row.tolist(), values, strict=True)) for row in inverse]
+            found[name] = [
+                sum(w * value for w, value in zip(row.tolist(), values, strict=True))
+                for row in inverse
+            ]
         return found
 
     def at(self, part: Part, x: Any) -> Properties:
         """The cross-section at a place of a part."""
         first, last = self.course.cells[part.cell]
-        return self._constant[part.cell] if first is last else self.cross.properties(part.cell, part.low + part.width * x)
+        return (
+            self._constant[part.cell]
+            if first is last
+            else self.cross.properties(part.cell, part.low + part.width * x)
+        )
 
     def square(self, part: Part, x: Any) -> Any:
         """The largest square of von Mises' stresses at a place of a part."""
@@ -136,9 +158,11 @@ def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> 
 def utilisation(
     mechanism: Mechanism, name: str, columns: Mapping[Column, Any], effective: tuple[float, float]
 ) -> dict[Column, Any]:
-    """How far a link is used against yielding and against buckling: one over the factors of safety at an instant.
+    """How far a link is used against yielding and against buckling: one over the factors of safety
+    at an instant.
 
-    ``effective`` are the effective lengths as a column over its own. For buckling see :mod:`.buckling`.
+    ``effective`` are the effective lengths as a column over its own. For buckling see
+    :mod:`.buckling`.
     """
     found: dict[Column, Any] = {}
     link = Loaded(mechanism.space, mechanism.links[name], columns)
@@ -154,11 +178,15 @@ def utilisation(
 
 
 def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
-    """How far a link is used as a column, with the largest compression and the largest moments along it."""
+    """How far a link is used as a column, with the largest compression and the largest moments
+    along it.
+    """
     compression = _largest(link, lambda part, x: -part.force("axial", x))
     names = ("bending_z", "bending_y") if link.space else ("bending",)
     moments = [ca.sqrt(_largest(link, partial(_squared, name))) for name in names]
-    return buckling.used(buckling.Column.of(link.cross, link.link.length, effective), compression, moments)
+    return buckling.used(
+        buckling.Column.of(link.cross, link.link.length, effective), compression, moments
+    )
 
 
 def _squared(name: str, part: Part, x: Any) -> Any:
@@ -175,7 +203,9 @@ def _largest(link: Loaded, value: Callable[[Part, Any], Any]) -> Any:
 
 
 def looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
-    """The values of a function of a degree at both ends of a part, between them, and beside its summits."""
+    """The values of a function of a degree at both ends of a part, between them, and beside its
+    summits.
+    """
     count = max(_LOOKS, degree + 4)
     places = [(1.0 - math.cos(math.pi * k / (count - 1))) / 2 for k in range(count)]
     found = [ca.SX(value(x)) for x in places]
@@ -212,13 +242,18 @@ def _ranked(best: list[tuple[Any, Any]], top: Any, place: Any) -> list[tuple[Any
 
 
 def _in_order(marks: Sequence[Any]) -> list[Any]:
-    """Marks from the base to the tip: by numbers where they are numbers, else compared as they move."""
+    """Marks from the base to the tip: by numbers where they are numbers, else compared as they
+    move.
+    """
     found = list(marks)
     if all(mark.is_constant() for mark in found):
         return sorted(found, key=float)
     for end in range(len(found) - 1, 0, -1):
         for k in range(end):
-            found[k], found[k + 1] = ca.fmin(found[k], found[k + 1]), ca.fmax(found[k], found[k + 1])
+            found[k], found[k + 1] = (
+                ca.fmin(found[k], found[k + 1]),
+                ca.fmax(found[k], found[k + 1]),
+            )
     return found
 
 

@@ -1,7 +1,7 @@
 """Stresses in a beam's cross-sections, of its section forces: in numbers, arrays or expressions.
 
-s = N/A + a y + b z with a Iz + b Iyz = -Mz and a Iyz + b Iy = My, for any axes; shear stresses are those of :mod:`..beams`. In a
-planar mechanism bending is about z. All are linear in section forces.
+s = N/A + a y + b z with a Iz + b Iyz = -Mz and a Iyz + b Iy = My, for any axes; shear stresses are
+those of :mod:`..beams`. In a planar mechanism bending is about z. All are linear in section forces.
 """
 
 from __future__ import annotations
@@ -20,7 +20,10 @@ from ..beams.beam import Beam, Notch
 from ..beams.properties import Properties, smaller
 from ..beams.shape import between
 
-FORCES = {False: ("axial", "shear", "bending"), True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")}
+FORCES = {
+    False: ("axial", "shear", "bending"),
+    True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z"),
+}
 """The section forces that stresses are linear in: in the plane, and in space."""
 
 _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
@@ -38,7 +41,9 @@ _DEEP = 4
 
 @dataclass(frozen=True, eq=False)
 class Thinnest:
-    """The least area of a beam, second moments and elastic moduli, each where it bends along y and along z."""
+    """The least area of a beam, second moments and elastic moduli, each where it bends along y and
+    along z.
+    """
 
     area: Any
     second: tuple[Any, Any]
@@ -64,15 +69,27 @@ class CrossSections:
         share = (u - course.breaks[cell]) / (course.breaks[cell + 1] - course.breaks[cell])
         return between(first, last, share).properties(space=self.space)
 
-    def stresses(self, p: Properties, fibres: Sequence[int], forces: Sequence[Any]) -> tuple[Any, Any, Any]:
-        """Normal stresses, and shear stresses along y and along z, at some fibres, of section forces: as expressions, (fibres,)."""
-        rows = [self._row(numbers) for part in zip(*(p.rows(p.fibres[k]) for k in fibres), strict=True) for numbers in part]
+    def stresses(
+        self, p: Properties, fibres: Sequence[int], forces: Sequence[Any]
+    ) -> tuple[Any, Any, Any]:
+        """Normal stresses, and shear stresses along y and along z, at some fibres, of section
+        forces: as expressions, (fibres,).
+        """
+        rows = [
+            self._row(numbers)
+            for part in zip(*(p.rows(p.fibres[k]) for k in fibres), strict=True)
+            for numbers in part
+        ]
         factors = ca.sparsify(ca.vertcat(*(ca.horzcat(*row) for row in rows)))
-        normal, along_y, along_z = ca.vertsplit(ca.mtimes(factors, ca.vertcat(*forces)), len(fibres))
+        normal, along_y, along_z = ca.vertsplit(
+            ca.mtimes(factors, ca.vertcat(*forces)), len(fibres)
+        )
         return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
-        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres, forces, u...)."""
+        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres,
+        forces, u...).
+        """
         p = self.properties(cell, u)
         found = np.zeros((3, len(p.fibres), len(self.forces), *np.shape(u)))
         for k, fibre in enumerate(p.fibres):
@@ -86,7 +103,9 @@ class CrossSections:
 
     @cached_property
     def thinnest(self) -> Thinnest:
-        """The thinnest that the beam is; second moments are principal ones where y and z are no principal axes."""
+        """The thinnest that the beam is; second moments are principal ones where y and z are no
+        principal axes.
+        """
         every = []
         for cell, ((first, last), (low, high)) in enumerate(
             zip(self.beam.course.cells, itertools.pairwise(self.beam.course.breaks), strict=True)
@@ -107,30 +126,43 @@ class CrossSections:
 
     @cached_property
     def needed(self) -> list[list[int]]:
-        """Of each cell the fibres, those left out that have the normal stress of another one, and no shear."""
+        """Of each cell the fibres, those left out that have the normal stress of another one, and
+        no shear.
+        """
         return [self._differing(cell, lower=True) for cell in range(len(self.beam.course.cells))]
 
     def _differing(self, cell: int, *, lower: bool) -> list[int]:
         first, last = self.beam.course.cells[cell]
         shapes = [first] if first is last else [first, last]
-        every = [[self._plain(p.rows(f)) for f in p.fibres] for p in (s.properties(space=self.space) for s in shapes)]
+        every = [
+            [self._plain(p.rows(f)) for f in p.fibres]
+            for p in (s.properties(space=self.space) for s in shapes)
+        ]
         numbers, kept = range(len(every[0])), list[int]()
         for k in numbers:
             alike = (all(_same(rows[k], rows[other]) for rows in every) for other in kept)
-            below = (all(_below(rows[k], rows[other]) for rows in every) for other in numbers if lower and other != k)
+            below = (
+                all(_below(rows[k], rows[other]) for rows in every)
+                for other in numbers
+                if lower and other != k
+            )
             if not any(alike) and not any(below):
                 kept.append(k)
         return kept
 
     def _plain(self, row: tuple[tuple[Any, ...], ...]) -> tuple[list[Any], list[Any]]:
-        """What a fibre takes for its normal stress, and for its shear stress: in the plane alone the square of this counts."""
+        """What a fibre takes for its normal stress, and for its shear stress: in the plane alone
+        the square of this counts.
+        """
         if self.space:
             return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
         return [ca.SX(row[0][k]) for k in (0, 5)], [ca.SX(row[1][1] ** 2 + row[2][1] ** 2)]
 
 
 def squared(stresses: Any, weights: tuple[float, float]) -> Any:
-    """The square of a kind of stress by its ``weights``, of normal stress and shear stresses along y and along z."""
+    """The square of a kind of stress by its ``weights``, of normal stress and shear stresses along
+    y and along z.
+    """
     (normal, *shears), (of_normal, of_shear) = stresses, weights
     return of_normal * normal**2 + of_shear * sum(shear**2 for shear in shears)
 
@@ -139,7 +171,13 @@ def concentration(notch: Notch | None, force: str) -> float:
     """The factor of a notch on the nominal stress of a section force; 1 where there is none."""
     if notch is None:
         return 1.0
-    return notch.axial if force == "axial" else notch.bending if force.startswith("bending") else notch.shear
+    return (
+        notch.axial
+        if force == "axial"
+        else notch.bending
+        if force.startswith("bending")
+        else notch.shear
+    )
 
 
 def _least(values: Sequence[Any]) -> Any:
@@ -150,7 +188,9 @@ def _least(values: Sequence[Any]) -> Any:
 
 
 def _same(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
-    return all(ca.is_equal(x, y, _DEEP) for x, y in zip([*a[0], *a[1]], [*b[0], *b[1]], strict=True))
+    return all(
+        ca.is_equal(x, y, _DEEP) for x, y in zip([*a[0], *a[1]], [*b[0], *b[1]], strict=True)
+    )
 
 
 def _below(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:

@@ -1,4 +1,7 @@
-"""What is known of symbols: expressions to put in their place, or numbers. Only what an expression holds is looked at."""
+"""What is known of symbols: expressions to put in their place, or numbers.
+
+Only what an expression holds is looked at.
+"""
 
 from __future__ import annotations
 
@@ -32,14 +35,20 @@ class Expressions:
         """What is known here, with another expression made of each."""
         more = Expressions()
         if self._known:
-            symbols, values = (ca.vertcat(*parts) for parts in zip(*self._known.values(), strict=True))
+            symbols, values = (
+                ca.vertcat(*parts) for parts in zip(*self._known.values(), strict=True)
+            )
             more.note(symbols, of(values))
         return more
 
     def put_into(self, expression: Any) -> Any:
         """An expression with what is known in the place of its symbols."""
         expression = as_expression(expression)
-        there = [self._known[key] for symbol in ca.symvar(expression) if (key := symbol.element_hash()) in self._known]
+        there = [
+            self._known[key]
+            for symbol in ca.symvar(expression)
+            if (key := symbol.element_hash()) in self._known
+        ]
         if not there:
             return expression
         symbols, values = zip(*there, strict=True)
@@ -54,14 +63,24 @@ class Numbers:
 
     def note(self, symbols: Any, values: Sequence[float]) -> None:
         """Let numbers stand for symbols, entry by entry."""
-        self._known |= {symbol.element_hash(): value for symbol, value in zip(_entries(symbols), values, strict=True)}
+        self._known |= {
+            symbol.element_hash(): value
+            for symbol, value in zip(_entries(symbols), values, strict=True)
+        }
 
     def of(self, expression: Any) -> list[float]:
         """The entries of an expression all of whose symbols are known."""
         expression = as_expression(expression)
         symbols = ca.symvar(expression)
-        function = ca.Function("number", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(ca.vec(expression))])
-        return [float(x) for x in function([self._known[symbol.element_hash()] for symbol in symbols]).full().ravel()]
+        function = ca.Function(
+            "number", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(ca.vec(expression))]
+        )
+        return [
+            float(x)
+            for x in function([self._known[symbol.element_hash()] for symbol in symbols])
+            .full()
+            .ravel()
+        ]
 
 
 def _entries(column: Any) -> list[Any]:

@@ -1,8 +1,9 @@
 """The three turns of a joint as they are seen from its bodies' axes: told, and set by nothing.
 
-With the first axis u of the parent, the third one W of the child and the second one V at right angles to both, the relative angular
-velocity is a' u + b' V + c' W. Where the second turn is at a right angle, u and W are one (gimbal lock), and no more than the sum
-or difference of the other two is decided. What is near it is told as well as its digits allow, what is in it not at all.
+With the first axis u of the parent, the third one W of the child and the second one V at right
+angles to both, the relative angular velocity is a' u + b' V + c' W. Where the second turn is at a
+right angle, u and W are one (gimbal lock), and no more than the sum or difference of the other two
+is decided. What is near it is told as well as its digits allow, what is in it not at all.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ LOCKED = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class ThreeTurns:
-    """The turns of a joint with three, between its parent and its child; ``side`` is the sign of the cosine of the second."""
+    """The turns of a joint with three, between its parent and its child; ``side`` is the sign of
+    the cosine of the second.
+    """
 
     joint: Joint
     parent: Frame
@@ -33,14 +36,20 @@ class ThreeTurns:
 
     @cached_property
     def _axes(self) -> tuple[tuple[Vector, ...], tuple[Vector, ...]]:
-        """The joint's directions as the parent carries them, and as the child does, in ground axes."""
+        """The joint's directions as the parent carries them, and as the child
+        does, in ground axes.
+        """
         zero = orientation(self.joint)
         carried = tuple(self.parent.rotation.apply(direction) for direction in self.joint.triad)
-        return carried, tuple(self.child.rotation.apply(zero.resolve(direction)) for direction in self.joint.triad)
+        return carried, tuple(
+            self.child.rotation.apply(zero.resolve(direction)) for direction in self.joint.triad
+        )
 
     @cached_property
     def _second(self) -> tuple[Expression, Expression, Expression]:
-        """Sine of the second turn; the square of its cosine, from what is small with it; and its cosine."""
+        """Sine of the second turn; the square of its cosine, from what is small with it; and its
+        cosine.
+        """
         (u, _, _), (x, y, w) = self._axes
         across = dot(u, x), dot(u, y)
         squared = across[0] * across[0] + across[1] * across[1]
@@ -53,7 +62,9 @@ class ThreeTurns:
 
     @property
     def angles(self) -> tuple[Any, Any, Any]:
-        """The turns [rad], the first and the third from -pi to pi, the second at most a right angle from 0, or from pi."""
+        """The turns [rad], the first and the third from -pi to pi, the second at most a right angle
+        from 0, or from pi.
+        """
         (u, v, w), (x, y, third) = self._axes
         sine, _, cosine = self._second
         side = self.side
@@ -70,7 +81,9 @@ class ThreeTurns:
 
     @property
     def accelerations(self) -> tuple[Any, Any, Any]:
-        """Their accelerations: of the relative angular velocity, less what its axes' own motion makes of it."""
+        """Their accelerations: of the relative angular velocity, less what its axes' own motion
+        makes of it.
+        """
         (u, *_), (*_, third) = self._axes
         first, second, last = self.rates
         change = minus(self.child.angular, self.parent.angular)
@@ -98,4 +111,8 @@ class ThreeTurns:
         (u, *_), (*_, third) = self._axes
         sine = self._second[0]
         about, along = dot(turning, u), dot(turning, third)
-        return (about - sine * along) * self._inverse, dot(turning, self._middle), (along - sine * about) * self._inverse
+        return (
+            (about - sine * along) * self._inverse,
+            dot(turning, self._middle),
+            (along - sine * about) * self._inverse,
+        )

@@ -1,9 +1,10 @@
 """The spanning tree of a mechanism: which joints carry the coordinates, and which close loops.
 
-The tree is grown from the ground, always by the joint of the highest rank in reach, then the one nearest the ground, then the
-one declared first. Driven joints rank first, so that a driven motion is a coordinate of its own; then screws, whose turns nothing
-else counts; then joints that hold a direction, so that directions tied together stay one coordinate; then pins; a point mass on a
-line last, since opening it leaves a single equation.
+The tree is grown from the ground, always by the joint of the highest rank in reach, then the one
+nearest the ground, then the one declared first. Driven joints rank first, so that a driven motion
+is a coordinate of its own; then screws, whose turns nothing else counts; then joints that hold a
+direction, so that directions tied together stay one coordinate; then pins; a point mass on a line
+last, since opening it leaves a single equation.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing`` joints close the loops.
+    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing``
+    joints close the loops.
 
     ``bars`` lie between bodies of the tree, and close loops as well.
     """
@@ -56,28 +58,45 @@ class Tree:
     bars: tuple[Bar, ...] = ()
 
     def measures(self, joint: Joint, axis: Axis) -> bool:
-        """Whether the motion of a joint along an axis is told: not the angles of one with three turns that closes a loop."""
-        return axis.kind == "slide" or joint.turns < 3 or any(branch.joint is joint for branch in self.branches)
+        """Whether the motion of a joint along an axis is told: not the angles of one with three
+        turns that closes a loop.
+        """
+        return (
+            axis.kind == "slide"
+            or joint.turns < 3
+            or any(branch.joint is joint for branch in self.branches)
+        )
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
-    """The spanning tree of a frozen mechanism whose coordinates ``driven`` have a prescribed motion.
+    """The spanning tree of a frozen mechanism whose coordinates ``driven`` have a prescribed
+    motion.
 
-    Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link that only slides on a point.
+    Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link
+    that only slides on a point.
     """
     depth: dict[Body, int] = {mechanism.ground: 0}
     branches: list[Branch] = []
     bars = bars_of(mechanism, driven)
     barred = {joint for bar in bars for joint in bar.joints}
     waiting = [joint for joint in mechanism.joints.values() if joint not in barred]
-    given, driven = driven, {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
+    given, driven = (
+        driven,
+        {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven},
+    )
     while reachable := [
         Branch(joint, joint.parent.body not in depth)
         for joint in waiting
-        if (joint.parent.body in depth) != (joint.child.body in depth) and _can_carry(joint, joint.parent.body not in depth)
+        if (joint.parent.body in depth) != (joint.child.body in depth)
+        and _can_carry(joint, joint.parent.body not in depth)
     ]:
-        # What a driven joint can carry one way only is left to it, for its motion would else close a loop.
-        kept = {j.child.body for j in waiting if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)}
+        # What a driven joint can carry one way only is left to it, for its motion would else close
+        # a loop.
+        kept = {
+            j.child.body
+            for j in waiting
+            if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)
+        }
         best = min(
             reachable,
             key=lambda branch: (
@@ -97,69 +116,101 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         if joint.kind == "screw":
             # Where its bodies are does not tell how often it has turned.
             raise DeclarationError(
-                f"joint '{joint.name}' is a screw between bodies that drives and other screws place already; drive the screw "
-                "itself, or let it go and tie their coordinates by a constraint"
+                f"joint '{joint.name}' is a screw between bodies that drives and other screws place"
+                " already; drive the screw itself, or let it go and tie their coordinates by a"
+                " constraint"
             )
     return Tree(tuple(branches), tuple(waiting), bars)
 
 
 def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Sequence[Bar]) -> None:
-    """Raise :class:`DeclarationError` for a body that neither the tree nor a bar has a place for."""
+    """Raise :class:`DeclarationError` for a body that neither the tree nor a bar
+    has a place for.
+    """
     lying = {bar.link for bar in bars}
     for body in mechanism.moving:
         if body in placed or body in lying:
             continue
         if mechanism.space:
             raise DeclarationError(
-                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it, which holds nothing"
+                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it,"
+                " which holds nothing"
             )
         raise DeclarationError(
-            f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
+            f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need"
+            " be) that slides in its stead"
         )
 
 
 def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
     """Raise :class:`DeclarationError` for a link whose ``between`` or ``beside`` nothing takes.
 
-    A bar takes ``beside``, and so does a joint that is told in the reference posture; ``turned`` tells in place of ``between``.
+    A bar takes ``beside``, and so does a joint that is told in the reference posture; ``turned``
+    tells in place of ``between``.
     """
     if not isinstance(mechanism, SpatialMechanism):
         return
-    taken = {body for joint in mechanism.joints.values() if joint.name in mechanism.hard for body in joint.bodies}
+    taken = {
+        body
+        for joint in mechanism.joints.values()
+        if joint.name in mechanism.hard
+        for body in joint.bodies
+    }
     taken |= {bar.link for bar in bars}
-    turned = {body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies}
+    turned = {
+        body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies
+    }
     for link in mechanism.links.values():
-        if link.name not in mechanism.references or link in taken or (link.beside is None and link in turned):
+        if (
+            link.name not in mechanism.references
+            or link in taken
+            or (link.beside is None and link in turned)
+        ):
             continue
         told = "beside tells its y axis" if link.beside is not None else "between tells how it lies"
         way_out = "leave beside out" if link.beside is not None else "give its length"
         raise DeclarationError(
-            f"link '{link.name}': {told} in the reference posture, and none of its joints is told there; give one of them at=, "
-            f"the place where it is, or {way_out} and tell by turned how the link is turned"
+            f"link '{link.name}': {told} in the reference posture, and none of its joints is told"
+            f" there; give one of them at=, the place where it is, or {way_out} and tell by turned"
+            " how the link is turned"
         )
 
 
 def _is_turned(joint: Joint) -> bool:
-    """Whether the joint's child is turned against its parent where the joint's coordinates are zero."""
+    """Whether the joint's child is turned against its parent where the joint's coordinates are
+    zero.
+    """
     if joint.turned is None:
         return False
-    pairs = [pair for told, own in zip(joint.turned, AXES[:2], strict=True) for pair in zip(told, own, strict=True)]
+    pairs = [
+        pair
+        for told, own in zip(joint.turned, AXES[:2], strict=True)
+        for pair in zip(told, own, strict=True)
+    ]
     return any(not isinstance(one, float) or one != other for one, other in pairs)
 
 
-def _refuse_driven(mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]) -> NoReturn:
-    """Raise :class:`DeclarationError` for a driven joint that closes a loop; ``given`` are the coordinates that have a motion."""
+def _refuse_driven(
+    mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]
+) -> NoReturn:
+    """Raise :class:`DeclarationError` for a driven joint that closes a loop; ``given`` are the
+    coordinates that have a motion.
+    """
     axes = [axis for one in _around(joint, branches) for axis in one.axes if mechanism.space]
     following = [axis.coordinate for axis in axes if axis.coordinate not in given]
     if following:
         raise DeclarationError(
-            f"joint '{joint.name}': of every joint of its loop some motion is given, so none is left to close it, and "
-            f"{', '.join(following)} cannot follow; give one of them no motion, and say by drives=[...] what bears efforts"
+            f"joint '{joint.name}': of every joint of its loop some motion is given, so none is"
+            f" left to close it, and {', '.join(following)} cannot follow; give one of them no"
+            " motion, and say by drives=[...] what bears efforts"
         )
     if joint.kind == "slot" and joint.child.body.oriented:
-        raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
+        raise DeclarationError(
+            f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop"
+        )
     raise DeclarationError(
-        f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
+        f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints"
+        " already place its bodies"
     )
 
 
@@ -176,9 +227,13 @@ def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:
-    """In a plane a point on a line places neither the body that carries the line, nor the direction of the one that slides."""
+    """In a plane a point on a line places neither the body that carries the line, nor the direction
+    of the one that slides.
+    """
     if joint.directions is not None:
-        return not reverse or (joint.parent.body.oriented and (joint.child.body.oriented or joint.turns == 3))
+        return not reverse or (
+            joint.parent.body.oriented and (joint.child.body.oriented or joint.turns == 3)
+        )
     if joint.slides and not joint.holds_direction:
         return not reverse and not joint.child.body.oriented
     return not (reverse and joint.kind == "weld" and not joint.child.body.oriented)

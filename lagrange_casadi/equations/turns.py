@@ -1,10 +1,13 @@
-"""The angles that loads see of joints that loops set: with their turns, counted from the start of the scene.
+"""The angles that loads see of joints that loops set: with their turns, counted from the start of
+the scene.
 
-A loop gives the cosine and sine of an angle, and so the angle but for whole turns. These follow from what counts turns of itself:
-the angles of drives, and those that gears and constraints tie to them. While the drives go round, the angle goes round as often as
-some sum of theirs, K . beta with whole numbers K, and about that it swings. So the angle is K . beta + centre + swing, where cosine
-and sine tell the swing, which is less than half a turn either way; and no instant needs to know another. K and the centre are found
-once, by following the motion of the scene and a whole turn of its drive. Wherever a swing is evaluated it is held to :data:`REACH`.
+A loop gives the cosine and sine of an angle, and so the angle but for whole turns. These follow
+from what counts turns of itself: the angles of drives, and those that gears and constraints tie to
+them. While the drives go round, the angle goes round as often as some sum of theirs, K . beta with
+whole numbers K, and about that it swings. So the angle is K . beta + centre + swing, where cosine
+and sine tell the swing, which is less than half a turn either way; and no instant needs to know
+another. K and the centre are found once, by following the motion of the scene and a whole turn of
+its drive. Wherever a swing is evaluated it is held to :data:`REACH`.
 """
 
 from __future__ import annotations
@@ -52,11 +55,13 @@ def count_turns(
     start: Start,
     used: Mapping[str, Any],
 ) -> tuple[Kinematics, dict[str, Any]]:
-    """The kinematics with the angles that ``used`` expressions of loads and rows see, by their names; and swings, by angle.
+    """The kinematics with the angles that ``used`` expressions of loads and rows see, by their
+    names; and swings, by angle.
 
-    ``motion(t, p)`` is followed over ``span``; at its start, with the parameters of ``start``, angles lie in (-pi, pi]. Those that
-    are seen only where whole turns make no difference, as under a sine, are left there. Raises :class:`DeclarationError` for angles
-    whose turns do not follow from those of drives.
+    ``motion(t, p)`` is followed over ``span``; at its start, with the parameters of ``start``,
+    angles lie in (-pi, pi]. Those that are seen only where whole turns make no difference, as under
+    a sine, are left there. Raises :class:`DeclarationError` for angles whose turns do not follow
+    from those of drives.
     """
     angles = [c for c in multibody.coordinates if c.kind == "angle"]
     loose = column(c.value for c in angles if c.name in solved.loose)
@@ -64,41 +69,59 @@ def count_turns(
     values: dict[str, Any] = {}
     users: dict[str, list[str]] = {}
     for turned in multibody.turned:
-        users[turned.name] = [name for name, expression in used.items() if ca.depends_on(expression, turned.symbol)]
+        users[turned.name] = [
+            name for name, expression in used.items() if ca.depends_on(expression, turned.symbol)
+        ]
         if not ca.depends_on(turned.angle, loose):
             values[turned.name] = solved.evaluate(turned.angle)
         elif not any(tells_turns(used[name], turned.symbol) for name in users[turned.name]):
             values[turned.name] = solved.evaluate(turned.within)
     open_ = [turned for turned in multibody.turned if turned.name not in values]
     swings: dict[str, Any] = {}
-    for turned, rule in zip(open_, _rules(multibody, solved, motion, span, start, open_, counted), strict=True):
+    for turned, rule in zip(
+        open_, _rules(multibody, solved, motion, span, start, open_, counted), strict=True
+    ):
         if rule is None:
             raise DeclarationError(
-                f"{', '.join(users[turned.name])}: the angle of '{turned.name}' is seen with its turns, but how many it makes does "
-                "not follow from the angles of the drives; expected its sine and cosine, or an angle that goes round with them"
+                f"{', '.join(users[turned.name])}: the angle of '{turned.name}' is seen with its"
+                " turns, but how many it makes does not follow from the angles of the drives;"
+                " expected its sine and cosine, or an angle that goes round with them"
             )
-        about = ca.dot(ca.DM(rule.turns), counted) + rule.centre if any(rule.turns) else ca.SX(rule.centre)
+        about = (
+            ca.dot(ca.DM(rule.turns), counted) + rule.centre
+            if any(rule.turns)
+            else ca.SX(rule.centre)
+        )
         c, s = (solved.evaluate(part) for part in (turned.cosine, turned.sine))
-        swings[turned.name] = ca.atan2(s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about))
+        swings[turned.name] = ca.atan2(
+            s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about)
+        )
         values[turned.name] = swings[turned.name] + about
     seen = solved.found.and_of(
-        column(turned.symbol for turned in multibody.turned), column(values[turned.name] for turned in multibody.turned)
+        column(turned.symbol for turned in multibody.turned),
+        column(values[turned.name] for turned in multibody.turned),
     )
     return replace(solved, found=seen), swings
 
 
 @dataclass(frozen=True)
 class _Rule:
-    """An angle makes so many ``turns`` for one of each angle that counts them, and about that it swings beside a ``centre``."""
+    """An angle makes so many ``turns`` for one of each angle that counts them, and about that it
+    swings beside a ``centre``.
+    """
 
     turns: tuple[int, ...]
     centre: float
 
     @classmethod
     def of(cls, courses: Sequence[tuple[Array, Array]]) -> _Rule | None:
-        """The rule with the fewest turns that keeps an angle within reach over courses: of itself, and of what counts turns."""
+        """The rule with the fewest turns that keeps an angle within reach over courses: of itself,
+        and of what counts turns.
+        """
         for turns in _sums(courses[0][1].shape[0]):
-            swing = np.concatenate([angle - np.array(turns, float) @ counted for angle, counted in courses])
+            swing = np.concatenate(
+                [angle - np.array(turns, float) @ counted for angle, counted in courses]
+            )
             low, high = float(swing.min()), float(swing.max())
             if high - low <= 2.0 * (REACH - 10.0**-_DIGITS):
                 # In few digits, lest the last ones of some library's sines be told in the graph.
@@ -124,14 +147,20 @@ def _rules(
     open_: Sequence[Turned],
     counted: Any,
 ) -> list[_Rule | None]:
-    """The rules of some angles, by what they do along the motion of the scene, and as its one drive goes all the way round."""
+    """The rules of some angles, by what they do along the motion of the scene, and as its one drive
+    goes all the way round.
+    """
     if not open_:
         return []
     time, p, many = multibody.mechanism.time, multibody.mechanism.symbols, len(open_)
     angles = solved.evaluate(column(turned.within for turned in open_))
-    f = ca.Function("angles", [time, solved.driven, solved.iterated, p], [ca.vertcat(angles, counted)])
+    f = ca.Function(
+        "angles", [time, solved.driven, solved.iterated, p], [ca.vertcat(angles, counted)]
+    )
     drives = [c.kind for c in multibody.coordinates if c.driven]
-    guide = _Guide(f, solved.newton, start, many, tuple(i for i, kind in enumerate(drives) if kind == "angle"))
+    guide = _Guide(
+        f, solved.newton, start, many, tuple(i for i, kind in enumerate(drives) if kind == "angle")
+    )
 
     def moving(parts: Array) -> tuple[Array, Array]:
         t = span[0] + (span[1] - span[0]) * parts
@@ -151,7 +180,8 @@ def _rules(
 
 @dataclass(frozen=True, eq=False)
 class _Guide:
-    """Follows ``angles(t, d, z, p)``, of which the first ``many`` are known but for turns, and the others count them.
+    """Follows ``angles(t, d, z, p)``, of which the first ``many`` are known but for turns, and the
+    others count them.
 
     ``turning`` are the drives that turn, by number.
     """
@@ -169,9 +199,11 @@ class _Guide:
         return any(function.jac_sparsity(0, place).nnz() > 0 for function, place in functions)
 
     def course(self, path: Callable[[Array], tuple[Array, Array]]) -> tuple[Array, bool]:
-        """The angles, made continuous, along a path, and whether all along; the path gives times and drives at parts from 0 to 1.
+        """The angles, made continuous, along a path, and whether all along; the path gives times
+        and drives at parts from 0 to 1.
 
-        Steps are so small that nothing turns by much in one. They end where loops cannot be closed, or where they are too many.
+        Steps are so small that nothing turns by much in one. They end where loops cannot be closed,
+        or where they are too many.
         """
         steps, end = _STEPS, 1.0
         while True:
@@ -180,14 +212,18 @@ class _Guide:
             if wide <= 1.0:
                 found = self._follow(t, d)
                 whole = found.shape[1] == t.size
-                wide = max(_widest(found[: self.many]) / _STEP, _widest(found[self.many :]) / _COUNTED_STEP)
+                wide = max(
+                    _widest(found[: self.many]) / _STEP, _widest(found[self.many :]) / _COUNTED_STEP
+                )
                 if wide <= 1.0 and (whole or steps == _MOST_STEPS):
                     return found, whole and end == 1.0
             needed = steps * max(1.1 * wide, 1.0 if whole else 4.0)
             steps, end = min(math.ceil(needed), _MOST_STEPS), end * min(_MOST_STEPS / needed, 1.0)
 
     def _follow(self, t: Array, d: Array) -> Array:
-        """The angles at times and drives (n), as far as loops can be closed; in (-pi, pi] at first, then continuous."""
+        """The angles at times and drives (n), as far as loops can be closed; in (-pi, pi] at first,
+        then continuous.
+        """
         z = self._closed(t, d)
         closed = slice(0, z.shape[1])
         found: Array = self.angles(t[None, closed], d[:, closed], z, self.start.parameters).full()
@@ -221,21 +257,30 @@ def _widest(rows: Array) -> float:
 
 
 def tells_turns(expression: Any, angle: Any) -> bool:
-    """Whether an expression may change where a whole turn is added to an angle that it depends on."""
+    """Whether an expression may change where a whole turn is added to an
+    angle that it depends on.
+    """
     expression = ca.densify(ca.vec(ca.SX(expression)))
-    others = [symbol for symbol in ca.symvar(expression) if symbol.element_hash() != angle.element_hash()]
+    others = [
+        symbol for symbol in ca.symvar(expression) if symbol.element_hash() != angle.element_hash()
+    ]
     function = ca.Function("seen", [angle, ca.vertcat(ca.SX(0, 1), *others)], [expression])
     if not followable(function):
         return True
-    operations = {code: functools.partial(_combined, code) for code in numpy_arithmetic().operations}
+    operations = {
+        code: functools.partial(_combined, code) for code in numpy_arithmetic().operations
+    }
     symbols = [[_Part(1.0)], [_Part(0.0) for _ in others]]
-    (found,) = interpret(function, symbols, Arithmetic(lambda number: _Part(0.0, number), operations))
+    (found,) = interpret(
+        function, symbols, Arithmetic(lambda number: _Part(0.0, number), operations)
+    )
     return any(part.slope != 0.0 for part in found)
 
 
 @dataclass(frozen=True)
 class _Part:
-    """A part of an expression: ``slope`` times an angle, and what whole turns of it do not change; NaN where it is no such sum.
+    """A part of an expression: ``slope`` times an angle, and what whole turns of it do not change;
+    NaN where it is no such sum.
 
     ``number`` is its value where it is a constant.
     """
@@ -257,7 +302,11 @@ def _combined(code: int, *operands: Any) -> _Part:
     if code == ca.OP_MUL and first.number is not None:
         return _Part(first.number * last.slope)
     turning = code in (ca.OP_SIN, ca.OP_COS, ca.OP_TAN) and first.slope.is_integer()
-    remaining = code == ca.OP_REMAINDER and bool(last.number) and (first.slope * math.tau / (last.number or 1.0)).is_integer()
+    remaining = (
+        code == ca.OP_REMAINDER
+        and bool(last.number)
+        and (first.slope * math.tau / (last.number or 1.0)).is_integer()
+    )
     if turning or remaining or not any(part.slope for part in parts):
         return _Part(0.0)
     return _Part(math.nan)

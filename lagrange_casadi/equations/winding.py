@@ -1,7 +1,8 @@
 """Turns of screws in loops: a loop tells a direction, and a screw slides by every turn.
 
-While an angle that counts turns goes round once, the screw's turns by a whole number of turns too. So its angle is a sum of such
-angles, each so often, and about that it swings by less than half a turn, which the direction tells.
+While an angle that counts turns goes round once, the screw's turns by a whole number of turns too.
+So its angle is a sum of such angles, each so often, and about that it swings by less than half a
+turn, which the direction tells.
 """
 
 from __future__ import annotations
@@ -19,11 +20,14 @@ from .substitution import Numbers
 _STEPS, _DIGITS = 256, 2
 
 
-def wound(screw: Coordinate, variables: Any, counting: Sequence[Coordinate], numbers: Numbers) -> tuple[Any, Any]:
-    """The variables of a screw's angle with its turns, of those that a loop tells; and how far it swings.
+def wound(
+    screw: Coordinate, variables: Any, counting: Sequence[Coordinate], numbers: Numbers
+) -> tuple[Any, Any]:
+    """The variables of a screw's angle with its turns, of those that a loop tells; and how far it
+    swings.
 
-    ``counting`` are the coordinates whose angles count turns, and ``numbers`` where all is at the start of the motion, where the
-    angle is in (-pi, pi].
+    ``counting`` are the coordinates whose angles count turns, and ``numbers`` where all is at the
+    start of the motion, where the angle is in (-pi, pi].
     """
     c, s, angle = ca.vertsplit(variables)
     about, beside = ca.SX(0), numbers.of(angle)[0]
@@ -38,7 +42,9 @@ def wound(screw: Coordinate, variables: Any, counting: Sequence[Coordinate], num
 
 
 def _turns(angle: Any, other: Coordinate, numbers: Numbers) -> int:
-    """How often an angle goes round while another one does so once; none where that cannot go round."""
+    """How often an angle goes round while another one does so once; none where that cannot go
+    round.
+    """
     turn = ca.SX.sym("turn")
     start = numbers.of(other.value)[0]
     placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))

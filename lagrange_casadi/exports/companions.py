@@ -1,4 +1,6 @@
-"""What goes with the source: build files, a self-test with golden vectors, an example, and what to read first."""
+"""What goes with the source: build files, a self-test with golden vectors, an example, and what to
+read first.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,12 @@ def companions(source: Source) -> dict[str, str]:
                 rest=rest,
                 start=number(start),
                 step=number((stop - start) / (_ROWS * steps)),
-                skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
+                skip=(
+                    f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps"
+                    " */\n"
+                    if steps > 1
+                    else ""
+                ),
                 count=_ROWS * steps,
                 coordinate=drive.name,
                 coordinate_unit=quoted(drive.unit),
@@ -84,7 +91,9 @@ def _example_section(c: Contract) -> str:
 
 def _table(members: tuple[Member, ...]) -> str:
     return "\n".join(
-        f"| `{m.name}` | {markdown(m.unit)} | {m.meaning} | {'; '.join(x for x in (m.sign, m.range) if x)} |" for m in members
+        f"| `{m.name}` | {markdown(m.unit)} | {m.meaning} |"
+        f" {'; '.join(x for x in (m.sign, m.range) if x)} |"
+        for m in members
     )
 
 
@@ -92,14 +101,20 @@ def _settings(c: Contract) -> str:
     if not c.settings:
         return "There are none: every number of the scene is fixed.\n"
     rows = "\n".join(f"| `{m.name}` | {markdown(m.unit)} | {m.range} |" for m in c.settings)
-    return f"`{c.prefix}_defaults` holds the defaults. {CORNERS}\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
+    return (
+        f"`{c.prefix}_defaults` holds the defaults. {CORNERS}\n\n| member | unit | range |\n| --- |"
+        f" --- | --- |\n{rows}\n"
+    )
 
 
 def _mapped(c: Contract) -> str:
     if not c.mapped:
         return ""
     rows = "\n".join(f"| {markdown(name)} | `{called}` |" for name, called in c.mapped.items())
-    return f"\nSome names cannot stand in C as they are:\n\n| in the scene | here |\n| --- | --- |\n{rows}\n"
+    return (
+        "\nSome names cannot stand in C as they are:\n\n| in the scene | here |\n| --- | ---"
+        f" |\n{rows}\n"
+    )
 
 
 def _selftest(source: Source, words: dict[str, str]) -> str:
@@ -128,15 +143,23 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         inputs_off=row(g.inputs_off),
         outputs=rows(g.outputs),
         outputs_off=row(g.outputs_off),
-        forces=(_forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "")
+        forces=(
+            _forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel()))
+            if c.links
+            else ""
+        )
         + (selftest_numbers(source.slopes, row) if source.slopes else ""),
-        given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
+        given="\n".join(
+            f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)
+        ),
         taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
-            f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
+            f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}],'
+            f" {int(m.wrapped)});"
             for k, m in enumerate(c.outputs)
         ),
-        sections=(_sections(c) if c.links else "") + (selftest_function(c, source.slopes) if source.slopes else ""),
+        sections=(_sections(c) if c.links else "")
+        + (selftest_function(c, source.slopes) if source.slopes else ""),
         check_sections=("  check_sections(&model, &outputs, k);\n" if c.links else "")
         + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
         first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
@@ -158,7 +181,10 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     rest = coordinates.get(f"{REST}{m.source}")
     value, given = f"(double) inputs.{m.name}", f"inputs_at[k][{k}]"
     if rest is not None:
-        value, given = f"{value} + (double) inputs.{c.inputs[rest].name}", f"{given} + inputs_at[k][{rest}]"
+        value, given = (
+            f"{value} + (double) inputs.{c.inputs[rest].name}",
+            f"{given} + inputs_at[k][{rest}]",
+        )
     return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
 
 
@@ -183,9 +209,9 @@ def _bad_parameter(c: Contract) -> str:
         return ""
     p, P = c.prefix, c.prefix.upper()
     return (
-        f"  {{\n    {p}_parameters parameters = {p}_defaults;\n    parameters.{c.settings[0].name} = ({p}_real) NAN;\n"
-        f"    expect({p}_prepare(&model, &parameters), {P}_BAD_PARAMETER);\n"
-        f"    expect({p}_evaluate(&model, &inputs, &outputs), {P}_NOT_PREPARED);\n  }}\n"
+        f"  {{\n    {p}_parameters parameters = {p}_defaults;\n    parameters.{c.settings[0].name}"
+        f" = ({p}_real) NAN;\n    expect({p}_prepare(&model, &parameters), {P}_BAD_PARAMETER);\n   "
+        f" expect({p}_evaluate(&model, &inputs, &outputs), {P}_NOT_PREPARED);\n  }}\n"
     )
 
 
@@ -199,5 +225,6 @@ def _bad_ratio(c: Contract) -> str:
         f"    expect({call}, {link}, ({p}_real) 1.5, &forces), {P}_BAD_RATIO);\n"
         f"    expect({call}, {link}, ({p}_real) NAN, &forces), {P}_BAD_RATIO);\n"
         f"    expect({call}, ({p}_link) {len(c.links)}, ({p}_real) 0.5, &forces), {P}_NO_LINK);\n"
-        f'    if (forces.axial == forces.axial) complain("forces are left as they were where there is no link");\n  }}\n'
+        f'    if (forces.axial == forces.axial) complain("forces are left as they were where there'
+        f' is no link");\n  }}\n'
     )

@@ -1,4 +1,6 @@
-"""The header of exported C that counts damage step by step, with the materials of links whose strength is wanted."""
+"""The header of exported C that counts damage step by step, with the materials of links whose
+strength is wanted.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +15,19 @@ from ..strength.fatigue import line
 
 
 def counting(source: Source) -> dict[str, str]:
-    """The header by its name; nothing where no link is wanted whose material has an endurance limit and an ultimate strength."""
+    """The header by its name; nothing where no link is wanted whose material has an endurance limit
+    and an ultimate strength.
+    """
     graph = source.program.graph
     materials = graph.data.materials
     found = {}
     for name in dict.fromkeys((*graph.wanted.stressed, *graph.wanted.used)):
         material = materials.get(name)
-        if material is not None and material.endurance is not None and material.ultimate is not None:
+        if (
+            material is not None
+            and material.endurance is not None
+            and material.ultimate is not None
+        ):
             found[name] = material
     prefix = source.contract.prefix
     return {f"{prefix}_fatigue.h": counter(prefix, found)} if found else {}
@@ -31,6 +39,14 @@ def counter(prefix: str, materials: Mapping[str, Material]) -> str:
     rows, named = [], constants(f"{prefix}_fatigue_of", list(materials))
     for name, material in materials.items():
         endurance, start, slope = line(material)
-        numbers = ", ".join(map(number, (endurance, *material.needs("damage", "ultimate"), start, slope)))
+        numbers = ", ".join(
+            map(number, (endurance, *material.needs("damage", "ultimate"), start, slope))
+        )
         rows.append(f"#define {named[name]} {{{numbers}, {int(material.endless)}}}")
-    return template("fatigue.h", p=prefix, P=prefix.upper(), materials="\n".join(rows), example=next(iter(named.values())))
+    return template(
+        "fatigue.h",
+        p=prefix,
+        P=prefix.upper(),
+        materials="\n".join(rows),
+        example=next(iter(named.values())),
+    )

@@ -1,4 +1,6 @@
-"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources and a page to read."""
+"""A unit of FMI 2.0, for simulation tools: an archive with the description, a library, the sources
+and a page to read.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 def check_tools() -> None:
-    """Raise :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C compiler is."""
+    """Raise :class:`LagrangeCasadiError` where FMPy is missing, :class:`CompilerError` where a C
+    compiler is.
+    """
     _fmpy()
     _compiler()
 
@@ -34,19 +38,25 @@ def check_tools() -> None:
 def fmu(source: Source, p: Array) -> bytes:
     """The archive ``<prefix>.fmu`` of a program whose parameters start with ``p``.
 
-    The same program gives the same bytes, as far as the compiler does. Raises :class:`CompilerError` for what it refuses, and
-    :class:`StoreError` for what FMPy finds wrong.
+    The same program gives the same bytes, as far as the compiler does. Raises
+    :class:`CompilerError` for what it refuses, and :class:`StoreError` for what FMPy finds wrong.
     """
     fmpy, prefix = _fmpy(), source.contract.prefix
     description = Description(source, p, (f"{prefix}.c", f"{prefix}_fmi2.c"))
     headers = Path(fmpy.__file__).parent / "c-code"
     sources = {file: (headers / file).read_text() for file in _HEADERS}
-    sources |= {f"{prefix}.h": header(source), f"{prefix}.c": source.code, f"{prefix}_fmi2.c": wrapper(description)}
+    sources |= {
+        f"{prefix}.h": header(source),
+        f"{prefix}.c": source.code,
+        f"{prefix}_fmi2.c": wrapper(description),
+    }
     library = f"{prefix}{fmpy.sharedLibraryExtension}"
     files = {f"sources/{file}": text.encode() for file, text in sources.items()}
     files["modelDescription.xml"] = description.xml.encode()
     files["documentation/index.html"] = page(description).encode()
-    files[f"binaries/{fmpy.platform}/{library}"] = _built(sources, description.sources, library, _compiler())
+    files[f"binaries/{fmpy.platform}/{library}"] = _built(
+        sources, description.sources, library, _compiler()
+    )
     archive = _archive(files)
     findings = _findings(archive)
     if findings:
@@ -58,9 +68,13 @@ def wrapper(description: Description) -> str:
     """The C that makes a unit of the exported functions."""
     source, c, inputs = description.source, description.contract, description.inputs
     wide = literal("double")
-    carried = ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
+    carried = (
+        ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
+    )
     carried += ["model.closed = state->model.closed;"] if source.program.newton is not None else []
-    values = [(m.path, m.default) for m in c.settings] + [(m.path, description.start[m.source]) for m in inputs]
+    values = [(m.path, m.default) for m in c.settings] + [
+        (m.path, description.start[m.source]) for m in inputs
+    ]
     return template(
         "fmu.c",
         **source.words,
@@ -74,11 +88,16 @@ def wrapper(description: Description) -> str:
         start_time=wide(source.program.graph.data.span[0]),
         limits=_limits(description),
         given=f"  {c.prefix}_parameters parameters;\n" if c.settings else "",
-        set="".join(f"  parameters.{m.name} = ({c.prefix}_real) state->values[{k}];\n" for k, m in enumerate(c.settings)),
+        set="".join(
+            f"  parameters.{m.name} = ({c.prefix}_real) state->values[{k}];\n"
+            for k, m in enumerate(c.settings)
+        ),
         prepared="&model, &parameters" if c.settings else "&model",
         carried="".join(f"  if (state->begun) {line}\n" for line in carried),
         give=indented(_given(description)),
-        take="\n".join(f"  found[{k}] = (double) outputs->{m.name};" for k, m in enumerate(c.outputs)),
+        take="\n".join(
+            f"  found[{k}] = (double) outputs->{m.name};" for k, m in enumerate(c.outputs)
+        ),
         functions=template("fmu_functions.c", check=_CHECK if c.settings else ""),
     )
 
@@ -101,15 +120,22 @@ def _limits(description: Description) -> str:
 
 
 def _given(description: Description) -> Iterable[str]:
-    """Statements that make inputs of a state; in single precision a number's rest is that of the double."""
+    """Statements that make inputs of a state; in single precision a number's rest is that of the
+    double.
+    """
     c = description.contract
-    places = {m.source: f"state->values[{k}]" for k, m in enumerate(description.inputs, len(c.settings))} | {"time": "state->time"}
+    places = {
+        m.source: f"state->values[{k}]" for k, m in enumerate(description.inputs, len(c.settings))
+    } | {"time": "state->time"}
     for m in c.inputs:
         if m.source in places:
             yield f"inputs->{m.name} = ({c.prefix}_real) {places[m.source]};"
         else:
             whole = m.source.removeprefix(REST)
-            yield f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double) inputs->{c.input_of(whole)});"
+            yield (
+                f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double)"
+                f" inputs->{c.input_of(whole)});"
+            )
 
 
 def _fmpy() -> Any:
@@ -117,18 +143,24 @@ def _fmpy() -> Any:
         import fmpy
         import fmpy.validation
     except ImportError:
-        raise LagrangeCasadiError("an FMU needs FMPy; install it with: pip install 'lagrange_casadi[fmu]'") from None
+        raise LagrangeCasadiError(
+            "an FMU needs FMPy; install it with: pip install 'lagrange_casadi[fmu]'"
+        ) from None
     return fmpy
 
 
 def _compiler() -> Compiler:
     found = find_compiler()
     if found is None:
-        raise CompilerError("an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC")
+        raise CompilerError(
+            "an FMU needs a C compiler: install gcc, clang or the wheel ziglang, or set $CC"
+        )
     return found
 
 
-def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compiler: Compiler) -> bytes:
+def _built(
+    sources: Mapping[str, str], units: Iterable[str], library: str, compiler: Compiler
+) -> bytes:
     """The library, built where no path gets into it."""
     flags = compiler.flags("".join(sources.values()))
     with working_folder() as work:
@@ -146,7 +178,9 @@ def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compi
 
 
 def _check_loads(library: Path, compiler: Compiler) -> None:
-    """Raise :class:`CompilerError` unless the library loads here and says that it is a unit of FMI 2.0."""
+    """Raise :class:`CompilerError` unless the library loads here and says that it is a unit of FMI
+    2.0.
+    """
     try:
         version = ctypes.CDLL(str(library)).fmi2GetVersion
         version.restype = ctypes.c_char_p

@@ -1,4 +1,6 @@
-"""What an importer reads of a unit: its variables with units, start values and limits, and what depends on what."""
+"""What an importer reads of a unit: its variables with units, start values and limits, and what
+depends on what.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +33,11 @@ LOGGED = {
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A unit's ``modelDescription.xml``, for parameters ``p``; ``sources`` are the files to compile.
+    """A unit's ``modelDescription.xml``, for parameters ``p``; ``sources`` are the files to
+    compile.
 
-    The value reference of a variable is its place: parameters, inputs, outputs, and the time where anything depends on it.
+    The value reference of a variable is its place: parameters, inputs, outputs, and the time where
+    anything depends on it.
     """
 
     source: Source
@@ -47,22 +51,32 @@ class Description:
 
     @property
     def inputs(self) -> tuple[Member, ...]:
-        """The motion of the drives. The time is the importer's, and what single precision leaves is computed."""
+        """The motion of the drives.
+
+        The time is the importer's, and what single precision leaves is computed.
+        """
         return tuple(m for m in self.contract.inputs if m.source in self.start)
 
     @cached_property
     def start(self) -> dict[str, float]:
         """What inputs start with: the scene's motion at its first instant."""
         graph = self.source.program.graph
-        rows = [np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.data.span[0], self.p)]
-        names = [str(Output("motion", joint, member)) for member in ("", "rate", "acceleration") for joint in graph.driven]
+        rows = [
+            np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.data.span[0], self.p)
+        ]
+        names = [
+            str(Output("motion", joint, member))
+            for member in ("", "rate", "acceleration")
+            for joint in graph.driven
+        ]
         return dict(zip(names, np.concatenate(rows).tolist(), strict=True))
 
     @cached_property
     def guid(self) -> str:
         """Of the scene and of all that is said of it."""
         text = _text(self._root(""))
-        return f"{{{uuid.UUID(hashlib.sha256((self.source.identity + self.source.code + text).encode()).hexdigest()[:32])}}}"
+        whole = self.source.identity + self.source.code + text
+        return f"{{{uuid.UUID(hashlib.sha256(whole.encode()).hexdigest()[:32])}}}"
 
     @property
     def xml(self) -> str:
@@ -71,7 +85,9 @@ class Description:
 
     @cached_property
     def known(self) -> dict[str, int]:
-        """The index, from 1, of everything outputs may depend on, by its full name: parameters, inputs, and the time."""
+        """The index, from 1, of everything outputs may depend on, by its full name: parameters,
+        inputs, and the time.
+        """
         c = self.contract
         names = [f"parameter:{m.source}" for m in c.settings] + [m.source for m in self.inputs]
         found = {name: k for k, name in enumerate(names, 1)}
@@ -84,13 +100,18 @@ class Description:
             fmiVersion="2.0",
             modelName=c.name,
             guid=guid,
-            description="Efforts, reactions and section forces of a mechanism, from the motion of its drives",
+            description=(
+                "Efforts, reactions and section forces of a mechanism, from the motion of its"
+                " drives"
+            ),
             generationTool=f"lagrange_casadi {__version__}",
             variableNamingConvention="flat",
             numberOfEventIndicators="0",
         )
         for kind, able in _KINDS.items():
-            way = _add(root, kind, modelIdentifier=c.prefix, **{able: "true"}, canGetAndSetFMUstate="true")
+            way = _add(
+                root, kind, modelIdentifier=c.prefix, **{able: "true"}, canGetAndSetFMUstate="true"
+            )
             files = _add(way, "SourceFiles")
             for file in self.sources:
                 _add(files, "File", name=file)
@@ -101,10 +122,16 @@ class Description:
         logged = _add(root, "LogCategories")
         for name, meaning in LOGGED.items():
             _add(logged, "Category", name=name, description=meaning)
-        (start, stop), count = self.source.program.graph.data.span, self.source.program.graph.data.timing.count
+        (start, stop), count = (
+            self.source.program.graph.data.span,
+            self.source.program.graph.data.timing.count,
+        )
         span = {"startTime": _number(start)}
         if stop > start:
-            span |= {"stopTime": _number(stop), "stepSize": _number((stop - start) / max(1, count - 1))}
+            span |= {
+                "stopTime": _number(stop),
+                "stepSize": _number((stop - start) / max(1, count - 1)),
+            }
         _add(root, "DefaultExperiment", **span)
         self._variables(_add(root, "ModelVariables"))
         self._structure(_add(root, "ModelStructure"))
@@ -115,26 +142,52 @@ class Description:
 
         def add(member: Member, words: dict[str, str], values: dict[str, str]) -> None:
             description = "; ".join(part for part in (member.meaning, member.sign) if part)
-            called = {"name": member.path, "valueReference": str(next(place)), "description": description}
+            called = {
+                "name": member.path,
+                "valueReference": str(next(place)),
+                "description": description,
+            }
             variable = _add(parent, "ScalarVariable", **called, **words)
             _add(variable, "Real", unit=member.unit, **values)
 
         for m in c.settings:
-            limits = {key: _number(x) for key, x in (("min", m.low), ("max", m.high)) if math.isfinite(x)}
-            add(m, {"causality": "parameter", "variability": "tunable", "initial": "exact"}, limits | {"start": _number(m.default)})
+            limits = {
+                key: _number(x) for key, x in (("min", m.low), ("max", m.high)) if math.isfinite(x)
+            }
+            add(
+                m,
+                {"causality": "parameter", "variability": "tunable", "initial": "exact"},
+                limits | {"start": _number(m.default)},
+            )
         for given in self.inputs:
-            add(given, {"causality": "input", "variability": "continuous"}, {"start": _number(self.start[given.source])})
+            add(
+                given,
+                {"causality": "input", "variability": "continuous"},
+                {"start": _number(self.start[given.source])},
+            )
         for output in c.outputs:
-            add(output, {"causality": "output", "variability": "continuous", "initial": "calculated"}, {})
+            add(
+                output,
+                {"causality": "output", "variability": "continuous", "initial": "calculated"},
+                {},
+            )
         if c.timed:
             name = "time" if all(m.source != "time" for m in c.settings) else "simulation/time"
-            add(Member("", name, "s", "time"), {"causality": "independent", "variability": "continuous"}, {})
+            add(
+                Member("", name, "s", "time"),
+                {"causality": "independent", "variability": "continuous"},
+                {},
+            )
 
     def _structure(self, parent: ElementTree.Element) -> None:
-        reach = None if self.source.program.cycle is not None else reached(self.source.program.graph)
+        reach = (
+            None if self.source.program.cycle is not None else reached(self.source.program.graph)
+        )
         for kind, fixed in (("Outputs", False), ("InitialUnknowns", True)):
             group = _add(parent, kind)
-            for k, m in enumerate(self.contract.outputs, len(self.contract.settings) + len(self.inputs) + 1):
+            for k, m in enumerate(
+                self.contract.outputs, len(self.contract.settings) + len(self.inputs) + 1
+            ):
                 unknown = _add(group, "Unknown", index=str(k))
                 if reach is not None:
                     on = sorted(
@@ -145,14 +198,22 @@ class Description:
                     unknown.set("dependencies", " ".join(map(str, on)))
 
 
-_KINDS = {"ModelExchange": "completedIntegratorStepNotNeeded", "CoSimulation": "canHandleVariableCommunicationStepSize"}
+_KINDS = {
+    "ModelExchange": "completedIntegratorStepNotNeeded",
+    "CoSimulation": "canHandleVariableCommunicationStepSize",
+}
 
 
 def reached(graph: Program) -> dict[str, frozenset[str]]:
-    """What each column of a graph depends on by its structure: ``time``, ``motion:...`` and ``parameter:NAME``."""
+    """What each column of a graph depends on by its structure: ``time``, ``motion:...`` and
+    ``parameter:NAME``.
+    """
     named = [
         ["time"],
-        *([str(Output("motion", joint, member)) for joint in graph.driven] for member in ("", "rate", "acceleration")),
+        *(
+            [str(Output("motion", joint, member)) for joint in graph.driven]
+            for member in ("", "rate", "acceleration")
+        ),
         [f"parameter:{name}" for name in graph.data.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
@@ -171,17 +232,21 @@ def reached(graph: Program) -> dict[str, frozenset[str]]:
 
 
 def _entries(function: Any, place: int) -> list[tuple[int, int]]:
-    """Rows and columns of what is not zero in the derivative of a function's first output by an input."""
+    """Rows and columns of what is not zero in the derivative of a function's first output by an
+    input.
+    """
     rows, columns = function.jac_sparsity(0, place).get_triplet()
     return list(zip(rows, columns, strict=True))
 
 
 _ABOUT = """\
-Efforts of the drives, reactions of the joints and forces inside the links of a mechanism, at any instant of any motion of its
-drives: everything follows from the inputs, the parameters and the time, and nothing is integrated. Where there is no result,
-fmi2Discard is returned; for a parameter that is refused, fmi2Error; and the reason is logged. Angles that loops set go on from the
-last instant by the nearest turn, and loops that are iterated are followed from there, so instants must be near each other. In
-Co-Simulation, inputs are held during a step: what is read after it is of the inputs before, unless they are set anew."""
+Efforts of the drives, reactions of the joints and forces inside the links of a mechanism, at any
+instant of any motion of its drives: everything follows from the inputs, the parameters and the
+time, and nothing is integrated. Where there is no result, fmi2Discard is returned; for a parameter
+that is refused, fmi2Error; and the reason is logged. Angles that loops set go on from the last
+instant by the nearest turn, and loops that are iterated are followed from there, so instants must
+be near each other. In Co-Simulation, inputs are held during a step: what is read after it is of the
+inputs before, unless they are set anew."""
 
 
 def page(description: Description) -> str:
@@ -190,9 +255,11 @@ def page(description: Description) -> str:
     tables = (("Parameters", c.settings), ("Inputs", description.inputs), ("Outputs", c.outputs))
     rest = "".join(_table(title, members) for title, members in tables if members)
     return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(c.name)}</title></head>\n<body>\n'
-        f"<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n<p>{escape(c.table.conventions)}.</p>\n{rest}"
-        f"<p>Written by lagrange_casadi {__version__} from the scene {description.source.identity}.</p>\n</body>\n</html>\n"
+        '<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8">'
+        f"<title>{escape(c.name)}</title></head>\n<body>\n<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n"
+        f"<p>{escape(c.table.conventions)}.</p>\n{rest}<p>Written"
+        f" by lagrange_casadi {__version__} from the scene"
+        f" {description.source.identity}.</p>\n</body>\n</html>\n"
     )
 
 
@@ -202,7 +269,10 @@ def _table(title: str, members: Sequence[Member]) -> str:
         f"<td>{escape(m.range if isinstance(m, Setting) else m.sign)}</td></tr>\n"
         for m in members
     )
-    return f"<h2>{title}</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>what</th><th>sign or range</th></tr>\n{rows}</table>\n"
+    return (
+        f"<h2>{title}</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>what</th><th>sign or"
+        f" range</th></tr>\n{rows}</table>\n"
+    )
 
 
 def _add(parent: ElementTree.Element, tag: str, **attributes: str) -> ElementTree.Element:
@@ -213,7 +283,12 @@ def _unit(parent: ElementTree.Element, name: str) -> None:
     unit, known = _add(parent, "Unit", name=name), base_unit(name)
     if known is not None:
         powers = {base: str(n) for base, n in zip(BASE, known.exponents, strict=True) if n}
-        _add(unit, "BaseUnit", **powers, **({} if known.factor == 1.0 else {"factor": _number(known.factor)}))
+        _add(
+            unit,
+            "BaseUnit",
+            **powers,
+            **({} if known.factor == 1.0 else {"factor": _number(known.factor)}),
+        )
 
 
 def _number(value: float) -> str:

@@ -56,7 +56,8 @@ def export(
     fmu: bool = False,
     wasm: bool = False,
 ) -> Contract:
-    """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
+    """Write a scene as C into the folder ``out``: header, source, self-test, example, build files,
+    README.
 
     Parameters
     ----------
@@ -71,18 +72,19 @@ def export(
     largest
         Bytes that a table may take; default: 16 MB, in single precision 64 kB.
     force
-        Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
-        an export's are never touched; those of an earlier one that this one has not are removed, unless they were changed.
+        Write into a folder that holds other files, too, or files of an earlier export that were
+        changed since. Files that are not an export's are never touched; those of an earlier one
+        that this one has not are removed, unless they were changed.
     fmu
         Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
     wasm
-        Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and ``README.wasm.md``. Needs ziglang.
+        Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and
+        ``README.wasm.md``. Needs ziglang.
 
-    Notes
-    -----
-    Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
-    folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
-    what :func:`.evaluate` raises.
+    Notes ----- Returns the names, units, signs and ranges of the parameters, inputs and outputs of
+    the C. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that
+    is too large, :class:`CompilerError` for an FMU without a compiler, and what :func:`.evaluate`
+    raises.
     """
     folder = Path(out)
     rung = Rung("auto", precision, newton, table)
@@ -91,7 +93,14 @@ def export(
         check_tools()
     if wasm:
         check_zig("WebAssembly")
-    source = sourced(scene, name or "", parameters, wanted, rung, LARGEST[precision] if largest is None else largest)
+    source = sourced(
+        scene,
+        name or "",
+        parameters,
+        wanted,
+        rung,
+        LARGEST[precision] if largest is None else largest,
+    )
     agreed = source.contract
     texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
     texts |= companions(source)
@@ -103,7 +112,9 @@ def export(
     allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
     MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
     if told and f"{agreed.prefix}.h" not in told and not force:
-        raise PathError(f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}")
+        raise PathError(
+            f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}"
+        )
     if fmu:
         files[unit] = archive(source, np.array(list(source.values.values())))
     with MANIFEST.filling(folder, _told(source), alone=True, **allowed) as draft:
@@ -117,7 +128,9 @@ def _told(source: Source) -> dict[str, Any]:
     agreed = source.contract
 
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:
-        return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
+        return [
+            {"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members
+        ]
 
     return {
         "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
@@ -125,13 +138,21 @@ def _told(source: Source) -> dict[str, Any]:
         "prefix": agreed.prefix,
         "precision": agreed.precision,
         "options": source.rung,
-        "error": {"largest": float(f"{source.golden.worst[0]:.0e}"), "output": source.golden.worst[1]},
+        "error": {
+            "largest": float(f"{source.golden.worst[0]:.0e}"),
+            "output": source.golden.worst[1],
+        },
         "fixed": dict(source.fixed),
         "scene": source.identity,
-        "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
+        "parameters": [
+            row | {"default": m.default}
+            for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)
+        ],
         "inputs": rows(agreed.inputs),
         "outputs": rows(agreed.outputs),
         **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
-        "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
+        "model": [
+            {"name": name, "type": kind, "count": count} for name, kind, count in source.model
+        ],
     }

@@ -10,16 +10,34 @@ from ..portable.source import Source
 from ..portable.text import octave, octave_printed, template
 
 _RESTS = """
-   Numbers are doubles here: what single precision would round off a coordinate or a time is kept, without a member of its own."""
+   Numbers are doubles here: what single precision would round off a coordinate or a time is kept,
+   without a member of its own."""
 
-_WORDS = frozenset(["catch", "classdef", "elseif", "end", "function", "global", "otherwise", "parfor", "persistent", "spmd", "try"])
+_WORDS = frozenset(
+    [
+        "catch",
+        "classdef",
+        "elseif",
+        "end",
+        "function",
+        "global",
+        "otherwise",
+        "parfor",
+        "persistent",
+        "spmd",
+        "try",
+    ]
+)
 """Words of MATLAB and Octave that are none of C."""
 
 
 def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
     """The files by name; the example shows an input and an output."""
     c = source.contract
-    words = source.words | {"coordinate": coordinate.name, "coordinate_unit": octave(coordinate.unit)}
+    words = source.words | {
+        "coordinate": coordinate.name,
+        "coordinate_unit": octave(coordinate.unit),
+    }
     words |= {"output": output.name, "output_unit": octave(output.unit)}
     words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
     start, stop = source.program.graph.data.span
@@ -40,7 +58,11 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
         ),
         "build_mex.m": template("build_mex.m", **words),
         "mex_example.m": template(
-            "mex_example.m", **words, start=number(start), step=number((stop - start) / 12), more="\n".join(_more(c, output))
+            "mex_example.m",
+            **words,
+            start=number(start),
+            step=number((stop - start) / 12),
+            more="\n".join(_more(c, output)),
         ),
     }
 
@@ -57,7 +79,10 @@ def _members(c: Contract, struct: str, members: Iterable[Member]) -> str:
     def place(name: str) -> str:
         return f"offsetof({c.prefix}_{struct}, {name})"
 
-    rows = ((m.name, place(m.name), place(rests[m.source]) if m.source in rests else "0") for m in members)
+    rows = (
+        (m.name, place(m.name), place(rests[m.source]) if m.source in rests else "0")
+        for m in members
+    )
     return "\n".join(f'  {{"{name}", {at}, {rest}}},' for name, at, rest in rows)
 
 
@@ -88,16 +113,23 @@ def _section(c: Contract, words: Mapping[str, str]) -> str:
         "mex_section.c",
         **words,
         pointers=", ".join(f"*{force}" for force in forces),
-        added="\n".join(f'  {force} = added(found, "{force}", many, width, mxDOUBLE_CLASS);' for force in forces),
-        filled="\n".join(f"      {force}[j*many + i] = (double) forces.{force};" for force in forces),
+        added="\n".join(
+            f'  {force} = added(found, "{force}", many, width, mxDOUBLE_CLASS);' for force in forces
+        ),
+        filled="\n".join(
+            f"      {force}[j*many + i] = (double) forces.{force};" for force in forces
+        ),
     )
 
 
 def _no_section(c: Contract) -> str:
     return (
-        "static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios, const mxArray* parameters) {\n"
-        "  (void) given;\n  (void) link;\n  (void) ratios;\n  (void) parameters;\n  (void) names_of_links;\n"
-        f'  mexErrMsgIdAndTxt("{c.prefix}:name", "there is no link with sections.");\n  return 0;\n}}\n'
+        "static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios,"
+        " const mxArray* parameters) {\n"
+        "  (void) given;\n  (void) link;\n  (void) ratios;\n  (void) parameters;\n  (void)"
+        " names_of_links;\n"
+        f'  mexErrMsgIdAndTxt("{c.prefix}:name", "there is no link with sections.");\n  return'
+        " 0;\n}\n"
     )
 
 
@@ -106,11 +138,16 @@ def _more(c: Contract, output: Member) -> Iterable[str]:
     if c.links:
         link = c.links[0].name
         yield f"forces = {c.prefix}_mex('section', outputs, '{link}', linspace(0, 1, 5));"
-        yield f"fprintf('largest bending moment of {link}: %g N m\\n', max(abs(forces.bending(:))));"
+        yield (
+            f"fprintf('largest bending moment of {link}: %g N m\\n', max(abs(forces.bending(:))));"
+        )
     if c.settings:
         first = c.settings[0]
         yield f"parameters = struct('{first.name}', 1.01*{literal('double')(first.default)});"
         yield f"other = {c.prefix}_mex({c.prefix}_mex('motion', t, parameters), parameters);"
         unit = octave_printed(output.unit)
-        yield f"fprintf('{output.name} changes by at most %g {unit} where {first.name} is 1 %% larger\\n', ..."
+        yield (
+            f"fprintf('{output.name} changes by at most %g {unit} where {first.name} is 1 %%"
+            " larger\\n', ..."
+        )
         yield f"        max(abs(other{_field(output)} - outputs{_field(output)})));"

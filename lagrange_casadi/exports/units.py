@@ -18,7 +18,9 @@ class BaseUnit:
 
 
 def base_unit(text: str) -> BaseUnit | None:
-    """A unit in base units; None where it is not known, or can be read in two ways: what does ``N/m s`` divide by?"""
+    """A unit in base units; None where it is not known, or can be read in two ways: what does ``N/m
+    s`` divide by?
+    """
     top, *bottom = text.replace("²", "^2").replace("³", "^3").split("/")
     if any(len(_factors(part)) != 1 for part in bottom):
         return None
@@ -65,7 +67,17 @@ _UNITS = {
     "L": _unit(1e-3, m=3),
     "l": _unit(1e-3, m=3),
 }
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9}
+_PREFIXES = {
+    "G": 1e9,
+    "M": 1e6,
+    "k": 1e3,
+    "d": 1e-1,
+    "c": 1e-2,
+    "m": 1e-3,
+    "u": 1e-6,
+    "µ": 1e-6,
+    "n": 1e-9,
+}
 _PREFIXED = ("g", "m", "s", "A", "K", "mol", "rad", "N", "J", "W", "Pa", "bar", "Hz", "V", "L", "l")
 
 

@@ -32,16 +32,21 @@ _SQUARE = 5.5 * np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 
 
 _FAINT = 0.2
 _AXIS = 0.06
-"""How far the line on which something slides goes beyond where it ever is, over the mechanism's size."""
+"""How far the line on which something slides goes beyond where it ever is, over the mechanism's
+size.
+"""
 
 Box = tuple[float, float, float, float]
 
 
-def draw_mechanism(solution: Solution, count: int, overlay: bool = False, si: bool = False) -> Figure:
-    """The mechanism at ``count`` instants, with the ways of its declared points over the whole time.
+def draw_mechanism(
+    solution: Solution, count: int, overlay: bool = False, si: bool = False
+) -> Figure:
+    """The mechanism at ``count`` instants, with the ways of its declared points over the whole
+    time.
 
-    One beside the other, or with ``overlay`` all in one picture: the first strong, the others faint. Postures that are the same
-    are drawn once.
+    One beside the other, or with ``overlay`` all in one picture: the first strong, the others
+    faint. Postures that are the same are drawn once.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -52,17 +57,25 @@ def draw_mechanism(solution: Solution, count: int, overlay: bool = False, si: bo
     wide, high = box[1] - box[0], box[3] - box[2]
     if overlay:
         first, last = titles[0], titles[-1]
-        words = f"{len(chosen)} postures from {first.replace(chr(10), ', ')} (strong)\nto {last.replace(chr(10), ', ')}"
+        words = (
+            f"{len(chosen)} postures from {first.replace(chr(10), ', ')} (strong)\nto"
+            f" {last.replace(chr(10), ', ')}"
+        )
         titles = [words if len(chosen) > 1 else first]
     columns = 1 if overlay else min(len(chosen), 2 if wide > 0.7 * high else 4)
     rows = 1 if overlay else -(-len(chosen) // columns)
     room = _LARGE if rows * columns == 1 else _TALL
     scale = min(room / wide, room / high, (_PAGE - 0.6 * rows) / (rows * high))
-    broad = max(scale * wide + 0.25, 0.1 + max(_extent_of(line, 10.0) for title in titles for line in title.split("\n")) / 72.0)
+    broad = max(
+        scale * wide + 0.25,
+        0.1 + max(_extent_of(line, 10.0) for title in titles for line in title.split("\n")) / 72.0,
+    )
     lines = 1 + max(title.count("\n") for title in titles)
     names = [shape.name for shape in shapes(solution.description)]
     page = columns * broad + 0.75
-    across = max(1, min(len(names), int(page / (0.55 + max(_extent_of(name, 9.0) for name in names) / 72.0))))
+    across = max(
+        1, min(len(names), int(page / (0.55 + max(_extent_of(name, 9.0) for name in names) / 72.0)))
+    )
     legend = 0.2 + 0.2 * -(-len(names) // across)
     tall = rows * (scale * high + 0.15 + 0.17 * lines) + 0.6 + legend
     figure = Figure(figsize=(page, tall), layout=ConstrainedLayoutEngine(h_pad=0.09))
@@ -81,7 +94,14 @@ def draw_mechanism(solution: Solution, count: int, overlay: bool = False, si: bo
     for place in axes[:, 0]:
         place.set_ylabel(f"y [{scale_for('m', size, si).unit}]")
     handles = dict(zip(*reversed(axes[0, 0].get_legend_handles_labels()), strict=True))
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=across, frameon=False, fontsize=9)
+    figure.legend(
+        handles.values(),
+        handles.keys(),
+        loc="outside lower center",
+        ncols=across,
+        frameon=False,
+        fontsize=9,
+    )
     # Where everything is on the page is known when it is laid out.
     figure.draw_without_rendering()
     for place, i in zip(axes.flat, chosen[:1] if overlay else chosen, strict=False):
@@ -117,14 +137,24 @@ def _extent(solution: Solution) -> tuple[Box, float]:
     """The box that holds all at every instant, and its larger side [m]."""
     description = solution.description
     places = [placed(solution, spot) for spot in drawn_spots(description)]
-    places += [placed(solution, spot) for load in load_shapes(description) if load.kind == "spring" for spot in load.spots]
+    places += [
+        placed(solution, spot)
+        for load in load_shapes(description)
+        if load.kind == "spring"
+        for spot in load.spots
+    ]
     for shape in shapes(description):
         if shape.disc and shape.centre:
             middle = placed(solution, Spot(shape.name, shape.centre))
             places += [middle - shape.disc, middle + shape.disc]
     x, y, _ = np.concatenate(places).T
     size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
-    return (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size), size
+    return (
+        x.min() - 0.12 * size,
+        x.max() + 0.12 * size,
+        y.min() - 0.12 * size,
+        y.max() + 0.12 * size,
+    ), size
 
 
 def _frame(axes: Any, box: Box, si: bool) -> None:
@@ -136,8 +166,12 @@ def _frame(axes: Any, box: Box, si: bool) -> None:
     scale.put(axes.yaxis)
 
 
-def _draw_instant(axes: Any, solution: Solution, i: int, size: float, *, strong: bool = True) -> None:
-    """An instant; where it is not the ``strong`` one without the ground, and so that one sees through it."""
+def _draw_instant(
+    axes: Any, solution: Solution, i: int, size: float, *, strong: bool = True
+) -> None:
+    """An instant; where it is not the ``strong`` one without the ground, and so that one sees
+    through it.
+    """
     now = solution.during(slice(i, i + 1))
     description = solution.description
     look = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
@@ -147,11 +181,20 @@ def _draw_instant(axes: Any, solution: Solution, i: int, size: float, *, strong:
         return place
 
     for number, shape in enumerate(shapes(description)):
-        _draw_body(axes, shape, at, COLOURS[number % len(COLOURS)], look, label=shape.name if strong else "_")
+        _draw_body(
+            axes,
+            shape,
+            at,
+            COLOURS[number % len(COLOURS)],
+            look,
+            label=shape.name if strong else "_",
+        )
     for load in load_shapes(description):
         if load.kind == "spring":
             x, y = np.transpose([at(spot) for spot in load.spots])
-            axes.plot(x, y, **look | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"})
+            axes.plot(
+                x, y, **look | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"}
+            )
     for joint in joint_shapes(description):
         x, y = at(joint.child)
         slides = joint.kind in ("prismatic", "slot")
@@ -159,7 +202,12 @@ def _draw_instant(axes: Any, solution: Solution, i: int, size: float, *, strong:
             _draw_axis(axes, solution, now, joint, size)
         if joint.kind != "prismatic":
             mark, width, fill = ("s", 4, "black") if joint.kind == "weld" else ("o", 7, "white")
-            own = {"markersize": width, "markerfacecolor": fill, "markeredgecolor": "black", "zorder": look["zorder"] + 1}
+            own = {
+                "markersize": width,
+                "markerfacecolor": fill,
+                "markeredgecolor": "black",
+                "zorder": look["zorder"] + 1,
+            }
             axes.plot(x, y, mark, **look | own)
         if strong and not slides and "ground" in (joint.parent.body, joint.child.body):
             axes.plot(x, y - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
@@ -169,17 +217,31 @@ def _draw_instant(axes: Any, solution: Solution, i: int, size: float, *, strong:
         axes.plot(*at(spot), "D", markersize=5, color=PATH, **look | {"zorder": look["zorder"] + 2})
 
 
-def _draw_body(axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, Any], label: str) -> None:
-    """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by which one sees it turn."""
+def _draw_body(
+    axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, Any], label: str
+) -> None:
+    """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by
+    which one sees it turn.
+    """
 
     def line(ends: Sequence[Any], width: float, label: str) -> None:
         x, y = np.transpose([at(Spot(shape.name, end)) for end in ends])
         axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **look)
 
     if shape.kind == "point":
-        axes.plot(*at(Spot(shape.name, (0.0, 0.0, 0.0))), "s", color=colour, markersize=11, label=label, **look)
+        axes.plot(
+            *at(Spot(shape.name, (0.0, 0.0, 0.0))),
+            "s",
+            color=colour,
+            markersize=11,
+            label=label,
+            **look,
+        )
         return
-    for ends in ((shape.axis, 4.0), *((arm, 3.0 if shape.kind == "rigid" else 1.6) for arm in shape.arms)):
+    for ends in (
+        (shape.axis, 4.0),
+        *((arm, 3.0 if shape.kind == "rigid" else 1.6) for arm in shape.arms),
+    ):
         if ends[0]:
             line(ends[0], ends[1] if not shape.plates else 3.2, label)
             label = "_"
@@ -187,7 +249,14 @@ def _draw_body(axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str,
         corners = np.array([at(Spot(shape.name, point)) for point in points])
         face = {"facecolor": colour, "linewidth": 0.0, **look, "alpha": 0.25 * look["alpha"]}
         axes.fill(*corners.T, **face)
-        axes.plot(*np.vstack([corners, corners[:1]]).T, color=colour, linewidth=1.2, solid_joinstyle="round", label=label, **look)
+        axes.plot(
+            *np.vstack([corners, corners[:1]]).T,
+            color=colour,
+            linewidth=1.2,
+            solid_joinstyle="round",
+            label=label,
+            **look,
+        )
         label = "_"
     if shape.spoke and shape.centre:
         line((shape.centre, shape.spoke), 2.0, "_")
@@ -200,7 +269,9 @@ def _circle(shape: Shape) -> Iterator[tuple[float, float, float]]:
         yield x + shape.disc * float(np.cos(angle)), y + shape.disc * float(np.sin(angle)), z
 
 
-def _draw_axis(axes: Any, solution: Solution, now: Solution, joint: JointShape, size: float) -> None:
+def _draw_axis(
+    axes: Any, solution: Solution, now: Solution, joint: JointShape, size: float
+) -> None:
     """The line on which something slides, as far as it ever does."""
     parent = placed(now, joint.parent)[0, :2]
     (x, y, z), (dx, dy, _) = joint.parent.at, joint.axes[0]
@@ -209,28 +280,58 @@ def _draw_axis(axes: Any, solution: Solution, now: Solution, joint: JointShape, 
     along = placed(solution, joint.child) - placed(solution, joint.parent)
     ways = placed(solution, ahead) - placed(solution, joint.parent)
     reach = np.concatenate([np.sum(along * ways, axis=1), [0.0] if joint.kind == "slot" else []])
-    ends = parent + np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])[:, None] * way
+    ends = (
+        parent + np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])[:, None] * way
+    )
     axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
 
 
 def _name(axes: Any, solution: Solution, i: int, size: float) -> None:
-    """Write the names beside their points, where they hide neither each other nor more of the bodies than they must."""
+    """Write the names beside their points, where they hide neither each other nor more of the
+    bodies than they must.
+    """
     points = 72.0 / axes.figure.dpi
     now = solution.during(slice(i, i + 1))
     named = _labels(now, size)
     words = [", ".join(names) for names in named.values()]
     sizes = np.array([(_extent_of(word, _POINTS) + 1.0, 1.2 * _POINTS) for word in words])
     anchors = axes.transData.transform(np.array(list(named))) * points
-    things = axes.transData.transform(np.concatenate([*_lines(now), np.array(list(named))])) * points
-    blocks = [placed(now, Spot(shape.name, (0.0, 0.0, 0.0)))[:, :2] for shape in shapes(now.description) if shape.kind == "point"]
-    things = np.concatenate([things, *(axes.transData.transform(block) * points + _SQUARE for block in blocks)])
+    things = (
+        axes.transData.transform(np.concatenate([*_lines(now), np.array(list(named))])) * points
+    )
+    blocks = [
+        placed(now, Spot(shape.name, (0.0, 0.0, 0.0)))[:, :2]
+        for shape in shapes(now.description)
+        if shape.kind == "point"
+    ]
+    things = np.concatenate(
+        [things, *(axes.transData.transform(block) * points + _SQUARE for block in blocks)]
+    )
     (left, bottom), (right, top) = axes.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * points
     corners = labelled(anchors, sizes, things, (left, bottom, right, top))
     for word, spot, anchor, low, wide in zip(words, named, anchors, corners, sizes, strict=True):
         own = apart(low, wide, anchor)
         far = own > 10.0 or sum(apart(low, wide, other) < 2.0 * own for other in anchors) > 1
-        line = {"arrowprops": {"arrowstyle": "-", "color": "0.5", "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}} if far else {}
-        words_at = {"xytext": low - anchor, "textcoords": "offset points", "fontsize": _POINTS, "color": "0.2", "zorder": 6}
+        line = (
+            {
+                "arrowprops": {
+                    "arrowstyle": "-",
+                    "color": "0.5",
+                    "linewidth": 0.5,
+                    "shrinkA": 0.0,
+                    "shrinkB": 0.0,
+                }
+            }
+            if far
+            else {}
+        )
+        words_at = {
+            "xytext": low - anchor,
+            "textcoords": "offset points",
+            "fontsize": _POINTS,
+            "color": "0.2",
+            "zorder": 6,
+        }
         axes.annotate(word, spot, **words_at, **line).set_in_layout(False)
 
 
@@ -240,7 +341,12 @@ def _lines(now: Solution) -> Iterator[Array]:
     for shape in shapes(now.description):
         edges = [(plate[k - 1], plate[k]) for plate in shape.plates for k in range(len(plate))]
         rim = list(_circle(shape)) if shape.disc else []
-        for start, stop in (*([shape.axis] if shape.axis else []), *shape.arms, *edges, *pairwise(rim)):
+        for start, stop in (
+            *([shape.axis] if shape.axis else []),
+            *shape.arms,
+            *edges,
+            *pairwise(rim),
+        ):
             a, b = (placed(now, Spot(shape.name, end))[0, :2] for end in (start, stop))
             yield a + share * (b - a)
 
@@ -248,9 +354,13 @@ def _lines(now: Solution) -> Iterator[Array]:
 def _labels(now: Solution, size: float) -> dict[tuple[float, float], list[str]]:
     """The joints' and declared points' names by place, those at one place together."""
     found: dict[tuple[float, float], list[str]] = {}
-    spots = {joint.name: joint.child for joint in joint_shapes(now.description)} | path_spots(now.description)
+    spots = {joint.name: joint.child for joint in joint_shapes(now.description)} | path_spots(
+        now.description
+    )
     for name, spot in spots.items():
         x, y = placed(now, spot)[0, :2].tolist()
-        near = next((at for at in found if max(abs(at[0] - x), abs(at[1] - y)) < 1e-3 * size), (x, y))
+        near = next(
+            (at for at in found if max(abs(at[0] - x), abs(at[1] - y)) < 1e-3 * size), (x, y)
+        )
         found.setdefault(near, []).append(name)
     return found

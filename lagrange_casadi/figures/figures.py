@@ -1,4 +1,6 @@
-"""Pictures of a solution, by the specs that say what is drawn (:mod:`.shapes.specs`); matplotlib is imported when one is drawn."""
+"""Pictures of a solution, by the specs that say what is drawn (:mod:`.shapes.specs`); matplotlib is
+imported when one is drawn.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,16 @@ from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.solution import Peak, Solution
 from ..shapes.pictures import one_at_a_time, save
 from ..shapes.readable import scale_for
-from ..shapes.specs import DeflectionPlot, MechanismDrawing, SectionMaps, SpanPlot, Spec, StrengthPlot, TimePlot, UtilisationPlot
+from ..shapes.specs import (
+    DeflectionPlot,
+    MechanismDrawing,
+    SectionMaps,
+    SpanPlot,
+    Spec,
+    StrengthPlot,
+    TimePlot,
+    UtilisationPlot,
+)
 from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
 
 if TYPE_CHECKING:
@@ -38,20 +49,32 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     specs: list[Spec] = []
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
-        drawn = output.group in ("effort", "reaction", "multiplier", "load", "friction", "output") or output == Output(
-            "motion", output.part
-        )
+        drawn = output.group in (
+            "effort",
+            "reaction",
+            "multiplier",
+            "load",
+            "friction",
+            "output",
+        ) or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
             own = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if own and all(solution.determined(other) for other in _in_ground_axes(output)):
                 continue
-            # Force and moment of a joint are one picture, and so is all of a declared point: its place, speed and acceleration.
+            # Force and moment of a joint are one picture, and so is all of a declared point: its
+            # place, speed and acceleration.
             point = output.part.rpartition("_")[0]
-            part = point if output.group == "output" and point in solution.description.get("paths", {}) else output.part
+            part = (
+                point
+                if output.group == "output" and point in solution.description.get("paths", {})
+                else output.part
+            )
             groups.setdefault((f"{output.group}{own}", part), []).append(str(output))
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
-        specs.append(TimePlot(f"{group}_{part.replace(':', '-')}", tuple(names), f"{solution.case}: {what}"))
+        specs.append(
+            TimePlot(f"{group}_{part.replace(':', '-')}", tuple(names), f"{solution.case}: {what}")
+        )
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
@@ -60,7 +83,9 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     if links or joints:
         specs.append(UtilisationPlot("utilisation", links, joints))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in bending_of(solution)]
-    overlay = () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
+    overlay = (
+        () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
+    )
     return (*specs, *overlay, MechanismDrawing())
 
 
@@ -73,17 +98,22 @@ def _in_ground_axes(output: Output) -> Iterator[Output]:
 def draw(
     solution: Solution, specs: Sequence[Spec], folder: str | os.PathLike[str], si: bool = False
 ) -> Iterator[tuple[Spec, Path | None]]:
-    """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by one.
+    """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by
+    one.
 
-    Axes have the units that people read, as kN and mm where numbers call for them; with ``si`` those of SI, without prefixes.
-    The path is None where the solution lacks what a spec draws. Raises :class:`DeclarationError` for what is no spec.
+    Axes have the units that people read, as kN and mm where numbers call for them; with ``si``
+    those of SI, without prefixes. The path is None where the solution lacks what a spec draws.
+    Raises :class:`DeclarationError` for what is no spec.
     """
     chosen, folder = specs or default_figures(solution), Path(folder)
     for spec in chosen:
         if not isinstance(spec, Spec):
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
-            raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
+            raise DeclarationError(
+                f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each"
+                " name once"
+            )
         _check_parts(solution, spec)
     if not os.path.isdir(folder):
         raise PathError(f"draw: expected an existing folder, got {shown(folder)}")
@@ -107,9 +137,15 @@ def _check_parts(solution: Solution, spec: Spec) -> None:
 
 def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
-        return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
+        return all(
+            Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"]
+        )
     names = set(solution.names())
-    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components(solution.table))
+    return all(
+        str(component) in names
+        for name in spec.needs()
+        for component in Output.of(name).components(solution.table)
+    )
 
 
 @one_at_a_time()
@@ -128,7 +164,16 @@ def _time(spec: TimePlot, solution: Solution, si: bool) -> Figure:
             _draw_time(spec, axes, solution, name)
         first, last = axes is panels[0], axes is panels[-1]
         title = (spec.title or spec.quantities[0]) if first else ""
-        _finish(figure, axes, solution, names, title, spec.note if last else "", _along(solution)[1] if last else "", si)
+        _finish(
+            figure,
+            axes,
+            solution,
+            names,
+            title,
+            spec.note if last else "",
+            _along(solution)[1] if last else "",
+            si,
+        )
     return figure
 
 
@@ -148,9 +193,15 @@ def _span(spec: SpanPlot, solution: Solution, si: bool) -> Figure:
     figure, (axes,) = _figure()
     i = int(np.argmin(np.abs(solution.t - spec.t)))
     output = Output.of(spec.quantity)
-    values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
+    values = (
+        solution.section(output.part)
+        .law.during(slice(i, i + 1))
+        .on_grid(output.member, solution.xi)
+    )
     axes.plot(solution.xi, spec.factor * values[0])
-    at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
+    at = f"t = {solution.t[i]:.4g} s" + (
+        f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
+    )
     title = f"{spec.title}, {at}" if spec.title else at
     _finish(figure, axes, solution, [spec.quantity], title, spec.note, r"$\xi/l$", si)
     return figure
@@ -164,7 +215,9 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
     across = 1 if solution.table is PLANE else 2
     down = -(-len(names) // across)
     figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
-    instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
+    instants, ratios = (
+        slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size)
+    )
     law, xi = solution.section(spec.link).law.during(instants), solution.xi[ratios]
     places, along = _along(solution)
     basis = law.basis(xi)
@@ -174,7 +227,14 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
         bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
         colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
         picture = axes.pcolormesh(
-            places[instants], xi, values.T, cmap=colours, vmin=least, vmax=bound, shading="nearest", rasterized=True
+            places[instants],
+            xi,
+            values.T,
+            cmap=colours,
+            vmin=least,
+            vmax=bound,
+            shading="nearest",
+            rasterized=True,
         )
         scale = scale_for(peak.unit, abs(peak.value), si)
         x, at = _place_of(peak, solution)
@@ -185,13 +245,18 @@ def _maps(spec: SectionMaps, solution: Solution, si: bool) -> Figure:
             fontsize=10,
         )
         axes.set_ylabel(r"$\xi/l$")
-        bar = figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]")
+        bar = figure.colorbar(
+            picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]"
+        )
         scale.put(bar.ax.yaxis)
     for axes in plots[-across:]:
         axes.set_xlabel(along)
     for axes in plots[len(names) :]:
         axes.set_axis_off()
-    figure.suptitle(f"{solution.case}: section forces of {spec.link}, as the tip's side acts on the base's", fontsize=11)
+    figure.suptitle(
+        f"{solution.case}: section forces of {spec.link}, as the tip's side acts on the base's",
+        fontsize=11,
+    )
     return figure
 
 
@@ -234,7 +299,9 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
 
 
 def _along(solution: Solution) -> tuple[Array, str]:
-    """What instants are drawn over: their times, or the coordinate by which they were asked for, an angle in degrees."""
+    """What instants are drawn over: their times, or the coordinate by which they were asked for, an
+    angle in degrees.
+    """
     if solution.over is None:
         return solution.t, "t [s]"
     return solution.over.drawn(solution.over.values), solution.over.label
@@ -256,16 +323,30 @@ def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
 
 
 def _finish(
-    figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str, si: bool
+    figure: Figure,
+    axes: Any,
+    solution: Solution,
+    names: Sequence[str],
+    title: str,
+    note: str,
+    along: str,
+    si: bool,
 ) -> None:
     axes.set_xlabel(along)
     shown = map(Output.of, names)
-    words = [o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0] for o in shown]
+    words = [
+        o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0]
+        for o in shown
+    ]
     curves = axes.get_lines()
     if len(curves) > 1:
         words = list(dict.fromkeys(word.partition(",")[0] for word in words))
     sizes = [np.abs(curve.get_ydata()) for curve in curves]
-    scale = scale_for(solution.unit(names[0]), max((float(np.nanmax(s, initial=0.0)) for s in sizes), default=0.0), si)
+    scale = scale_for(
+        solution.unit(names[0]),
+        max((float(np.nanmax(s, initial=0.0)) for s in sizes), default=0.0),
+        si,
+    )
     scale.put(axes.yaxis)
     axes.set_ylabel("\n".join(textwrap.wrap(f"{', '.join(words)} [{scale.unit}]", _LABEL)))
     axes.set_title(title, fontsize=11)

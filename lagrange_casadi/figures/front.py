@@ -33,13 +33,34 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
         axes.plot(x[feasible], y[feasible], "o", color="tab:blue", ms=5)
         axes.plot(x[~feasible], y[~feasible], "x", color="tab:red", ms=6)
         for k in shown:
-            axes.annotate(f"{k + 1}", (x[k], y[k]), textcoords="offset points", xytext=(6, 6), fontsize=9)
-        axes.set(xlabel=f"{front.minimised[number]} [{front.units[number]}]", ylabel=f"{front.minimised[0]} [{front.units[0]}]")
+            axes.annotate(
+                f"{k + 1}", (x[k], y[k]), textcoords="offset points", xytext=(6, 6), fontsize=9
+            )
+        axes.set(
+            xlabel=f"{front.minimised[number]} [{front.units[number]}]",
+            ylabel=f"{front.minimised[0]} [{front.units[0]}]",
+        )
         axes.grid(True, color="0.93")
-    figure.suptitle(f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}", fontsize=11)
+    figure.suptitle(
+        f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}",
+        fontsize=11,
+    )
     for column, k in enumerate(shown):
         axes = figure.add_subplot(below[0, column])
         optimum = front.points[k].optimum
-        draw_into(axes, evaluate(scene, parameters=optimum.parameters, wanted=["motion"], backend="vm", certificate=False))
-        axes.set_title(f"{k + 1}: {', '.join(f'{name} = {value:.5g}' for name, value in optimum.values.items())}", fontsize=9)
+        draw_into(
+            axes,
+            evaluate(
+                scene,
+                parameters=optimum.parameters,
+                wanted=["motion"],
+                backend="vm",
+                certificate=False,
+            ),
+        )
+        axes.set_title(
+            f"{k + 1}:"
+            f" {', '.join(f'{name} = {value:.5g}' for name, value in optimum.values.items())}",
+            fontsize=9,
+        )
     save(figure, file, ending)

@@ -10,5 +10,7 @@ from . import drawing, space_drawing
 
 
 def draw_into(axes: Any, solution: Solution) -> None:
-    """The mechanism at its first instant, into axes of a figure; in space as it is seen from one side."""
+    """The mechanism at its first instant, into axes of a figure; in space as it is seen from one
+    side.
+    """
     (space_drawing if solution.table is SPACE else drawing).draw_into(axes, solution)

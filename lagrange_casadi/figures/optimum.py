@@ -1,4 +1,6 @@
-"""The picture of a search: how it went, the mechanism before and after, and what the limits cost."""
+"""The picture of a search: how it went, the mechanism before and after,
+and what the limits cost.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,10 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     before = dict(optimum.parameters) | dict(optimum.start.values)
     for column, (title, values) in enumerate((("start", before), ("optimum", optimum.parameters))):
         axes = figure.add_subplot(grid[0, column])
-        draw_into(axes, evaluate(scene, parameters=values, wanted=["motion"], backend="vm", certificate=False))
+        draw_into(
+            axes,
+            evaluate(scene, parameters=values, wanted=["motion"], backend="vm", certificate=False),
+        )
         told = ", ".join(f"{name} = {values[name]:.5g}" for name in optimum.values)
         axes.set_title(f"{title}: {told}", fontsize=10)
     axes = figure.add_subplot(grid[1, 0])
@@ -47,10 +52,14 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
     lines = [f"{optimum.minimised} = {optimum.objective:.6g} {optimum.unit}", ""]
     for limit in optimum.limits:
         mark = "active" if limit.active else ""
-        lines.append(f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {mark:<6} {limit.multiplier:>11.4g}")
+        lines.append(
+            f"{limit.constraint!s:<{_TEXT}} {limit.value:>11.5g} {mark:<6}"
+            f" {limit.multiplier:>11.4g}"
+        )
     for name, multiplier in optimum.bounds.items():
         lines.append(
-            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g} {'active' * bool(multiplier):<6} {multiplier:>11.4g}"
+            f"{'bounds of ' + name:<{_TEXT}} {optimum.values[name]:>11.5g}"
+            f" {'active' * bool(multiplier):<6} {multiplier:>11.4g}"
         )
     table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
     table.set_title("limits: value, whether active, multiplier", fontsize=10, loc="left")

@@ -1,4 +1,6 @@
-"""The ways in which a mechanism can be assembled, side by side, each with the posture that chooses it."""
+"""The ways in which a mechanism can be assembled, side by side, each with the posture that chooses
+it.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,11 @@ _MOST, _LARGE = 8, 40
 
 @one_at_a_time()
 def draw_postures(scene: Scene, file: BinaryIO) -> int:
-    """Draw the ways in which a scene that leaves them open can be assembled at its start, up to eight, as PNG; how many there are.
+    """Draw the ways in which a scene that leaves them open can be assembled at its start, up to
+    eight, as PNG; how many there are.
 
-    Nothing is written where there is none, or where some loop lacks rough values to be iterated from.
+    Nothing is written where there is none, or where some loop lacks rough values to be iterated
+    from.
     """
     from matplotlib.figure import Figure
 
@@ -45,7 +49,9 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
 
 
 def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
-    """Each way to assemble a scene at its start, as the entries of its posture in words, and its motion at that instant."""
+    """Each way to assemble a scene at its start, as the entries of its posture in words, and its
+    motion at that instant.
+    """
     waiting: list[Mapping[str, float]] = [scene.posture]
     many = 0
     while waiting and many < _MOST:
@@ -54,7 +60,11 @@ def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
             one = replace(scene, posture=posture, t=(scene.t[0], scene.t[0], 1), wanted=("motion",))
             solution = evaluate(one, backend="vm", certificate=False)
         except PostureError as error:
-            if error.ways and not any(name in posture and name not in scene.posture for way in error.ways[0] for name in way):
+            if error.ways and not any(
+                name in posture and name not in scene.posture
+                for way in error.ways[0]
+                for name in way
+            ):
                 waiting = [dict(posture) | dict(way) for way in error.ways[0]] + waiting
             continue
         except AssemblyError:
@@ -62,9 +72,20 @@ def assemblies(scene: Scene) -> Iterator[tuple[str, Solution]]:
         if len(solution.description["bodies"]) > _LARGE:
             return
         many += 1
-        slides = {name for name, kind in coordinates_of(solution.description).items() if kind == "slide"}
-        yield ", ".join(_entry(name, value, slides=name in slides) for name, value in posture.items()), solution
+        slides = {
+            name for name, kind in coordinates_of(solution.description).items() if kind == "slide"
+        }
+        yield (
+            ", ".join(
+                _entry(name, value, slides=name in slides) for name, value in posture.items()
+            ),
+            solution,
+        )
 
 
 def _entry(name: str, value: float, *, slides: bool) -> str:
-    return f"'{name}': {value:.6g}" if slides else f"'{name}': '{round(math.degrees(value), 4) + 0.0:.6g} deg'"
+    return (
+        f"'{name}': {value:.6g}"
+        if slides
+        else f"'{name}': '{round(math.degrees(value), 4) + 0.0:.6g} deg'"
+    )

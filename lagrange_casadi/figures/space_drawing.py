@@ -1,4 +1,6 @@
-"""A mechanism in space, drawn from a solution's poses and its description: four orthographic views to one scale."""
+"""A mechanism in space, drawn from a solution's poses and its description: four orthographic views
+to one scale.
+"""
 
 from __future__ import annotations
 
@@ -47,18 +49,27 @@ _ROW = 0.21
 _ARROW = 26.0
 """How long the ground's axes are shown [pt]."""
 
-_RING = 4.5 * np.array([(0.0, 0.0), *((np.cos(angle), np.sin(angle)) for angle in np.linspace(0.0, 2.0 * np.pi, 9)[:-1])])
+_RING = 4.5 * np.array(
+    [
+        (0.0, 0.0),
+        *((np.cos(angle), np.sin(angle)) for angle in np.linspace(0.0, 2.0 * np.pi, 9)[:-1]),
+    ]
+)
 """Points of a joint's mark, against its middle [pt]."""
 
 Box = tuple[float, float, float, float]
 """What a picture shows: left, right, bottom and top [m]."""
 
 
-def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: float, si: bool = False) -> Figure:
-    """The mechanism at ``count`` instants, the first strong and the others faint, from four sides, with declared points' ways.
+def draw_in_space(
+    solution: Solution, count: int, azimuth: float, elevation: float, si: bool = False
+) -> Figure:
+    """The mechanism at ``count`` instants, the first strong and the others faint, from four sides,
+    with declared points' ways.
 
-    The views from above, from the front and from the right are in third-angle projection; that at the upper right is from
-    ``azimuth`` and ``elevation`` [deg], as :func:`.view` counts them, and names the joints.
+    The views from above, from the front and from the right are in third-angle projection; that at
+    the upper right is from ``azimuth`` and ``elevation`` [deg], as :func:`.view` counts them, and
+    names the joints.
     """
     from matplotlib.figure import Figure
 
@@ -70,21 +81,39 @@ def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: flo
     entries = _entries(solution)
     widest = max(0.62 + 0.075 * len(name) for name, _ in entries)
     columns = max(1, min(len(entries), int(9.5 / widest)))
-    told = textwrap.wrap(f"{solution.case}: {_instants(solution, chosen)}; orthographic, all views to one scale", 110)
+    told = textwrap.wrap(
+        f"{solution.case}: {_instants(solution, chosen)}; orthographic, all views to one scale", 110
+    )
     foot = 0.1 + _ROW * -(-len(entries) // columns)
-    sheet = page(four, cloud, (0.1 * size, 0.16 * size, 0.1 * size, 0.1 * size), 0.15 + _ROW * len(told), foot)
+    sheet = page(
+        four,
+        cloud,
+        (0.1 * size, 0.16 * size, 0.1 * size, 0.1 * size),
+        0.15 + _ROW * len(told),
+        foot,
+    )
     figure = Figure(figsize=sheet.size)
     for one, place, box in zip(four, sheet.places, sheet.boxes, strict=True):
         left, bottom, wide, high = (value / sheet.size[k % 2] for k, value in enumerate(place))
         axes = figure.add_axes((left, bottom, wide, high))
         _frame(axes, one, box, place[2:], scale_for("m", size, si))
         for k in reversed(chosen):
-            _draw_instant(axes, one, solution.during(slice(k, k + 1)), thin, size, strong=k == chosen[0])
+            _draw_instant(
+                axes, one, solution.during(slice(k, k + 1)), thin, size, strong=k == chosen[0]
+            )
         _draw_paths(axes, one, thin)
         if one is four[1]:
             _tell(axes, one, solution.during(slice(0, 1)), thin, size, box, 72.0 * sheet.scale)
     handles, names = [handle for _, handle in entries], [name for name, _ in entries]
-    figure.legend(handles, names, loc="lower center", ncols=columns, frameon=False, fontsize=9, labelspacing=0.35)
+    figure.legend(
+        handles,
+        names,
+        loc="lower center",
+        ncols=columns,
+        frameon=False,
+        fontsize=9,
+        labelspacing=0.35,
+    )
     figure.suptitle("\n".join(told), fontsize=11, y=1.0 - 0.12 / sheet.size[1], va="top")
     return figure
 
@@ -100,10 +129,15 @@ def draw_into(axes: Any, solution: Solution) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel(one.title, fontsize=8)
     _draw_instant(axes, one, now, solution, size, strong=True)
-    # How large the axes will be is not known yet: as if they were as large as they are drawn in a column of two.
+    # How large the axes will be is not known yet: as if they were as large as they are drawn in a
+    # column of two.
     scale = 72.0 * min(4.6 / (box[1] - box[0]), 3.4 / (box[3] - box[2]))
     _tell(axes, one, now, solution, size, box, scale)
-    named = [(name, handle) for name, handle in _entries(solution) if name in solution.description["bodies"]]
+    named = [
+        (name, handle)
+        for name, handle in _entries(solution)
+        if name in solution.description["bodies"]
+    ]
     tell_bodies(axes.figure, [handle for _, handle in named], [name for name, _ in named])
 
 
@@ -113,13 +147,17 @@ def _size(cloud: Array) -> float:
 
 def _instants(solution: Solution, chosen: list[int]) -> str:
     told = [
-        f"{solution.t[i]:.4g} s" + (f" ({solution.over.shown(solution.over.values[i])})" if solution.over else "") for i in chosen
+        f"{solution.t[i]:.4g} s"
+        + (f" ({solution.over.shown(solution.over.values[i])})" if solution.over else "")
+        for i in chosen
     ]
     return f"t = {told[0]}" + (f", and faint {', '.join(told[1:])}" if told[1:] else "")
 
 
 def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
-    """What a picture shows, and its scales, which have as many numbers as there is room for on its ``size`` [inch]."""
+    """What a picture shows, and its scales, which have as many numbers as there is room for on its
+    ``size`` [inch].
+    """
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     axes.set(xlim=box[:2], ylim=box[2:])
@@ -129,7 +167,9 @@ def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) 
         axes.set(xticks=[], yticks=[])
         return
     axes.grid(True, color="0.93")
-    for axis, name, most in zip((axes.xaxis, axes.yaxis), one.coordinates, (size[0] / 0.7, size[1] / 0.4), strict=True):
+    for axis, name, most in zip(
+        (axes.xaxis, axes.yaxis), one.coordinates, (size[0] / 0.7, size[1] / 0.4), strict=True
+    ):
         axis.set_major_locator(MaxNLocator(max(1, min(6, int(most)))))
         axis.set_label_text(f"{name[-1]} [{scale.unit}]")
         if name.startswith("-"):
@@ -139,14 +179,23 @@ def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) 
     axes.tick_params(labelsize=8)
 
 
-def _draw_instant(axes: Any, one: View, now: Solution, thin: Solution, size: float, *, strong: bool) -> None:
+def _draw_instant(
+    axes: Any, one: View, now: Solution, thin: Solution, size: float, *, strong: bool
+) -> None:
     """A solution's first instant; axes of joints only where it is the ``strong`` one."""
     from matplotlib.markers import CARETUP
 
     alpha, behind = (1.0, 0) if strong else (_FAINT, -6)
     for body, corners in plates_of(now):
         x, y = one.on_page(corners).T
-        axes.fill(x, y, facecolor=colour_of(now, body), alpha=0.25 * alpha, linewidth=0.0, zorder=12 + behind)
+        axes.fill(
+            x,
+            y,
+            facecolor=colour_of(now, body),
+            alpha=0.25 * alpha,
+            linewidth=0.0,
+            zorder=12 + behind,
+        )
     lines: list[Line] = [*lines_of(now), *(axes_of(now, thin, size) if strong else ())]
     for line in lines:
         x, y = one.on_page(line.points).T
@@ -178,7 +227,16 @@ def _draw_instant(axes: Any, one: View, now: Solution, thin: Solution, size: flo
         )
     for place in grounds_of(now) if strong else ():
         x, y = one.on_page(place)
-        axes.plot(x, y, marker=CARETUP, markersize=11, color="0.55", zorder=11, linestyle="none", label="_")
+        axes.plot(
+            x,
+            y,
+            marker=CARETUP,
+            markersize=11,
+            color="0.55",
+            zorder=11,
+            linestyle="none",
+            label="_",
+        )
 
 
 def _draw_paths(axes: Any, one: View, thin: Solution) -> None:
@@ -187,8 +245,11 @@ def _draw_paths(axes: Any, one: View, thin: Solution) -> None:
         axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
 
 
-def _tell(axes: Any, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float) -> None:
-    """The directions of the ground's axes, and the names of joints and declared points at a solution's first instant.
+def _tell(
+    axes: Any, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float
+) -> None:
+    """The directions of the ground's axes, and the names of joints and declared points at a
+    solution's first instant.
 
     ``box`` is what the picture shows [m], ``scale`` in points a metre [pt/m].
     """
@@ -201,29 +262,76 @@ def _tell(axes: Any, one: View, now: Solution, thin: Solution, size: float, box:
     triad = _triad_at(spots(cloud_of(thin)), edge)
     lines = [spots(_along(line.points)) for line in (*lines_of(now), *axes_of(now, now, size))]
     marks = spots(np.array([mark.place for mark in marks_of(now)]))[:, None] + _RING
-    stands = [spots(place)[None] - [[-4.0, 6.0], [0.0, 6.0], [4.0, 6.0]] for place in grounds_of(now)]
-    things = np.concatenate([*lines, marks.reshape(-1, 2), *stands, triad + _ARROW * np.array([[-1, -1], [0, 0], [1, 1]])])
+    stands = [
+        spots(place)[None] - [[-4.0, 6.0], [0.0, 6.0], [4.0, 6.0]] for place in grounds_of(now)
+    ]
+    things = np.concatenate(
+        [
+            *lines,
+            marks.reshape(-1, 2),
+            *stands,
+            triad + _ARROW * np.array([[-1, -1], [0, 0], [1, 1]]),
+        ]
+    )
     _draw_triad(axes, one, triad, box, scale)
-    _name(axes, {name: spots(places[0]) for name, places in paths_of(now).items()}, things, edge, box, scale)
+    _name(
+        axes,
+        {name: spots(places[0]) for name, places in paths_of(now).items()},
+        things,
+        edge,
+        box,
+        scale,
+    )
 
 
 def _triad_at(cloud: Array, edge: Sequence[float]) -> Array:
     """Where the ground's axes are shown: in the corner of a picture around which least is [pt]."""
     inside = 1.5 * _ARROW
-    corners = [(x, y) for y in (edge[1] + inside, edge[3] - inside) for x in (edge[0] + inside, edge[2] - inside)]
-    return np.array(min(corners, key=lambda corner: np.sum(np.max(np.abs(cloud - corner), axis=1) < 1.7 * _ARROW)))
+    corners = [
+        (x, y)
+        for y in (edge[1] + inside, edge[3] - inside)
+        for x in (edge[0] + inside, edge[2] - inside)
+    ]
+    return np.array(
+        min(
+            corners,
+            key=lambda corner: np.sum(np.max(np.abs(cloud - corner), axis=1) < 1.7 * _ARROW),
+        )
+    )
 
 
 def _draw_triad(axes: Any, one: View, spot: Array, box: Box, scale: float) -> None:
     at = np.array([box[0], box[2]]) + spot / scale
     for name, axis in zip("xyz", np.eye(3), strict=True):
         end = at + _ARROW / scale * one.on_page(axis)
-        axes.annotate("", end, at, arrowprops={"arrowstyle": "->", "color": "0.3", "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0})
-        axes.text(*(at + 1.28 * (end - at)), name, fontsize=8, color="0.3", ha="center", va="center")
+        axes.annotate(
+            "",
+            end,
+            at,
+            arrowprops={
+                "arrowstyle": "->",
+                "color": "0.3",
+                "linewidth": 1.0,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+        )
+        axes.text(
+            *(at + 1.28 * (end - at)), name, fontsize=8, color="0.3", ha="center", va="center"
+        )
 
 
-def _name(axes: Any, spots: Mapping[str, Array], things: Array, edge: Sequence[float], box: Box, scale: float) -> None:
-    """Write names beside their spots [pt], those at one spot together, with a line to it where it may be taken for another's."""
+def _name(
+    axes: Any,
+    spots: Mapping[str, Array],
+    things: Array,
+    edge: Sequence[float],
+    box: Box,
+    scale: float,
+) -> None:
+    """Write names beside their spots [pt], those at one spot together, with a line to it where it
+    may be taken for another's.
+    """
     from matplotlib.textpath import TextPath
 
     at: list[Array] = []
@@ -236,12 +344,27 @@ def _name(axes: Any, spots: Mapping[str, Array], things: Array, edge: Sequence[f
             at.append(spot)
             words.append(name)
     texts = ["\n".join(textwrap.wrap(word, 34)) for word in words]
-    extents = [[TextPath((0, 0), line, size=_POINTS).get_extents() for line in text.split("\n")] for text in texts]
-    sizes = np.array([(max(e.width for e in lines) + 1.0, 1.25 * _POINTS * len(lines)) for lines in extents])
+    extents = [
+        [TextPath((0, 0), line, size=_POINTS).get_extents() for line in text.split("\n")]
+        for text in texts
+    ]
+    sizes = np.array(
+        [(max(e.width for e in lines) + 1.0, 1.25 * _POINTS * len(lines)) for lines in extents]
+    )
     anchors, corner = np.array(at), np.array([box[0], box[2]])
-    for text, spot, low, size in zip(texts, anchors, placed(anchors, sizes, things, edge), sizes, strict=True):
+    for text, spot, low, size in zip(
+        texts, anchors, placed(anchors, sizes, things, edge), sizes, strict=True
+    ):
         x, y = corner + low / scale
-        axes.text(x, y + 0.22 * _POINTS / scale, text, fontsize=_POINTS, color="0.15", zorder=30, va="bottom")
+        axes.text(
+            x,
+            y + 0.22 * _POINTS / scale,
+            text,
+            fontsize=_POINTS,
+            color="0.15",
+            zorder=30,
+            va="bottom",
+        )
         own = apart(low, size, spot)
         if own > 9.0 or sum(apart(low, size, other) < 2.0 * own for other in anchors) > 1:
             line = corner + np.array([np.clip(spot, low, low + size), spot]) / scale
@@ -264,14 +387,36 @@ def _entries(solution: Solution) -> list[tuple[str, Any]]:
     for name in description["bodies"]:
         block = name in blocks
         found.append(
-            (name, Line2D([], [], color=colour_of(solution, name), linewidth=0 if block else 3, marker="s" if block else ""))
+            (
+                name,
+                Line2D(
+                    [],
+                    [],
+                    color=colour_of(solution, name),
+                    linewidth=0 if block else 3,
+                    marker="s" if block else "",
+                ),
+            )
         )
     for kind in dict.fromkeys(joint["kind"] for joint in description["joints"].values()):
         shape, fill, size = MARKS[kind]
-        mark = Line2D([], [], linestyle="none", marker=shape, markerfacecolor=fill, markeredgecolor="black", markersize=size)
+        mark = Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker=shape,
+            markerfacecolor=fill,
+            markeredgecolor="black",
+            markersize=size,
+        )
         found.append((f"{kind} joint", mark))
     if any(load["kind"] == "spring" for load in description["loads"].values()):
         found.append(("spring", Line2D([], [], color=SPRING, linewidth=1.3, linestyle=":")))
     if description.get("paths"):
-        found.append(("declared point", Line2D([], [], color=PATH, marker="D", markersize=4.5, linewidth=1.4)))
+        found.append(
+            (
+                "declared point",
+                Line2D([], [], color=PATH, marker="D", markersize=4.5, linewidth=1.4),
+            )
+        )
     return found

@@ -22,7 +22,8 @@ _THINNED = 2000
 
 
 def stills(solution: Solution, count: int) -> list[int]:
-    """The numbers of at most ``count`` instants, evenly spread over the motion until it repeats itself; no posture is there twice.
+    """The numbers of at most ``count`` instants, evenly spread over the motion until it repeats
+    itself; no posture is there twice.
 
     Of a motion that does not return to its start both ends are among them.
     """
@@ -33,7 +34,10 @@ def stills(solution: Solution, count: int) -> list[int]:
     thin = solution.during(slice(None, None, step))
     cloud = _cloud(thin, (*drawn_spots(thin.description), *spokes(thin.description)))
     size = float(np.ptp(cloud, axis=(0, 1)).max()) or 1.0
-    cloud = np.concatenate([cloud, *(_cloud(thin, [end]) for end in _ends_of_axes(thin.description, _SHOWN * size))], axis=1)
+    cloud = np.concatenate(
+        [cloud, *(_cloud(thin, [end]) for end in _ends_of_axes(thin.description, _SHOWN * size))],
+        axis=1,
+    )
     turn = _period(cloud, size)
     ends = np.linspace(0, turn, count + 1)[:-1] if turn else np.linspace(0, len(cloud) - 1, count)
     found: list[int] = []
@@ -49,16 +53,22 @@ def _cloud(solution: Solution, spots: Iterable[Spot]) -> Array:
 
 
 def _ends_of_axes(description: Description, reach: float) -> Iterator[Spot]:
-    """Where axes of joints end on the bodies that carry them: by these one sees a shaft turn, whose points stay where they are."""
+    """Where axes of joints end on the bodies that carry them: by these one sees a shaft turn, whose
+    points stay where they are.
+    """
     for joint in joint_shapes(description):
-        carried = [(joint.parent, axis) for axis in joint.axes[:1]] + ([(joint.child, joint.second)] if joint.second else [])
+        carried = [(joint.parent, axis) for axis in joint.axes[:1]] + (
+            [(joint.child, joint.second)] if joint.second else []
+        )
         for spot, axis in carried:
             x, y, z = (at + reach * along for at, along in zip(spot.at, axis, strict=True))
             yield Spot(spot.body, (x, y, z))
 
 
 def _period(cloud: Array, size: float) -> int:
-    """After how many instants points (t, n, 3) are where they were, and go on as they did; 0 where they never are."""
+    """After how many instants points (t, n, 3) are where they were, and go on as they did; 0 where
+    they never are.
+    """
     steps = np.linalg.norm(np.diff(cloud, axis=0), axis=2).max(axis=1)
     # Instants need not fall on the period: half a step may be between.
     near = max(1e-6 * size, 0.51 * float(steps.max()))

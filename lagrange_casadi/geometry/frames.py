@@ -1,7 +1,10 @@
-"""Poses, velocities and accelerations of bodies. A plane is space without its z: what is zero there is zero by structure.
+"""Poses, velocities and accelerations of bodies.
 
-An extra mobility *displaces* what it moves: a translation in ground axes and a rotation about a point, small and at rest, whose
-generalized force is the action of the fixed side on the displaced side. Only its rates are ever needed, see :mod:`.lagrange`.
+A plane is space without its z: what is zero there is zero by structure.
+
+An extra mobility *displaces* what it moves: a translation in ground axes and a rotation about a
+point, small and at rest, whose generalized force is the action of the fixed side on the displaced
+side. Only its rates are ever needed, see :mod:`.lagrange`.
 """
 
 from __future__ import annotations
@@ -21,10 +24,12 @@ _UNTURNED = Rotation()
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Direction and motion of a body: it turns by ``rotation`` at ``rate``, and its point ``anchor`` is at ``at`` with ``speed``.
+    """Direction and motion of a body: it turns by ``rotation`` at ``rate``, and its point
+    ``anchor`` is at ``at`` with ``speed``.
 
-    ``acceleration`` is the anchor's; ``rate`` is the angular velocity in ground axes, ``angular`` its change. The anchor is the
-    joint that holds the body, so what sits there moves with the joint exactly, without a lever that cancels.
+    ``acceleration`` is the anchor's; ``rate`` is the angular velocity in ground axes, ``angular``
+    its change. The anchor is the joint that holds the body, so what sits there moves with the joint
+    exactly, without a lever that cancels.
     """
 
     at: Vector = ZERO
@@ -75,14 +80,26 @@ class Frame:
 
     @cached_property
     def _squares(self) -> tuple[Vector, Vector]:
-        """The products of two components of the rate: of y and z, z and x, x and y; and the sums of squares of those two."""
+        """The products of two components of the rate: of y and z, z and x, x and y; and the sums of
+        squares of those two.
+        """
         x, y, z = self.rate
         xx, yy, zz = product(x, x), product(y, y), product(z, z)
-        return (product(y, z), product(z, x), product(x, y)), (added(yy, zz), added(zz, xx), added(xx, yy))
+        return (product(y, z), product(z, x), product(x, y)), (
+            added(yy, zz),
+            added(zz, xx),
+            added(xx, yy),
+        )
 
     def _motion(self, r: Vector) -> tuple[Vector, Vector]:
-        """Velocity and acceleration of what a lever leads to; the latter is that of the anchor and ([alpha] + w w' - w^2) r."""
-        (x, y, z), (ax, ay, az), (yz, zx, xy), (xc, yc, zc) = self.rate, self.angular, *self._squares
+        """Velocity and acceleration of what a lever leads to; the latter is that of the anchor and
+        ([alpha] + w w' - w^2) r.
+        """
+        (x, y, z), (ax, ay, az), (yz, zx, xy), (xc, yc, zc) = (
+            self.rate,
+            self.angular,
+            *self._squares,
+        )
         u, v, w = self.speed
         a, b, c = self.acceleration
         return (
@@ -92,20 +109,34 @@ class Frame:
                 less(w, products_less(y, r[0], x, r[1])),
             ),
             (
-                less(a, less(products_added(xc, r[0], less(az, xy), r[1]), product(added(ay, zx), r[2]))),
-                added(b, less(products_less(added(az, xy), r[0], yc, r[1]), product(less(ax, yz), r[2]))),
-                less(c, added(products_less(less(ay, zx), r[0], added(ax, yz), r[1]), product(zc, r[2]))),
+                less(
+                    a,
+                    less(
+                        products_added(xc, r[0], less(az, xy), r[1]), product(added(ay, zx), r[2])
+                    ),
+                ),
+                added(
+                    b,
+                    less(products_less(added(az, xy), r[0], yc, r[1]), product(less(ax, yz), r[2])),
+                ),
+                less(
+                    c,
+                    added(
+                        products_less(less(ay, zx), r[0], added(ax, yz), r[1]), product(zc, r[2])
+                    ),
+                ),
             ),
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Carried(Frame):
-    """A frame in space whose motion is also known in its own axes, where levers are short and a turn keeps a component.
+    """A frame in space whose motion is also known in its own axes, where levers are short and a
+    turn keeps a component.
 
-    ``own`` is the motion in axes at rest that lie along the body's own at the instant, by the same anchor; ``turns`` lead to it
-    from the ground. After a single one, about an axis of the ground's, the motion is as short in the ground's axes, where others
-    want it too.
+    ``own`` is the motion in axes at rest that lie along the body's own at the instant, by the same
+    anchor; ``turns`` lead to it from the ground. After a single one, about an axis of the ground's,
+    the motion is as short in the ground's axes, where others want it too.
     """
 
     own: Frame = field(default_factory=Frame)
@@ -119,7 +150,9 @@ class Carried(Frame):
     def displaced(self, translation: Vector, turning: Vector) -> Carried:
         """This frame displaced at the anchor, by the rates of a translation and of a rotation."""
         own = self.own.displaced(self.rotation.resolve(translation), self.rotation.resolve(turning))
-        return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own)
+        return replace(
+            self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own
+        )
 
     def displaced_along(self, translation: Vector, turning: Vector) -> Carried:
         """The same by rates in the body's own axes."""
@@ -131,7 +164,9 @@ class Carried(Frame):
         if self.shortest is not self.own:
             return super().along_axis()
         speed, acceleration = self.own.motion_of(ZERO)
-        return Frame(speed=speed, acceleration=acceleration, rate=self.own.rate, angular=self.own.angular)
+        return Frame(
+            speed=speed, acceleration=acceleration, rate=self.own.rate, angular=self.own.angular
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,9 +182,13 @@ class Velocities:
     forces: list[Any] = field(default_factory=list)
 
     def vector(self, motion: tuple[Vector, Vector], force: Vector = ZERO) -> Any:
-        """The symbols of a velocity that moves so, of a point or of a direction, with the force that works along it."""
+        """The symbols of a velocity that moves so, of a point or of a direction, with the force
+        that works along it.
+        """
         speed, acceleration = motion
-        return ca.vertcat(*(self._add(*entry) for entry in zip(speed, acceleration, force, strict=True)))
+        return ca.vertcat(
+            *(self._add(*entry) for entry in zip(speed, acceleration, force, strict=True))
+        )
 
     def number(self, rate: Expression, angular: Expression, couple: Expression = 0.0) -> Any:
         """The symbol of a rate, with what works along it."""

@@ -1,4 +1,6 @@
-"""Rotations as the directions of turned axes; one about the ground's z alone is known by its cosine and sine."""
+"""Rotations as the directions of turned axes; one about the ground's z alone is known by its cosine
+and sine.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,9 @@ from .vectors import AXES, Expression, Vector, cross, dot, plus, times
 class Rotation:
     """The directions ``x`` and ``y`` of turned axes, in the axes that they are turned from.
 
-    ``angle`` is there for those who count turns: that about z, of a rotation about z alone; any other has None. ``third`` is the
-    direction of the third axis where it is known in a shorter way than from the other two.
+    ``angle`` is there for those who count turns: that about z, of a rotation about z alone; any
+    other has None. ``third`` is the direction of the third axis where it is known in a shorter way
+    than from the other two.
     """
 
     x: Vector = AXES[0]
@@ -32,16 +35,26 @@ class Rotation:
 
     @classmethod
     def by(cls, angle: Expression) -> Rotation:
-        """The rotation about z by an angle [rad]; a number within rounding of a right angle is meant to be one."""
+        """The rotation about z by an angle [rad]; a number within rounding of a right angle is
+        meant to be one.
+        """
         return cls.flat(*direction(angle), angle)
 
     @classmethod
     def about(cls, axis: Vector, c: Expression, s: Expression, angle: Expression) -> Rotation:
-        """The rotation about an axis of length 1 by an angle [rad] with a cosine and a sine (Rodrigues)."""
+        """The rotation about an axis of length 1 by an angle [rad] with a cosine and a sine
+        (Rodrigues).
+        """
         if _same(axis, AXES[2]):
             return cls.flat(c, s, angle)
         # Linear in cosine and sine, by which loops are known that have a closed form.
-        x, y, z = (plus(plus(times(c, e), times(s, cross(axis, e))), times(product(less(1, c), dot(axis, e)), axis)) for e in AXES)
+        x, y, z = (
+            plus(
+                plus(times(c, e), times(s, cross(axis, e))),
+                times(product(less(1, c), dot(axis, e)), axis),
+            )
+            for e in AXES
+        )
         return cls(x, y, None, z)
 
     @classmethod
@@ -67,14 +80,25 @@ class Rotation:
     def apply(self, v: Vector) -> Vector:
         """Components in the axes turned from of a vector given in the turned axes."""
         if self.angle is not None:
-            return products_less(self.c, v[0], self.s, v[1]), products_added(self.s, v[0], self.c, v[1]), v[2]
-        x, y, z = (times(component, axis) for component, axis in zip(v, (self.x, self.y, self.z), strict=True))
+            return (
+                products_less(self.c, v[0], self.s, v[1]),
+                products_added(self.s, v[0], self.c, v[1]),
+                v[2],
+            )
+        x, y, z = (
+            times(component, axis)
+            for component, axis in zip(v, (self.x, self.y, self.z), strict=True)
+        )
         return plus(plus(x, y), z)
 
     def resolve(self, v: Vector) -> Vector:
         """Components in the turned axes of a vector given in the axes turned from."""
         if self.angle is not None:
-            return products_added(self.c, v[0], self.s, v[1]), products_less(self.c, v[1], self.s, v[0]), v[2]
+            return (
+                products_added(self.c, v[0], self.s, v[1]),
+                products_less(self.c, v[1], self.s, v[0]),
+                v[2],
+            )
         return dot(self.x, v), dot(self.y, v), dot(self.z, v)
 
     def then(self, other: Rotation) -> Rotation:
@@ -101,7 +125,9 @@ class Rotation:
 
 
 def direction(angle: Expression) -> tuple[Expression, Expression]:
-    """Cosine and sine of an angle [rad]; a number within rounding of a right angle is meant to be one."""
+    """Cosine and sine of an angle [rad]; a number within rounding of a right angle is meant to be
+    one.
+    """
     if isinstance(angle, ca.SX):
         return ca.cos(angle), ca.sin(angle)
     c, s = math.cos(angle), math.sin(angle)

@@ -1,4 +1,7 @@
-"""Vectors as three expressions. What is zero by structure is the number 0, so that graphs hold nothing of it."""
+"""Vectors as three expressions.
+
+What is zero by structure is the number 0, so that graphs hold nothing of it.
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,3 @@
-"""From graphs to arrays: how an instant is evaluated, what is refused, tables over a cycle, the law of sections."""
+"""From graphs to arrays: how an instant is evaluated, what is refused, tables over a cycle, the law
+of sections.
+"""

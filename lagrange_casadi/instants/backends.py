@@ -1,4 +1,6 @@
-"""The columns of a scene graph over instants: by SIMD, by scalar C, or by CasADi's virtual machine."""
+"""The columns of a scene graph over instants: by SIMD, by scalar C,
+or by CasADi's virtual machine.
+"""
 
 from __future__ import annotations
 
@@ -30,10 +32,21 @@ from .cycle_table import CycleTable
 from .rung import Rung
 from .solution import Provenance
 
-_LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {"auto": ("c++", "c"), "lanes": ("c++",), "c": ("c",), "vm": ()}
+_LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {
+    "auto": ("c++", "c"),
+    "lanes": ("c++",),
+    "c": ("c",),
+    "vm": (),
+}
 _NEEDS = {
-    "lanes": "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python package ziglang is there",
-    "c": "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang is there",
+    "lanes": (
+        "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python"
+        " package ziglang is there"
+    ),
+    "c": (
+        "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang"
+        " is there"
+    ),
 }
 _TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
@@ -45,10 +58,11 @@ Built = TypeVar("Built")
 
 @dataclass(frozen=True, eq=False)
 class Evaluated:
-    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t).
+    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each
+    instant (t).
 
-    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated, ``cycle`` what the rest was read
-    from, if it was.
+    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated,
+    ``cycle`` what the rest was read from, if it was.
     """
 
     out: Array
@@ -69,8 +83,8 @@ def run(
 ) -> tuple[Evaluated, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
 
-    ``into`` is what an earlier run gave on the same rung and as many instants, to be filled anew. Raises :class:`CompilerError`
-    where the backend needs a compiler and there is none, or it fails.
+    ``into`` is what an earlier run gave on the same rung and as many instants, to be filled anew.
+    Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
     stages = stages_for(graph, rung.precision, t, p)
@@ -92,23 +106,30 @@ def run(
 
 
 def begun(graph: Program, t: float, p: Array) -> tuple[float, ...]:
-    """The iterated coordinates at a time, closed, as the motion leads there from the scene's own start; none without loops."""
+    """The iterated coordinates at a time, closed, as the motion leads there from the scene's own
+    start; none without loops.
+    """
     return _begin(graph, False, t, tuple(p.tolist()))
 
 
 @functools.lru_cache(maxsize=256)
 def _begin(graph: Program, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
-    """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``.
+    """The iterated coordinates that the first instant begins from: closed there where steps are
+    ``counted``.
 
-    The motion is followed from the scene's own start, as far from which another branch may be nearer; by many steps, unless they
-    were too many.
+    The motion is followed from the scene's own start, as far from which another branch may be
+    nearer; by many steps, unless they were too many.
     """
     if graph.newton is None:
         return ()
     (start, stop), count = graph.data.span, graph.data.timing.count
     if t == start and not counted:
         return graph.newton.guess
-    wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf
+    wanted = (
+        max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS)
+        if stop > start
+        else math.inf
+    )
     steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
     z, status = follow(graph, np.linspace(start, t, steps + 1)[1:], np.array(p))
     return tuple(z[:, -1]) if counted or status[-1] != Status.NOT_CONVERGED else graph.newton.guess
@@ -122,13 +143,21 @@ def _paired(values: Array, out: Array) -> Array:
     return out
 
 
-def _compiled(graph: Program, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
+def _compiled(
+    graph: Program, stages: Stages, rung: Rung
+) -> tuple[codegen.Compiler, codegen.Library] | None:
     """The library that a backend takes, and what built it; None for the virtual machine."""
-    return compiled(rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler))
+    return compiled(
+        rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler)
+    )
 
 
-def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[codegen.Compiler, Built] | None:
-    """What is built by the compiler that a rung's backend takes, and that; None for the virtual machine."""
+def compiled(
+    rung: Rung, build: Callable[[codegen.Compiler], Built]
+) -> tuple[codegen.Compiler, Built] | None:
+    """What is built by the compiler that a rung's backend takes, and that; None for the virtual
+    machine.
+    """
     backend = rung.backend
     for language in _LANGUAGES[backend]:
         compiler = codegen.find_compiler(language)
@@ -150,7 +179,9 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
 
 
 def searching(backend: str) -> codegen.Search | None:
-    """The compiled search for peaks of what a backend has evaluated; None for the virtual machine, and without a compiler."""
+    """The compiled search for peaks of what a backend has evaluated; None for the virtual machine,
+    and without a compiler.
+    """
     for language in () if backend == "vm" else _LANGUAGES["auto"]:
         compiler = codegen.find_compiler(language)
         with suppress(CompilerError):
@@ -160,19 +191,30 @@ def searching(backend: str) -> codegen.Search | None:
 
 
 @functools.lru_cache(maxsize=32)
-def _library(graph: Program, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
-    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
+def _library(
+    graph: Program, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler
+) -> codegen.Library:
+    return codegen.load(
+        codegen.emit(graph, stages, newton),
+        compiler,
+        tuple(shlex.split(flags)),
+        newton or NEWTON_STEPS,
+    )
 
 
 def unevaluated(graph: Program, stages: Stages, size: int) -> Evaluated:
     """What is to be filled."""
     dtype = DTYPES[stages.precision]
-    out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
+    out, iterated = (
+        rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z"))
+    )
     return Evaluated(out, np.full(size, Status.OK, dtype=np.int32), iterated, stages)
 
 
 def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
-    """Rows an odd number of cache lines apart: at a power of two all would share the same few lines of the cache."""
+    """Rows an odd number of cache lines apart: at a power of two all would share the same few lines
+    of the cache.
+    """
     line = 64 // np.dtype(dtype).itemsize
     stride = line * (-(-size // line) | 1)
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
@@ -192,30 +234,51 @@ def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenanc
     return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
-def _interpret(graph: Program, t: Array, p: Array, evaluated: Evaluated, begin: Sequence[float], newton: int | None) -> None:
+def _interpret(
+    graph: Program,
+    t: Array,
+    p: Array,
+    evaluated: Evaluated,
+    begin: Sequence[float],
+    newton: int | None,
+) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
     stages = evaluated.stages
     guess = np.array(begin)
-    evaluated.iterated[:], evaluated.status[:] = follow(graph, t, p, guess, stages=stages, newton=newton)
+    evaluated.iterated[:], evaluated.status[:] = follow(
+        graph, t, p, guess, stages=stages, newton=newton
+    )
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
         counted, rate, acceleration = stages.drive(t[None, block], p)
-        evaluated.out[:, block] = stages.instant(counted, rate, acceleration, evaluated.iterated[:, block], p).full()
+        evaluated.out[:, block] = stages.instant(
+            counted, rate, acceleration, evaluated.iterated[:, block], p
+        ).full()
     unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == Status.OK)
     evaluated.status[unclean] = Status.NOT_FINITE
 
 
 def follow(
-    graph: Program, t: Array, p: Array, guess: Array | None = None, *, stages: Stages | None = None, newton: int | None = None
+    graph: Program,
+    t: Array,
+    p: Array,
+    guess: Array | None = None,
+    *,
+    stages: Stages | None = None,
+    newton: int | None = None,
 ) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or the graph's own; and statuses.
+    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or
+    the graph's own; and statuses.
 
     By CasADi's virtual machine; ``newton`` as in :class:`.Rung`.
     """
     stages = stages or plain(graph)
     if graph.newton is None or stages.loops is None:
         return np.zeros((0, t.size)), np.full(t.size, Status.OK, dtype=np.int32)
-    last, rule = np.array(graph.newton.guess) if guess is None else guess, newton_rule("double", newton)
+    last, rule = (
+        np.array(graph.newton.guess) if guess is None else guess,
+        newton_rule("double", newton),
+    )
     z, status = rows(last.size, t.size), np.full(t.size, Status.OK, dtype=np.int32)
     fixed = ca.DM(p)  # converted once, not at each step
     for start in range(0, t.size, _VM_BLOCK):
@@ -227,7 +290,12 @@ def follow(
 
 
 def _iterate(
-    graph: Program, loops: ca.Function, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
+    graph: Program,
+    loops: ca.Function,
+    guess: Array,
+    counted: ca.DM,
+    p: ca.DM,
+    rule: dict[str, float],
 ) -> tuple[Array, int]:
     assert graph.newton is not None
     z, size, before, step = guess, 1.0, 1.0, 0

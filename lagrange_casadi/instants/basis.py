@@ -20,9 +20,11 @@ _NUMPY = numpy_arithmetic()
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """Ratios ``u`` along a link, and there the functions that its forces are combined of: a row each, of shape (terms, u...).
+    """Ratios ``u`` along a link, and there the functions that its forces are combined of: a row
+    each, of shape (terms, u...).
 
-    First are those of its law, three of a ``force`` and four of a ``bending`` moment, then those of what acts along it.
+    First are those of its law, three of a ``force`` and four of a ``bending`` moment, then those of
+    what acts along it.
     """
 
     u: Array
@@ -42,9 +44,15 @@ class Basis:
 
     def _rows(self, *, bends: bool) -> Array:
         cells = self.density.cells
-        function = along(self.density.breaks, tuple(map(len, cells)), tuple(load.powers for load in self.spreads), bends=bends)
+        function = along(
+            self.density.breaks,
+            tuple(map(len, cells)),
+            tuple(load.powers for load in self.spreads),
+            bends=bends,
+        )
         matter = [self.length, *(coefficient for cell in cells for coefficient in cell)]
-        # Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
+        # Width and end are those of the first instant; of n laws, which have (n, t), ratios give
+        # (n, u).
         spans = [values[..., :1] for load in self.spreads for values in (load.width, load.end)]
         (rows,) = interpret(function, [matter, spans, [self.u]], _NUMPY)
         found = np.empty((len(rows), *np.broadcast(self.length, self.u).shape))
@@ -52,11 +60,14 @@ class Basis:
             row[...] = values
         return found
 
-    def of(self, terms: Terms, law: Sequence[Array], spreads: Sequence[SpreadLoad]) -> tuple[list[Array], Array]:
-        """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along the link.
+    def of(
+        self, terms: Terms, law: Sequence[Array], spreads: Sequence[SpreadLoad]
+    ) -> tuple[list[Array], Array]:
+        """Columns and rows of a force, by the coefficients of its ``law`` and of what acts along
+        the link.
 
-        Of that each force feels its own: loads by their arms, and couples of slices without. The two planes of bending are of the
-        same rows: where signs differ, columns have them.
+        Of that each force feels its own: loads by their arms, and couples of slices without. The
+        two planes of bending are of the same rows: where signs differ, columns have them.
         """
         sign, plain, own = (terms.arm, self.bending, 4) if terms.arm else (1, self.force, 3)
         columns = [*law[:1], *(-column for column in law[1:])] if sign < 0 else list(law)
@@ -65,8 +76,14 @@ class Basis:
         rows, first = [*plain[: len(law)]], 0
         for load in spreads:
             for values, there in (
-                ([sign * value for value in load.terms.get(terms.spread, ())], plain[own + first :]),
-                (load.terms.get(terms.couple, ()), self.force[3 + first :] if terms.couple in load.terms else ()),
+                (
+                    [sign * value for value in load.terms.get(terms.spread, ())],
+                    plain[own + first :],
+                ),
+                (
+                    load.terms.get(terms.couple, ()),
+                    self.force[3 + first :] if terms.couple in load.terms else (),
+                ),
             ):
                 columns += values
                 rows += [*there[: len(values)]]

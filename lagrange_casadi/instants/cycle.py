@@ -1,7 +1,9 @@
-"""A scene over the cycle of its one drive: the terms of its columns at any angle, and after how many turns they repeat.
+"""A scene over the cycle of its one drive: the terms of its columns at any angle, and after how
+many turns they repeat.
 
-Where one drive turns and nothing depends on time itself, every column is A theta'' + B theta'^2 + D theta' + C of the drive's
-angle theta. The terms are derivatives of the graph at rest, by automatic differentiation: no difference of large numbers is taken.
+Where one drive turns and nothing depends on time itself, every column is A theta'' + B theta'^2 + D
+theta' + C of the drive's angle theta. The terms are derivatives of the graph at rest, by automatic
+differentiation: no difference of large numbers is taken.
 """
 
 from __future__ import annotations
@@ -48,9 +50,9 @@ _NAMED = 3
 class Cycle:
     """A scene over the cycle of its one drive.
 
-    ``turns`` of the drive are its period, over which each column gains ``drift`` a radian beside (columns). ``rounding`` (factors,
-    columns) is what rounding makes of a term: some units of it of the largest term of its unit, or more where it changes more from
-    one period to the next.
+    ``turns`` of the drive are its period, over which each column gains ``drift`` a radian beside
+    (columns). ``rounding`` (factors, columns) is what rounding makes of a term: some units of it of
+    the largest term of its unit, or more where it changes more from one period to the next.
     """
 
     drive: Drive
@@ -65,14 +67,24 @@ class Cycle:
         return math.tau * self.turns
 
     def values(self, nodes: int, *, halfway: bool = False) -> Array:
-        """The terms less the drift at equal distances, (factors, columns, nodes): the first at the angle 0, or halfway to the next.
+        """The terms less the drift at equal distances, (factors, columns, nodes): the first at the
+        angle 0, or halfway to the next.
 
-        They are taken where the motion goes from its start on, for a load may be declared for no other angles.
+        They are taken where the motion goes from its start on, for a load may be declared for no
+        other angles.
         """
         width = self.period / nodes
-        first = math.ceil(self.drive.start / width) if self.drive.way > 0 else math.floor(self.drive.start / width) - nodes
-        angles = (np.arange(first, first + nodes).astype(np.float64) + (0.5 if halfway else 0.0)) * width
-        values = self.drive.terms_at(angles, self.drive.settle(angles, self.course.places_near(angles)))
+        first = (
+            math.ceil(self.drive.start / width)
+            if self.drive.way > 0
+            else math.floor(self.drive.start / width) - nodes
+        )
+        angles = (
+            np.arange(first, first + nodes).astype(np.float64) + (0.5 if halfway else 0.0)
+        ) * width
+        values = self.drive.terms_at(
+            angles, self.drive.settle(angles, self.course.places_near(angles))
+        )
         self.drive.unwind(values[0], self.course.turns_of(angles, values[0, self.drive.loose]))
         values[0] -= self.drift[:, None] * angles
         return np.roll(values, first, axis=-1)
@@ -80,8 +92,8 @@ class Cycle:
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """Some turns of the drive at equal steps: angles (n), iterated coordinates (k, n), and the angles known up to whole turns, made
-    continuous (m, n).
+    """Some turns of the drive at equal steps: angles (n), iterated coordinates (k, n), and the
+    angles known up to whole turns, made continuous (m, n).
     """
 
     angles: Array
@@ -99,13 +111,17 @@ class Course:
         rising = slice(None, None, 1 if self.angles[1] > self.angles[0] else -1)
         found = np.zeros_like(loose)
         for k, row in enumerate(self.loose):
-            found[k] = math.tau * np.rint((np.interp(angles, self.angles[rising], row[rising]) - loose[k]) / math.tau)
+            found[k] = math.tau * np.rint(
+                (np.interp(angles, self.angles[rising], row[rising]) - loose[k]) / math.tau
+            )
         return found
 
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """A scene's one drive, that of a joint that turns: where it starts, the sign of the way it goes, and the terms by its angle."""
+    """A scene's one drive, that of a joint that turns: where it starts, the sign of the way it
+    goes, and the terms by its angle.
+    """
 
     graph: Program
     p: Array
@@ -117,7 +133,9 @@ class Drive:
     @classmethod
     @symbolic
     def of(cls, graph: Program, p: Array) -> Drive:
-        """Raises :class:`DeclarationError` where there is not one drive that turns, or where columns depend on time itself."""
+        """Raises :class:`DeclarationError` where there is not one drive that turns, or where
+        columns depend on time itself.
+        """
         joint = the_drive(graph)
         t, d, rate, acceleration, z, parameters = graph.instant.sx_in()
         out = graph.instant(t, d, rate, acceleration, z, parameters)
@@ -126,7 +144,8 @@ class Drive:
             timed += [Check("closure", name) for name in graph.newton.names]
         if timed:
             raise DeclarationError(
-                f"table: expected columns that the angle of joint '{joint}' decides, but time itself enters {_listed(timed)}"
+                f"table: expected columns that the angle of joint '{joint}' decides, but time"
+                f" itself enters {_listed(timed)}"
             )
         slope = ca.jacobian(out, rate)
         rows = [out, slope, ca.jacobian(slope, rate) / 2, ca.jacobian(out, acceleration)]
@@ -150,29 +169,42 @@ class Drive:
         values = np.empty((4, len(self.graph.columns), angles.size))
         for start in range(0, angles.size, _BLOCK):
             cut = slice(start, start + _BLOCK)
-            for row, found in zip(values, self.terms(angles[None, cut], places[:, cut], self.p), strict=True):
+            for row, found in zip(
+                values, self.terms(angles[None, cut], places[:, cut], self.p), strict=True
+            ):
                 row[:, cut] = found.full()
         self._refuse(angles, values)
         return values
 
     def columns_at(self, angles: Array, places: Array, rate: float, acceleration: float) -> Array:
         """The columns themselves at angles, (columns, n)."""
-        return np.asarray(self.graph.instant(0.0, angles[None], rate, acceleration, places, self.p).full())
+        return np.asarray(
+            self.graph.instant(0.0, angles[None], rate, acceleration, places, self.p).full()
+        )
 
     def settle(self, angles: Array, places: Array) -> Array:
-        """The iterated coordinates at angles, from ones that are near. Raises :class:`DeclarationError` where there are none."""
+        """The iterated coordinates at angles, from ones that are near.
+
+        Raises :class:`DeclarationError` where there are none.
+        """
         if self.graph.newton is None:
             return places
         for _ in range(_NEWTON_STEPS):
-            correction, size = (found.full() for found in self.graph.newton.step(places, 0.0, angles[None], self.p))
+            correction, size = (
+                found.full() for found in self.graph.newton.step(places, 0.0, angles[None], self.p)
+            )
             places = places + correction
             if np.all(size < _NEWTON_DONE):
                 return places
         bad = angles[int(np.argmax(~(size[0] < _NEWTON_DONE)))]
-        raise DeclarationError(f"table: the loops closed by {self.graph.newton.joints} did not converge{self._not_round(bad)}")
+        raise DeclarationError(
+            f"table: the loops closed by {self.graph.newton.joints} did not"
+            f" converge{self._not_round(bad)}"
+        )
 
     def unwind(self, columns: Array, turns: Array) -> None:
-        """Add to the angles known up to whole turns (columns, n), and to their sums, the turns (m, n) that they lack.
+        """Add to the angles known up to whole turns (columns, n), and to their sums, the turns (m,
+        n) that they lack.
 
         Whole turns that columns count are then in the angles, and the columns are zero.
         """
@@ -187,7 +219,8 @@ class Drive:
     def follow(self, turns: int) -> tuple[Course, Array]:
         """Some turns from the start on, and the terms there, angles made continuous.
 
-        Raises :class:`DeclarationError` where a loop cannot be closed all the way, or passes a dead centre.
+        Raises :class:`DeclarationError` where a loop cannot be closed all the way, or passes a dead
+        centre.
         """
         steps = np.arange(turns * _STEPS).astype(np.float64) + _OFFSET
         angles = self.start + self.way * math.tau / _STEPS * steps
@@ -201,7 +234,9 @@ class Drive:
             passes = passes_dead_centre(closure)
             if passes.any():
                 near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passes))])
-                raise DeclarationError(f"{name} is at a dead centre, or about a degree from one, near {near}")
+                raise DeclarationError(
+                    f"{name} is at a dead centre, or about a degree from one, near {near}"
+                )
         loose = values[0, self.loose].copy()
         course = Course(angles, places, np.unwrap(loose))
         self.unwind(values[0], course.loose - loose)
@@ -231,17 +266,28 @@ class Drive:
             yield f"table: the loop closed by {self.graph.data.closing(closing)}", columns[k]
 
     def _not_round(self, angle: float) -> str:
-        return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
+        return (
+            f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way"
+            " round"
+        )
 
 
 def the_drive(graph: Program) -> str:
-    """The one driven joint of a scene. Raises :class:`DeclarationError` where there is not one, or where it slides."""
+    """The one driven joint of a scene.
+
+    Raises :class:`DeclarationError` where there is not one, or where it slides.
+    """
     if len(graph.driven) != 1:
         named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
-        raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
+        raise DeclarationError(
+            f"table: expected one driven joint, whose angle decides all, got {named}"
+        )
     (joint,) = graph.driven
     if graph.data.kinds.coordinates[joint] != "angle":
-        raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle repeats")
+        raise DeclarationError(
+            f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle"
+            " repeats"
+        )
     return joint
 
 
@@ -253,8 +299,8 @@ def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     drive = Drive.of(graph, p)
     if rubbing := graph.checks("rest"):
         raise DeclarationError(
-            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign decides friction "
-            + ", ".join(f"'{name}'" for name in rubbing)
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign"
+            " decides friction " + ", ".join(f"'{name}'" for name in rubbing)
         )
     for turns in range(1, TURNS + 1):
         course, values = drive.follow(2 * turns)
@@ -278,13 +324,18 @@ def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
     names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
     wound = bool(graph.checks("turned"))
     raise DeclarationError(
-        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', "
-        f"but {_listed(names)} do not repeat{'; a load that sees an angle with its turns may wind up' if wound else ''}"
+        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}',"
+        f" but {_listed(names)} do not"
+        f" repeat{'; a load that sees an angle with its turns may wind up' if wound else ''}"
     )
 
 
-def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tuple[float, float]) -> None:
-    """Derivatives at rest see nothing of a load by the rate's sign, or its size: so the columns themselves are looked at."""
+def _refuse_other_powers(
+    drive: Drive, course: Course, sizes: Array, rates: tuple[float, float]
+) -> None:
+    """Derivatives at rest see nothing of a load by the rate's sign, or its size: so the columns
+    themselves are looked at.
+    """
     columns = drive.graph.columns
     some = slice(0, _STEPS, 7)
     angles, places = course.angles[some], course.places[:, some]
@@ -299,13 +350,15 @@ def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tupl
     if wrong.any():
         names = [name for name, is_wrong in zip(columns, wrong, strict=True) if is_wrong]
         raise DeclarationError(
-            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load that depends on a rate's sign, "
-            f"size or another power enters {_listed(names)}"
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load"
+            f" that depends on a rate's sign, size or another power enters {_listed(names)}"
         )
 
 
 def _sizes(graph: Program, p: Array, peaks: Array) -> Array:
-    """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square and the acceleration have one."""
+    """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square
+    and the acceleration have one.
+    """
     kinds = [_kind(graph, column) for column in graph.columns]
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
@@ -316,10 +369,11 @@ def _sizes(graph: Program, p: Array, peaks: Array) -> Array:
 
 
 def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> None:
-    """Where all terms of a unit are zero but for rounding, as the slide of a shaft that has none, they are small beside others.
+    """Where all terms of a unit are zero but for rounding, as the slide of a shaft that has none,
+    they are small beside others.
 
-    A motion is so beside a turn of all, whose points are as far away as the mechanism is large [m]; a force beside moments, and
-    moments beside forces, at that arm.
+    A motion is so beside a turn of all, whose points are as far away as the mechanism is large [m];
+    a force beside moments, and moments beside forces, at that arm.
     """
     for unit, least in ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0)):
         for power, per in enumerate(("", "/s", "/s^2")):
@@ -328,15 +382,22 @@ def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> 
                 found[which] = np.maximum(found[which], least)
     if FORCE in largest and MOMENT in largest and extent > 0.0:
         forces, moments = largest[FORCE], largest[MOMENT]
-        largest[FORCE], largest[MOMENT] = np.maximum(forces, moments / extent), np.maximum(moments, forces * extent)
+        largest[FORCE], largest[MOMENT] = (
+            np.maximum(forces, moments / extent),
+            np.maximum(moments, forces * extent),
+        )
 
 
 def _kind(graph: Program, column: Column) -> str | Column:
-    """What columns are compared by: their unit, or, where that says nothing, themselves; directions with each other."""
+    """What columns are compared by: their unit, or, where that says nothing, themselves; directions
+    with each other.
+    """
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column
     unit = column.unit(graph.data.kinds)
-    return column.group if column.group == "pose" and unit == "1" else column if unit == "1" else unit
+    return (
+        column.group if column.group == "pose" and unit == "1" else column if unit == "1" else unit
+    )
 
 
 def _listed(columns: Collection[Column]) -> str:

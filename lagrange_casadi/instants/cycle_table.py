@@ -1,8 +1,10 @@
-"""A cycle in a table: what a drive's angle decides, as periodic splines, to be read at any angle, rate and acceleration.
+"""A cycle in a table: what a drive's angle decides, as periodic splines, to be read at any angle,
+rate and acceleration.
 
-Each column is  out = A(angle) acceleration + B(angle) rate^2 + D(angle) rate + C(angle) + slope angle,  with A, B, C and D quintic
-B-splines over equal distances: six coefficients a term, whose weights are polynomials, so that reading takes no sine. Compiled
-code reads where there is a compiler, NumPy elsewhere, with the same operations in the same order, so they give the same bits.
+Each column is  out = A(angle) acceleration + B(angle) rate^2 + D(angle) rate + C(angle) + slope
+angle,  with A, B, C and D quintic B-splines over equal distances: six coefficients a term, whose
+weights are polynomials, so that reading takes no sine. Compiled code reads where there is a
+compiler, NumPy elsewhere, with the same operations in the same order, so they give the same bits.
 """
 
 from __future__ import annotations
@@ -66,8 +68,9 @@ _ENTRY = """
 __attribute__((visibility("default")))
 #endif
 void lagrange_casadi_interpolate(const lagrange_casadi_interpolate_call* call) {
-  interpolate(call->n, call->stride, call->angle, call->rate, call->acceleration, call->nodes, call->cell, call->terms,
-              call->coefficients, call->columns, call->order, call->drift, call->count, call->runs, call->out);
+  interpolate(call->n, call->stride, call->angle, call->rate, call->acceleration, call->nodes,
+              call->cell, call->terms, call->coefficients, call->columns, call->order, call->drift,
+              call->count, call->runs, call->out);
 }
 """
 
@@ -88,8 +91,9 @@ class CycleTable:
     kept
         Which terms are not zero (factors, columns), factors as in :data:`FACTORS`.
     coefficients
-        Of the splines, over 120, (nodes + 5, terms), as float64 or float32, in the order of ``terms``: row k belongs to node k - 2,
-        and the last five rows are the first ones again, so that no index wraps.
+        Of the splines, over 120, (nodes + 5, terms), as float64 or float32, in the order of
+        ``terms``: row k belongs to node k - 2, and the last five rows are the first ones again, so
+        that no index wraps.
     drift
         What a column gains with the angle beside, as an angle does that counts turns (columns).
     rates
@@ -97,7 +101,8 @@ class CycleTable:
     peaks
         The largest value of each column over the cycle at such rates (columns).
     errors
-        The largest error of each column halfway between nodes at such rates, over its peak (columns).
+        The largest error of each column halfway between nodes at such rates, over its peak
+        (columns).
 
     Raises :class:`DeclarationError` where these do not fit each other.
     """
@@ -114,15 +119,22 @@ class CycleTable:
     def __post_init__(self) -> None:
         c = self.coefficients
         if self.kept.shape != (len(FACTORS), len(self.columns)):
-            raise DeclarationError(f"kept: expected the shape {(len(FACTORS), len(self.columns))}, got {self.kept.shape}")
+            raise DeclarationError(
+                f"kept: expected the shape {(len(FACTORS), len(self.columns))}, got"
+                f" {self.kept.shape}"
+            )
         if c.dtype.name not in _REAL or not c.flags.c_contiguous:
-            raise DeclarationError(f"coefficients: expected contiguous rows of float64 or float32, got {c.dtype}")
+            raise DeclarationError(
+                f"coefficients: expected contiguous rows of float64 or float32, got {c.dtype}"
+            )
         if c.ndim != 2 or c.shape[0] < LEAST + _MORE or c.shape[1] != np.count_nonzero(self.kept):
             expected = f"at least {LEAST + _MORE} rows of {np.count_nonzero(self.kept)}"
             raise DeclarationError(f"coefficients: expected {expected}, got {c.shape}")
         for what, row in (("drift", self.drift), ("peaks", self.peaks), ("errors", self.errors)):
             if row.shape != (len(self.columns),):
-                raise DeclarationError(f"{what}: expected one of each column, {len(self.columns)}, got {row.shape}")
+                raise DeclarationError(
+                    f"{what}: expected one of each column, {len(self.columns)}, got {row.shape}"
+                )
         if self.turns < 1:
             raise DeclarationError(f"turns: expected at least 1, got {self.turns}")
 
@@ -157,13 +169,21 @@ class CycleTable:
         return self.coefficients.dtype
 
     def single(self) -> CycleTable:
-        """The same in single precision; ``errors`` then hold what that rounds, too, at angles of the first period."""
+        """The same in single precision; ``errors`` then hold what that rounds, too, at angles of
+        the first period.
+        """
         table = replace(self, coefficients=self.coefficients.astype(np.float32))
         angle = (self.period / (2 * self.nodes) * np.arange(2 * self.nodes)).astype(np.float32)
         worst = np.zeros(len(self.columns))
         for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-            rate, acceleration = (np.full(angle.size, s * size, np.float32) for s, size in zip(signs, self.rates, strict=True))
-            rounded, exact = (np.empty((len(self.columns), angle.size), dtype) for dtype in (np.float32, np.float64))
+            rate, acceleration = (
+                np.full(angle.size, s * size, np.float32)
+                for s, size in zip(signs, self.rates, strict=True)
+            )
+            rounded, exact = (
+                np.empty((len(self.columns), angle.size), dtype)
+                for dtype in (np.float32, np.float64)
+            )
             table.evaluate(angle, rate, acceleration, rounded)
             self.evaluate(angle, rate, acceleration, exact)
             np.maximum(worst, np.abs(rounded - exact).max(axis=1), out=worst)
@@ -171,18 +191,32 @@ class CycleTable:
         return replace(table, errors=self.errors + relative)
 
     def evaluate(self, angle: Reals, rate: Reals, acceleration: Reals, out: Reals) -> None:
-        """Fill ``out`` (columns, n) for angles [rad], of any number of turns, rates and accelerations of the drive, (n) each.
+        """Fill ``out`` (columns, n) for angles [rad], of any number of turns, rates and
+        accelerations of the drive, (n) each.
 
-        ``out`` is of the table's own ``dtype``; where an angle, a rate or an acceleration is not finite, neither are the columns
-        that it goes into. Raises :class:`DeclarationError` for arrays that do not fit each other, or an ``out`` of another type.
+        ``out`` is of the table's own ``dtype``; where an angle, a rate or an acceleration is not
+        finite, neither are the columns that it goes into. Raises :class:`DeclarationError` for
+        arrays that do not fit each other, or an ``out`` of another type.
         """
         if not angle.shape == rate.shape == acceleration.shape == (angle.size,):
-            raise DeclarationError(f"expected three rows of one length, got {angle.shape}, {rate.shape} and {acceleration.shape}")
+            raise DeclarationError(
+                f"expected three rows of one length, got {angle.shape}, {rate.shape} and"
+                f" {acceleration.shape}"
+            )
         if out.shape != (len(self.columns), angle.size) or out.dtype != self.dtype:
             shape = (len(self.columns), angle.size)
-            raise DeclarationError(f"out: expected an array of {self.dtype} of shape {shape}, got {out.dtype} of {out.shape}")
-        angle, rate, acceleration = (np.ascontiguousarray(row, dtype=self.dtype) for row in (angle, rate, acceleration))
-        plain = out.strides[1] == out.itemsize and out.strides[0] > 0 and out.strides[0] % out.itemsize == 0
+            raise DeclarationError(
+                f"out: expected an array of {self.dtype} of shape {shape}, got {out.dtype} of"
+                f" {out.shape}"
+            )
+        angle, rate, acceleration = (
+            np.ascontiguousarray(row, dtype=self.dtype) for row in (angle, rate, acceleration)
+        )
+        plain = (
+            out.strides[1] == out.itemsize
+            and out.strides[0] > 0
+            and out.strides[0] % out.itemsize == 0
+        )
         entry = _compiled(self.dtype.name) if plain and out.size else None
         if entry is None:
             for start in range(0, angle.size, _BLOCK):
@@ -240,11 +274,15 @@ class CycleTable:
 
     @functools.cached_property
     def cell(self) -> Reals:
-        """The inverse of the distance of nodes, the distance in two parts, and 1/nodes, as compiled code takes them."""
+        """The inverse of the distance of nodes, the distance in two parts, and 1/nodes, as compiled
+        code takes them.
+        """
         width = _TURN * self.turns / self.nodes
         digits = _FIRST_DIGITS[self.dtype.name] - math.frexp(width)[1]
         first = math.ldexp(round(math.ldexp(width, digits)), -digits)
-        return np.array([1 / width, first, width - Fraction(first), Fraction(1, self.nodes)]).astype(self.dtype)
+        return np.array(
+            [1 / width, first, width - Fraction(first), Fraction(1, self.nodes)]
+        ).astype(self.dtype)
 
     @functools.cached_property
     def slopes(self) -> Reals:
@@ -254,8 +292,9 @@ class CycleTable:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """How terms lie in a row: ``order`` (columns), the column in each place; ``runs`` (k, 3) of terms side by side, the number of a
-    factor, the first place and how many; ``terms``, the factor and the column of each.
+    """How terms lie in a row: ``order`` (columns), the column in each place; ``runs`` (k, 3) of
+    terms side by side, the number of a factor, the first place and how many; ``terms``, the factor
+    and the column of each.
     """
 
     order: Integers
@@ -265,7 +304,8 @@ class Layout:
 
 def arranged(kept: npt.NDArray[np.bool_]) -> Layout:
     """The layout of the terms that are kept (factors, columns), in as few runs as may be."""
-    # In the order of a Gray code neighbours differ by one factor, so most factors go on from one kind of column to the next.
+    # In the order of a Gray code neighbours differ by one factor, so most factors go on from one
+    # kind of column to the next.
     codes = kept.T @ np.array([4, 8, 1, 2])
     ranks = codes ^ (codes >> 1) ^ (codes >> 2) ^ (codes >> 3)
     order = np.argsort(ranks, kind="stable").astype(np.int32)
@@ -274,13 +314,20 @@ def arranged(kept: npt.NDArray[np.bool_]) -> Layout:
         tile = order[start : start + _TILE]
         for factor, row in enumerate(kept):
             edges = np.flatnonzero(np.diff(row[tile].astype(int), prepend=0, append=0))
-            runs += [(factor, start + int(i), int(j - i)) for i, j in zip(edges[::2], edges[1::2], strict=True)]
-    terms = tuple((factor, int(k)) for factor, first, count in runs for k in order[first : first + count])
+            runs += [
+                (factor, start + int(i), int(j - i))
+                for i, j in zip(edges[::2], edges[1::2], strict=True)
+            ]
+    terms = tuple(
+        (factor, int(k)) for factor, first, count in runs for k in order[first : first + count]
+    )
     return Layout(order, np.array(runs, dtype=np.int32).reshape(-1, 3), terms)
 
 
 def weights(u: Reals) -> tuple[Reals, ...]:
-    """The weights, times 120, of the six coefficients around places ``u`` from one node (0) to the next (1)."""
+    """The weights, times 120, of the six coefficients around places ``u`` from one node (0) to the
+    next (1).
+    """
     v = 1 - u
     u2, v2 = u * u, v * v
     return (
@@ -294,16 +341,24 @@ def weights(u: Reals) -> tuple[Reals, ...]:
 
 
 def splines(values: Array) -> Array:
-    """The coefficients of periodic splines through ``values`` (terms, nodes), as a table holds them: (nodes + 5, terms)."""
+    """The coefficients of periodic splines through ``values`` (terms, nodes), as a table holds
+    them: (nodes + 5, terms).
+    """
     nodes = values.shape[1]
     turn = 2.0 * np.pi / nodes * np.arange(nodes // 2 + 1)
-    inside = np.fft.irfft(np.fft.rfft(values) / (66.0 + 52.0 * np.cos(turn) + 2.0 * np.cos(2.0 * turn)), nodes)
+    inside = np.fft.irfft(
+        np.fft.rfft(values) / (66.0 + 52.0 * np.cos(turn) + 2.0 * np.cos(2.0 * turn)), nodes
+    )
     return np.ascontiguousarray(inside[:, np.arange(-2, nodes + _MORE - 2) % nodes].T)
 
 
 def source() -> str:
     """The C that reads tables of numbers of type ``REAL``."""
-    return resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text() + INTERPOLATE.text("real") + _ENTRY
+    return (
+        resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text()
+        + INTERPOLATE.text("real")
+        + _ENTRY
+    )
 
 
 @functools.cache
@@ -313,7 +368,9 @@ def _compiled(dtype: str) -> Any | None:
         compiler = find_compiler()
         if compiler is None:
             return None
-        entry = loaded(source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")).lagrange_casadi_interpolate
+        entry = loaded(
+            source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")
+        ).lagrange_casadi_interpolate
     except CompilerError as error:
         warn(f"{error}; NumPy reads the tables")
         return None

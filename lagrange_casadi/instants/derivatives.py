@@ -20,10 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Derivatives:
-    """The derivatives of quantities ``by`` parameters: of each parameter those of all that equilibrium determines, by output.
+    """The derivatives of quantities ``by`` parameters: of each parameter those of all that
+    equilibrium determines, by output.
 
-    They are exact and total: of loops, motions and densities too. Series have (t,), section forces (t, xi). Instants and ratios
-    xi/l stand still; at a station, a section force is that on its tip's side.
+    They are exact and total: of loops, motions and densities too. Series have (t,), section forces
+    (t, xi). Instants and ratios xi/l stand still; at a station, a section force is that on its
+    tip's side.
     """
 
     by: Mapping[str, Mapping[Output, Array]] = field(default_factory=dict)
@@ -41,7 +43,8 @@ class Derivatives:
     def array(self, name: str | Output, parameter: str) -> Array:
         """The derivative of a quantity by a parameter, in the quantity's unit over the parameter's.
 
-        Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity that has none.
+        Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity
+        that has none.
         """
         if parameter not in self.by:
             raise UnknownNameError("parameter with sensitivities", parameter, self.by)
@@ -55,20 +58,35 @@ class Derivatives:
         for name, found in self.by.items():
             for output, x in found.items():
                 if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
-                    yield f"the derivative of {output} by {name} is no number at {many} of {len(x)} instants"
+                    yield (
+                        f"the derivative of {output} by {name} is no number at {many} of {len(x)}"
+                        " instants"
+                    )
 
     def of(self, outputs: Container[Output]) -> Derivatives:
         """Those of some outputs."""
-        return Derivatives({name: {o: x for o, x in found.items() if o in outputs} for name, found in self.by.items()})
+        return Derivatives(
+            {
+                name: {o: x for o, x in found.items() if o in outputs}
+                for name, found in self.by.items()
+            }
+        )
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
         """The same at some of the instants."""
-        return Derivatives({name: {output: x[instants] for output, x in found.items()} for name, found in self.by.items()})
+        return Derivatives(
+            {
+                name: {output: x[instants] for output, x in found.items()}
+                for name, found in self.by.items()
+            }
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Derivative:
-    """One of them: its full ``name``, as ``sensitivity:l:effort:O``, what it is of, its values and unit, what a file says of it."""
+    """One of them: its full ``name``, as ``sensitivity:l:effort:O``, what it is of, its values and
+    unit, what a file says of it.
+    """
 
     name: str
     output: Output
@@ -84,5 +102,7 @@ def derivatives(solution: Solution) -> Iterator[Derivative]:
         for output, values in found.items():
             unit = quotient(solution.unit(output), str(parameters[name]["unit"]))
             quantity = output.meant(solution.table)
-            words = quantity.attributes | {"long_name": f"{quantity.long_name}: derivative by {name}"}
+            words = quantity.attributes | {
+                "long_name": f"{quantity.long_name}: derivative by {name}"
+            }
             yield Derivative(f"{SENSITIVITY}:{name}:{output}", output, values, unit, words)

@@ -1,8 +1,9 @@
 """What equilibrium determines, decided for the parameters and instants that are evaluated.
 
-In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium leaves open, and elasticity does
-not tell. A check ``open`` of a force is the size of s. A force is determined where that is zero: by structure, and then it has no
-such check, in every posture, or in one alone.
+In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium
+leaves open, and elasticity does not tell. A check ``open`` of a force is the size of s. A force is
+determined where that is zero: by structure, and then it has no such check, in every posture, or in
+one alone.
 """
 
 from __future__ import annotations
@@ -27,14 +28,18 @@ from .rung import Rung
 
 
 def undetermined(graph: Program, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
-    """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
+    """The outputs that equilibrium leaves open at any of some instants, by the columns there,
+    (columns, t).
+    """
     return _beyond(graph, {output: out[k] for output, k in graph.doubtful.items()}, p, rung)
 
 
 def completed(
     graph: Program, found: Evaluated, t: Array, p: Array, left_open: Sequence[Output]
 ) -> tuple[Elasticity, dict[str, Array]]:
-    """Report what least strain energy told at instants ``t``, why some are ``left_open``, and its residual for a certificate."""
+    """Report what least strain energy told at instants ``t``, why some are ``left_open``, and its
+    residual for a certificate.
+    """
     completion, known = graph.completion, np.isfinite(found.out).all(axis=0)
     if completion is None or not known.any():
         return Elasticity(), {}
@@ -43,23 +48,36 @@ def completed(
     changes, (*through, idle, chosen, unbalanced) = np.split(rows, [len(completion.doubted)])
     doubted = _beyond(graph, dict(zip(completion.doubted, changes, strict=True)), p, Rung())
     told = tuple(output for output in doubted if output not in left_open)
-    reasons = completion.reasons([bool(row.any()) for row in through], idle=bool(idle.any())) if left_open else ()
+    reasons = (
+        completion.reasons([bool(row.any()) for row in through], idle=bool(idle.any()))
+        if left_open
+        else ()
+    )
     residual = np.zeros(t.size)
     residual[known] = unbalanced
     return Elasticity(told, reasons), {"elasticity": residual} if chosen.any() else {}
 
 
-def _beyond(graph: Program, changes: Mapping[Output, Array], p: Array, rung: Rung) -> tuple[Output, ...]:
+def _beyond(
+    graph: Program, changes: Mapping[Output, Array], p: Array, rung: Rung
+) -> tuple[Output, ...]:
     """The outputs that change at any of some instants by more than what is none."""
     if not changes:
         return ()
     extent, limit = graph.extent(p), open_limit(graph, rung.precision, rung.newton)
-    units = {output: extent if output.unit(graph.data.kinds) == MOMENT else 1.0 for output in changes}
-    return tuple(output for output, sizes in changes.items() if np.any(sizes > limit * units[output]))
+    units = {
+        output: extent if output.unit(graph.data.kinds) == MOMENT else 1.0 for output in changes
+    }
+    return tuple(
+        output for output, sizes in changes.items() if np.any(sizes > limit * units[output])
+    )
 
 
-def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) -> tuple[Program, tuple[Output, ...]]:
-    """The graph without the outputs that are open at some of the instants, for parameters ``p``; and these outputs.
+def determinate(
+    graph: Program, t: Array, p: Array, *, telling: bool = False
+) -> tuple[Program, tuple[Output, ...]]:
+    """The graph without the outputs that are open at some of the instants, for parameters ``p``;
+    and these outputs.
 
     With ``telling`` it goes on to tell, for other parameters and instants, where others are open.
     """
@@ -67,8 +85,12 @@ def determinate(graph: Program, t: Array, p: Array, *, telling: bool = False) ->
         return graph, ()
     table, _ = run(graph, t, p, Rung("vm"))
     left_open = undetermined(graph, table.out[:, table.status == Status.OK], p, Rung())
-    others = () if telling else tuple(output for output in graph.doubtful if output not in left_open)
-    return _without(graph, (*left_open, *(Check("open", output) for output in (*left_open, *others)))), left_open
+    others = (
+        () if telling else tuple(output for output in graph.doubtful if output not in left_open)
+    )
+    return _without(
+        graph, (*left_open, *(Check("open", output) for output in (*left_open, *others)))
+    ), left_open
 
 
 @functools.lru_cache(maxsize=32)
@@ -76,5 +98,7 @@ def _without(graph: Program, columns: tuple[Column, ...]) -> Program:
     kept = [k for k, column in enumerate(graph.columns) if column not in columns]
     inputs = graph.instant.sx_in()
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
-    instant = ca.Function("instant", inputs, [ca.densify(graph.instant(*inputs)[kept])], names, ["out"], {"cse": True})
+    instant = ca.Function(
+        "instant", inputs, [ca.densify(graph.instant(*inputs)[kept])], names, ["out"], {"cse": True}
+    )
     return replace(graph, instant=instant, columns=tuple(graph.columns[k] for k in kept))

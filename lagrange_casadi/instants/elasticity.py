@@ -9,7 +9,9 @@ from ..base.quantities import Output
 
 @dataclass(frozen=True)
 class Elasticity:
-    """The outputs that equilibrium leaves open and least strain energy ``told``, and ``reasons`` why others stay open."""
+    """The outputs that equilibrium leaves open and least strain energy ``told``, and ``reasons``
+    why others stay open.
+    """
 
     told: tuple[Output, ...] = ()
     reasons: tuple[str, ...] = ()
@@ -17,5 +19,9 @@ class Elasticity:
     @property
     def notes(self) -> tuple[str, ...]:
         """The same in lines."""
-        told = [f"equilibrium leaves {len(self.told)} series open that least strain energy tells"] if self.told else []
+        told = (
+            [f"equilibrium leaves {len(self.told)} series open that least strain energy tells"]
+            if self.told
+            else []
+        )
         return (*told, *(f"elasticity leaves forces open: {reason}" for reason in self.reasons))

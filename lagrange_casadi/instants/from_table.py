@@ -1,4 +1,6 @@
-"""A scene read from a table: its drive is evaluated, as on any rung, and everything else is read at the drive's angle."""
+"""A scene read from a table: its drive is evaluated, as on any rung, and everything else is read at
+the drive's angle.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +30,20 @@ _MARGIN = 1.01
 
 
 def columns(
-    graph: Program, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Evaluated | None = None
+    graph: Program,
+    t: Array,
+    p: Array,
+    rung: Rung,
+    threads: int | None = None,
+    *,
+    into: Evaluated | None = None,
 ) -> tuple[Evaluated, Provenance]:
-    """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a table, as the rung says.
+    """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a
+    table, as the rung says.
 
-    ``into`` is what an earlier call with the same rung and as many instants gave, to be filled anew. Raises
-    :class:`DeclarationError`, with the reason, where the scene cannot be tabulated, and what :func:`.run` raises.
+    ``into`` is what an earlier call with the same rung and as many instants gave, to be filled
+    anew. Raises :class:`DeclarationError`, with the reason, where the scene cannot be tabulated,
+    and what :func:`.run` raises.
     """
     if rung.table is None:
         return run(graph, t, p, rung, threads, into=into)
@@ -61,12 +71,17 @@ def columns(
         found.out[k] += cycle.drift[k] * (angle - phase)
     for output, place in still(graph, tuple(p.tolist())).items():
         found.out[graph.outputs[output]] = place
-    found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == Status.OK)] = Status.NOT_FINITE
+    found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == Status.OK)] = (
+        Status.NOT_FINITE
+    )
     return found, replace(provenance, rung=rung.options)
 
 
 def table_of(graph: Program, t: Array, p: Array, rung: Rung) -> CycleTable:
-    """The table that :func:`columns` reads. Raises :class:`DeclarationError` where the scene cannot be tabulated."""
+    """The table that :func:`columns` reads.
+
+    Raises :class:`DeclarationError` where the scene cannot be tabulated.
+    """
     the_drive(graph)
     _, rate, acceleration, *_ = run(drive_of(graph), t, p, Rung("vm"))[0].out
     return _serving(graph, p, rung, rate, acceleration)
@@ -79,8 +94,12 @@ def _serving(graph: Program, p: Array, rung: Rung, rate: Array, acceleration: Ar
 
 
 @functools.lru_cache(maxsize=32)
-def cycle_table(graph: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
-    """The table of a scene for parameters ``p``, kept while the process lasts; see :func:`.tabulate`."""
+def cycle_table(
+    graph: Program, p: tuple[float, ...], table: float, rates: tuple[float, float]
+) -> CycleTable:
+    """The table of a scene for parameters ``p``, kept while the process lasts; see
+    :func:`.tabulate`.
+    """
     return tabulate(graph, np.array(p), table, rates)
 
 
@@ -90,18 +109,38 @@ _single = functools.lru_cache(maxsize=32)(CycleTable.single)
 @symbolic
 @functools.lru_cache(maxsize=32)
 def drive_of(graph: Program) -> Program:
-    """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
+    """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one
+    turn, two, and so on.
+    """
     t, d, rate, acceleration, _, p = graph.instant.sx_in()
-    within = [d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau)))) for turns in range(1, TURNS + 1)]
+    within = [
+        d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau))))
+        for turns in range(1, TURNS + 1)
+    ]
     out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
-    instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
-    columns = ("angle", "rate", "acceleration", *(f"within_{turns}" for turns in range(1, TURNS + 1)))
-    return replace(graph, instant=instant, newton=None, columns=tuple(Check("drive", name) for name in columns), loop_angles={})
+    instant = ca.Function(
+        "instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True}
+    )
+    columns = (
+        "angle",
+        "rate",
+        "acceleration",
+        *(f"within_{turns}" for turns in range(1, TURNS + 1)),
+    )
+    return replace(
+        graph,
+        instant=instant,
+        newton=None,
+        columns=tuple(Check("drive", name) for name in columns),
+        loop_angles={},
+    )
 
 
 def _above(values: Array) -> float:
-    """A little more than the largest size: a table serves motions that are nearly as fast as well."""
+    """A little more than the largest size: a table serves motions that are
+    nearly as fast as well.
+    """
     largest = float(np.max(np.abs(values), initial=0.0))
     if not largest or not math.isfinite(largest):
         return largest

@@ -1,7 +1,8 @@
-"""Grids of (t, xi) filled at the speed of memory: small products over a basis, written straight into the result.
+"""Grids of (t, xi) filled at the speed of memory: small products over a basis, written straight
+into the result.
 
-A grid worth it is filled by compiled code, on all cores; any other by NumPy, in blocks. Both take the same operations in the same
-order, so they give the same bits.
+A grid worth it is filled by compiled code, on all cores; any other by NumPy, in blocks. Both take
+the same operations in the same order, so they give the same bits.
 """
 
 from __future__ import annotations
@@ -52,12 +53,19 @@ _SUM = {
     "beyond": "const double*",
     "out": "double*",
 }
-GRID = Call("lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"})
-LARGEST = Call("lagrange_casadi_largest_call", {"designs": "long long", "n": "long long", "k": "long long", **_SUM})
+GRID = Call(
+    "lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"}
+)
+LARGEST = Call(
+    "lagrange_casadi_largest_call",
+    {"designs": "long long", "n": "long long", "k": "long long", **_SUM},
+)
 """What the functions of ``grids.c`` take; they say of each what it is."""
 
 Load = tuple[Array, Array, Array]
-"""Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
+"""Station, constant and slope of what acts there: sections on its base side feel constant + slope
+(station - u).
+"""
 
 
 def fill(
@@ -70,16 +78,22 @@ def fill(
     planes: int = 1,
     slack: float = END["double"],
 ) -> None:
-    """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
+    """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what
+    acts at stations.
 
-    The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are as many
-    columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. ``slack`` is that of
-    :func:`.edge`. Raises :class:`DeclarationError` for an ``out`` of another shape.
+    The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two
+    ``planes`` there are as many columns for each, one plane's after the other's, as loads are, and
+    ``out`` is the size of both sums. ``slack`` is that of :func:`.edge`. Raises
+    :class:`DeclarationError` for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
-        raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
+        raise DeclarationError(
+            f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}"
+        )
     plain = out.flags.c_contiguous and out.dtype == np.float64
-    library = _compiled() if plain and out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
+    library = (
+        _compiled() if plain and out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
+    )
     if library is None:
         _fill_in_blocks(columns, basis, loads, u, out, planes, slack)
         return
@@ -92,9 +106,15 @@ def fill(
     size = -(-n // shares)
 
     def run(start: int) -> None:
-        rows = (ctypes.c_void_p * len(flat))(*(row.ctypes.data + start * row.itemsize for row in flat))
-        here = _sum(len(columns), planes, rows, functions, ratios, beyond) | {"out": out[start:].ctypes.data}
-        library.lagrange_casadi_grid(GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here))
+        rows = (ctypes.c_void_p * len(flat))(
+            *(row.ctypes.data + start * row.itemsize for row in flat)
+        )
+        here = _sum(len(columns), planes, rows, functions, ratios, beyond) | {
+            "out": out[start:].ctypes.data
+        }
+        library.lagrange_casadi_grid(
+            GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here)
+        )
 
     if shares == 1:
         run(0)
@@ -108,22 +128,37 @@ def fill(
 
 
 def largest(
-    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, planes: int = 1, slack: float = END["double"]
+    columns: Sequence[Array],
+    basis: Array,
+    loads: Sequence[Load],
+    u: Array,
+    planes: int = 1,
+    slack: float = END["double"],
 ) -> Array:
-    """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
+    """Over the instants of n designs the value largest in size at each ratio, with its sign: (n,
+    xi).
 
-    ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
-    positive one is given; a design whose columns or loads are not all finite has NaN.
+    ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see
+    :func:`fill`. Of values of one size the positive one is given; a design whose columns or loads
+    are not all finite has NaN.
     """
     n, t = columns[0].shape
     out = np.empty((n, u.size))
-    finite = np.all([np.isfinite(row).all(axis=1) for row in (*columns, *(row for load in loads for row in load))], axis=0)
+    finite = np.all(
+        [
+            np.isfinite(row).all(axis=1)
+            for row in (*columns, *(row for load in loads for row in load))
+        ],
+        axis=0,
+    )
     library = _compiled() if t * out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
     if library is None:
         for i in range(n):
             grid = np.empty((t, u.size))
             acting = [(a[i], b[i], c[i]) for a, b, c in loads]
-            _fill_in_blocks([column[i] for column in columns], basis[:, i], acting, u, grid, planes, slack)
+            _fill_in_blocks(
+                [column[i] for column in columns], basis[:, i], acting, u, grid, planes, slack
+            )
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
         out[~finite] = np.nan
@@ -139,7 +174,8 @@ def largest(
 
 
 def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
-    """An array to fill, from the start of a cache line: what crosses lines is stored at half the speed.
+    """An array to fill, from the start of a cache line: what crosses lines is stored at half the
+    speed.
 
     Raises :class:`SizeError` where this machine has less memory than that.
     """
@@ -153,11 +189,18 @@ def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
 
 def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
     """Columns and loads one after another, as C takes them."""
-    return [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
+    return [
+        np.ascontiguousarray(row, dtype=np.float64)
+        for row in (*columns, *(row for load in loads for row in load))
+    ]
 
 
-def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, beyond: Array) -> dict[str, int]:
-    """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads' parts; functions have a row each."""
+def _sum(
+    columns: int, planes: int, rows: Any, functions: Array, ratios: Array, beyond: Array
+) -> dict[str, int]:
+    """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads'
+    parts; functions have a row each.
+    """
     first = ctypes.addressof(rows)
     return {
         "planes": planes,
@@ -173,7 +216,13 @@ def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, 
 
 
 def _fill_in_blocks(
-    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, planes: int, slack: float
+    columns: Sequence[Array],
+    basis: Array,
+    loads: Sequence[Load],
+    u: Array,
+    out: Array,
+    planes: int,
+    slack: float,
 ) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
     terms, many = len(columns) // planes, len(loads) // planes
@@ -183,7 +232,14 @@ def _fill_in_blocks(
         for plane in range(planes):
             values = np.empty(rows.shape) if plane else rows
             own = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
-            _sum_up(own, basis, [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]], u, values, slack)
+            _sum_up(
+                own,
+                basis,
+                [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]],
+                u,
+                values,
+                slack,
+            )
             if plane:
                 np.sqrt(rows * rows + values * values, out=rows)
 
@@ -193,7 +249,14 @@ def _cut(load: Load, block: slice) -> Load:
     return station[block], constant[block], slope[block]
 
 
-def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, rows: Array, slack: float) -> None:
+def _sum_up(
+    columns: Sequence[Array],
+    basis: Array,
+    loads: Sequence[Load],
+    u: Array,
+    rows: Array,
+    slack: float,
+) -> None:
     np.multiply(columns[0][:, None], basis[0], out=rows)
     for column, function in zip(columns[1:], basis[1:], strict=True):
         rows += column[:, None] * function
@@ -206,7 +269,9 @@ def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
 def _compiled() -> Any | None:
     """The C functions, or None where there is no compiler that takes them."""
     functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
-    source = f"#define MOST {_MOST}\n#define LINE {_LINE}\n" + GRID.text() + LARGEST.text() + functions
+    source = (
+        f"#define MOST {_MOST}\n#define LINE {_LINE}\n" + GRID.text() + LARGEST.text() + functions
+    )
     try:
         compiler = find_compiler()
         if compiler is None:

@@ -16,10 +16,12 @@ ENDS = ("least", "largest")
 
 @dataclass(frozen=True, eq=False)
 class Holding:
-    """The ``least`` and the ``largest`` effort, in ``unit``, that a drive may need at each instant, by sign, (t,).
+    """The ``least`` and the ``largest`` effort, in ``unit``, that a drive may need at each instant,
+    by sign, (t,).
 
-    Both are the effort where that is told. Where joints at rest leave it open, frictions that are there may make it anything
-    between. Where that range is not told either both are NaN, and ``untold`` says why, else it is empty.
+    Both are the effort where that is told. Where joints at rest leave it open, frictions that are
+    there may make it anything between. Where that range is not told either both are NaN, and
+    ``untold`` says why, else it is empty.
     """
 
     least: Array
@@ -39,7 +41,11 @@ class Holding:
 
 def held_outputs(held: Mapping[str, Holding]) -> dict[Output, Array]:
     """Both ends of the ranges of drives, by the names that they have in a file."""
-    return {Output("holding", name, end): getattr(found, end) for name, found in held.items() for end in ENDS}
+    return {
+        Output("holding", name, end): getattr(found, end)
+        for name, found in held.items()
+        for end in ENDS
+    }
 
 
 def held_notes(held: Mapping[str, Holding]) -> Iterator[str]:
@@ -50,4 +56,7 @@ def held_notes(held: Mapping[str, Holding]) -> Iterator[str]:
             yield f"held at rest: effort:{name} is not told: {found.untold}"
         elif there.any():
             least, largest = found.least[there].min(), found.largest[there].max()
-            yield f"held at rest: effort:{name} may be anything from {least:.5g} to {largest:.5g} {found.unit}"
+            yield (
+                f"held at rest: effort:{name} may be anything from {least:.5g} to {largest:.5g}"
+                f" {found.unit}"
+            )

@@ -1,17 +1,19 @@
-"""The efforts that hold a mechanism where joints that rub are at rest: from the least that may be needed to the largest.
+"""The efforts that hold a mechanism where joints that rub are at rest: from the least that may be
+needed to the largest.
 
-At rest a friction s is anything with |s| <= mu P(s), and P, the sum of sizes of what presses, follows from
-all frictions: it is a norm of what is linear in them. Efforts are linear in them too. An effort is largest
-where each friction at rest is at a limit: let it be largest at s*, and put in place of each P that is reached
-its tangent at s*, which is nowhere above it. Of that linear programme s* is a solution too, for near s* it asks
-for more. If the effort changes with a limit that is reached, that limit is reached at all solutions; with the
-other frictions the effort then does not change at all, and these may go to limits as well. They can: I - B is
-an M-matrix (see :mod:`.equations.friction`), so for every choice of signs there are such frictions, and only
-one. So all choices of signs are tried.
+At rest a friction s is anything with |s| <= mu P(s), and P, the sum of sizes of what presses,
+follows from all frictions: it is a norm of what is linear in them. Efforts are linear in them too.
+An effort is largest where each friction at rest is at a limit: let it be largest at s*, and put in
+place of each P that is reached its tangent at s*, which is nowhere above it. Of that linear
+programme s* is a solution too, for near s* it asks for more. If the effort changes with a limit
+that is reached, that limit is reached at all solutions; with the other frictions the effort then
+does not change at all, and these may go to limits as well. They can: I - B is an M-matrix (see
+:mod:`.equations.friction`), so for every choice of signs there are such frictions, and only one. So
+all choices of signs are tried.
 
-This is not so where a friction that slides changes with one at rest, for it is bound to one side of its law; nor
-where a joint at rest may slide along two coordinates, or turn any way, for its friction is then bound by a circle
-or a ball.
+This is not so where a friction that slides changes with one at rest, for it is bound to one side of
+its law; nor where a joint at rest may slide along two coordinates, or turn any way, for its
+friction is then bound by a circle or a ball.
 """
 
 from __future__ import annotations
@@ -46,15 +48,23 @@ _BENDS, _JAMS = 1e-9, 1e-14
 
 @public
 def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
-    """The range of each drive's effort, by joint, at the instants of a solution of the scene that has efforts.
+    """The range of each drive's effort, by joint, at the instants of a solution of the scene that
+    has efforts.
 
     Raises :class:`.DeclarationError` for what is no scene or no solution.
     """
-    efforts = {output.part: values for output, values in solution.outputs.items() if output.group == "effort"}
+    efforts = {
+        output.part: values
+        for output, values in solution.outputs.items()
+        if output.group == "effort"
+    }
     open_ = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
     at = np.flatnonzero(np.any([*open_.values()], axis=0)) if efforts else np.zeros(0, int)
     if not at.size:
-        return {name: Holding(values, values, solution.unit(Output("effort", name))) for name, values in efforts.items()}
+        return {
+            name: Holding(values, values, solution.unit(Output("effort", name)))
+            for name, values in efforts.items()
+        }
     values = values_of(solution.description)
     graph = compile_scene(scene, ["effort"], parameters=values)
     held = held_efforts(as_derived(scene, ["effort"], values))
@@ -64,7 +74,12 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
         output, reasons = Output("effort", name), list(why)
         found = tried[:, held.columns.index(output)]
         if (doubt := Check("open", output)) in held.columns:
-            reasons.append(((tried[:, held.columns.index(doubt)] > OPEN["double"]).any(axis=0), "equilibrium leaves it open"))
+            reasons.append(
+                (
+                    (tried[:, held.columns.index(doubt)] > OPEN["double"]).any(axis=0),
+                    "equilibrium leaves it open",
+                )
+            )
         reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
         told = ~np.any([wrong for wrong, _ in reasons], axis=0)
         there = open_[name][at]
@@ -82,14 +97,22 @@ _Reasons = list[tuple[Any, str]]
 
 
 def _inputs(graph: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
-    """What the columns of a scene are functions of, some of the instants ``t`` beside each other."""
-    z = np.zeros((0, at.size)) if graph.newton is None else run(graph, t, p, Rung("vm"))[0].iterated[:, at]
+    """What the columns of a scene are functions of, some of the
+    instants ``t`` beside each other.
+    """
+    z = (
+        np.zeros((0, at.size))
+        if graph.newton is None
+        else run(graph, t, p, Rung("vm"))[0].iterated[:, at]
+    )
     moved = graph.motion(ca.DM(t[at]).T, ca.DM(p))
     return [ca.DM(t[at]).T, *moved, ca.DM(z), ca.DM(p)]
 
 
 def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
-    """The columns for all choices of signs of the frictions that rest, (choices, columns, t); and where these are not enough."""
+    """The columns for all choices of signs of the frictions that rest, (choices, columns, t); and
+    where these are not enough.
+    """
 
     def columns(signs: Array) -> Array:
         return np.asarray(held.instant(*inputs, ca.DM(signs)).full())
@@ -104,7 +127,10 @@ def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
             why.append((rest, f"friction '{name}' may hold its joint in more than one direction"))
     resting = [held.frictions.index(name) for name, rest in rests.items() if rest.any()]
     if len(resting) > _MOST:
-        return first[None], [*why, (np.ones(first.shape[1], bool), f"{len(resting)} frictions rest, of at most {_MOST}")]
+        return first[None], [
+            *why,
+            (np.ones(first.shape[1], bool), f"{len(resting)} frictions rest, of at most {_MOST}"),
+        ]
     found = []
     for chosen in itertools.product((1.0, -1.0), repeat=len(resting)):
         signs[resting] = chosen
@@ -112,7 +138,12 @@ def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
     tried = np.array(found)
     for (kind, name), k in checks.items():
         if kind == "bend":
-            why.append(((tried[:, k] > _BENDS).any(axis=0), f"friction '{name}' slides, and changes with those at rest"))
+            why.append(
+                (
+                    (tried[:, k] > _BENDS).any(axis=0),
+                    f"friction '{name}' slides, and changes with those at rest",
+                )
+            )
         elif kind == "jam":
             why.append((~(tried[:, k] > _JAMS).all(axis=0), f"friction '{name}' may jam"))
         elif kind == "slip":

@@ -15,9 +15,14 @@ from .section_law import SectionLaw
 
 
 def law_of(
-    link: str, outputs: Mapping[Output, Array], length: Any, density: NumericDensity, precision: str = "double"
+    link: str,
+    outputs: Mapping[Output, Array],
+    length: Any,
+    density: NumericDensity,
+    precision: str = "double",
 ) -> SectionLaw:
-    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it, evaluated in a precision.
+    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it,
+    evaluated in a precision.
 
     Raises ``ValueError`` where a load along the link is not whole.
     """
@@ -35,16 +40,26 @@ def law_of(
         elif output.power is None:
             ends.setdefault(output.station, {})[output.member] = values
         else:
-            terms.setdefault(output.station, {}).setdefault(output.member, {})[output.power] = values
+            terms.setdefault(output.station, {}).setdefault(output.member, {})[output.power] = (
+                values
+            )
     loads = tuple(station_load(name, members) for name, members in stations.items())
     spreads = tuple(spread_load(name, ends.get(name, {}), found) for name, found in terms.items())
-    return SectionLaw(length, density, law, loads, spreads, END["single" if precision == "single" else "double"])
+    return SectionLaw(
+        length, density, law, loads, spreads, END["single" if precision == "single" else "double"]
+    )
 
 
 def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:
-    """The outputs, among others, that a force of a link is made of; without the places of stations."""
+    """The outputs, among others, that a force of a link is made of;
+    without the places of stations.
+    """
     terms = [table.sections[part] for part in table.parts("section", force)]
     coefficients = {name for of in terms for name in of.coefficients}
-    members = {of.acting for of in terms} | {table.sections[of.shear].acting for of in terms if of.arm}
+    members = {of.acting for of in terms} | {
+        table.sections[of.shear].acting for of in terms if of.arm
+    }
     own = (output for output in outputs if output.along and output.part == link)
-    return [output for output in own if output.member in (members if output.station else coefficients)]
+    return [
+        output for output in own if output.member in (members if output.station else coefficients)
+    ]

@@ -1,4 +1,5 @@
-"""Loads of a link as numbers: what acts at stations, and along it, with the functions that go with its coefficients.
+"""Loads of a link as numbers: what acts at stations, and along it, with the functions that go with
+its coefficients.
 
 See :mod:`..equations.spreads`.
 """
@@ -17,10 +18,12 @@ from ..base.quantities import Output
 
 @dataclass(frozen=True, eq=False)
 class SpreadLoad:
-    """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the same at all instants.
+    """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the
+    same at all instants.
 
-    ``terms`` are by direction, ``qn`` and ``qf``, in space ``qn``, ``qfy``, ``qfz``: the coefficients [N/m] of rising powers of
-    (end - xi/l)/width, each (t,). What the rotary inertia of slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
+    ``terms`` are by direction, ``qn`` and ``qf``, in space ``qn``, ``qfy``, ``qfz``: the
+    coefficients [N/m] of rising powers of (end - xi/l)/width, each (t,). What the rotary inertia of
+    slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
     """
 
     name: str
@@ -41,11 +44,18 @@ class SpreadLoad:
     @property
     def marks(self) -> list[Array]:
         """Where it begins and ends, those places left out that are the ends of the link."""
-        return [place for place in (self.end - self.width, self.end) if ((place > 0.0) & (place < 1.0)).any()]
+        return [
+            place
+            for place in (self.end - self.width, self.end)
+            if ((place > 0.0) & (place < 1.0)).any()
+        ]
 
     def during(self, instants: slice) -> SpreadLoad:
         """The same at some of the instants."""
-        terms = {member: tuple(values[instants] for values in rows) for member, rows in self.terms.items()}
+        terms = {
+            member: tuple(values[instants] for values in rows)
+            for member, rows in self.terms.items()
+        }
         return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SpreadLoad:
@@ -54,33 +64,59 @@ class SpreadLoad:
         def value(member: str, power: int | None = None) -> Array:
             return outputs[Output("spread", link, member, self.name, power)]
 
-        terms = {member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms}
+        terms = {
+            member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms
+        }
         return SpreadLoad(self.name, value("width"), value("end"), terms)
 
     def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
-        """The largest size of what any section feels of it where its coefficients have any sign, wherever it begins and ends."""
+        """The largest size of what any section feels of it where its coefficients have any sign,
+        wherever it begins and ends.
+        """
         lever = length if arm else 1.0
-        return sum((np.abs(c)[:, None] * (length * lever / (j + 1)) for j, c in enumerate(self.terms.get(direction, ()))), 0.0)
+        return sum(
+            (
+                np.abs(c)[:, None] * (length * lever / (j + 1))
+                for j, c in enumerate(self.terms.get(direction, ()))
+            ),
+            0.0,
+        )
 
-    def moved(self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool) -> Array:
-        """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose changes are (..., t)."""
+    def moved(
+        self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool
+    ) -> Array:
+        """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose
+        changes are (..., t).
+        """
         width, end = self.width[..., :1], self.end[..., :1]
         # x, L and a of equations/spreads.py.
-        x, reach, lever = np.clip((end - u) / width, 0.0, 1.0), length * width, length * np.maximum(end - width - u, 0.0)
+        x, reach, lever = (
+            np.clip((end - u) / width, 0.0, 1.0),
+            length * width,
+            length * np.maximum(end - width - u, 0.0),
+        )
         within = (x > 0.0) & (x < 1.0)
         by_end, by_width = np.zeros_like(x), np.zeros_like(x)
         for j, values in enumerate(self.terms.get(direction, ())):
             c, share = values[:, None], x ** (j + 1) / (j + 1)
             if arm:
                 by_end += c * length * reach * share
-                by_width += c * length * share * np.where(within, reach * x * (2 / (j + 2) - 1), lever + reach * (2 / (j + 2) - 1))
+                by_width += (
+                    c
+                    * length
+                    * share
+                    * np.where(
+                        within, reach * x * (2 / (j + 2) - 1), lever + reach * (2 / (j + 2) - 1)
+                    )
+                )
             else:
                 by_end += c * length * np.where(within, x**j, 0.0)
                 by_width += c * length * share * np.where(within, -j, 1.0)
         return by_end * change.end[..., None] + by_width * change.width[..., None]
 
     def here(self, direction: str, u: Array, middle: Array) -> Array:
-        """The load per length [N/m] at ratios (t, parts, ...), in parts of the link with their ``middle`` (t, parts).
+        """The load per length [N/m] at ratios (t, parts, ...), in parts of the link with their
+        ``middle`` (t, parts).
 
         Where it acts at the middle, the polynomial at the part's ends too; else 0.
         """
@@ -94,12 +130,17 @@ class SpreadLoad:
         return np.where((end - width < middle) & (middle < end), value, 0.0)
 
 
-def spread_load(name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]) -> SpreadLoad:
+def spread_load(
+    name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]
+) -> SpreadLoad:
     """A load along a link, by the names of its members, and of its terms by direction and power.
 
     Raises ``ValueError`` where one of these is missing.
     """
-    powers = {direction: tuple(found[j] for j in range(len(found)) if j in found) for direction, found in terms.items()}
+    powers = {
+        direction: tuple(found[j] for j in range(len(found)) if j in found)
+        for direction, found in terms.items()
+    }
     many = {len(rows) for rows in (*powers.values(), *terms.values())}
     if set(members) != {"width", "end"} or len(many) != 1:
         raise ValueError(f"the load along the link '{name}' is not whole")
@@ -108,7 +149,8 @@ def spread_load(name: str, members: Mapping[str, Array], terms: Mapping[str, Map
 
 @dataclass(frozen=True, eq=False)
 class StationLoad:
-    """What acts on a link at a station: force along ``n`` and across ``f`` the axis [N], moment ``m`` [N m], each (t,).
+    """What acts on a link at a station: force along ``n`` and across ``f`` the axis [N], moment
+    ``m`` [N m], each (t,).
 
     ``station`` is the ratio xi/l, (t,): it moves where something slides along the link.
     """
@@ -126,7 +168,9 @@ class StationLoad:
 
 @dataclass(frozen=True, eq=False)
 class SpatialStationLoad:
-    """The same in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments ``mx``, ``my``, ``mz`` [N m]."""
+    """The same in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
+    ``mx``, ``my``, ``mz`` [N m].
+    """
 
     name: str
     station: Array
@@ -152,4 +196,11 @@ def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
 
 
 def _cut(load: _Load, instants: slice) -> _Load:
-    return replace(load, **{entry.name: getattr(load, entry.name)[instants] for entry in fields(load) if entry.name != "name"})
+    return replace(
+        load,
+        **{
+            entry.name: getattr(load, entry.name)[instants]
+            for entry in fields(load)
+            if entry.name != "name"
+        },
+    )

@@ -1,4 +1,6 @@
-"""The order in which a solution keeps its outputs, and in which they are listed, with how far each may be off."""
+"""The order in which a solution keeps its outputs, and in which they are listed, with how far each
+may be off.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,15 @@ if TYPE_CHECKING:
 
 
 def table_of_described(description: Description) -> Table:
-    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones, whose gravity has a z."""
+    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial
+    ones, whose gravity has a z.
+    """
     return table_of(in_space(description))
 
 
 def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
-    """Outputs in the order in which a solution keeps them: by kind, then by part as declared, then as in the table.
+    """Outputs in the order in which a solution keeps them: by kind, then by part as declared, then
+    as in the table.
 
     Raises ``ValueError`` for one of a part that is not declared.
     """
@@ -34,7 +39,14 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
     def rank(output: Output) -> tuple[int, int, str, str, int, int]:
         group = sections if output.along else groups.index(output.group)
         part, _, axis = output.part.partition(":")
-        return group, parts.index(part), axis, output.station, rows.index(output.meant(table)), output.power or 0
+        return (
+            group,
+            parts.index(part),
+            axis,
+            output.station,
+            rows.index(output.meant(table)),
+            output.power or 0,
+        )
 
     return {output: outputs[output] for output in sorted(outputs, key=rank)}
 
@@ -43,7 +55,9 @@ _GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 
 def told(solution: Solution) -> Iterator[Output]:
-    """Efforts, reactions with their resultants, section forces, what is largest along links, and own outputs."""
+    """Efforts, reactions with their resultants, section forces, what is largest along links, and
+    own outputs.
+    """
     for output in solution.quantities():
         if output.group in _GROUPS:
             yield output
@@ -54,7 +68,11 @@ def told(solution: Solution) -> Iterator[Output]:
 
 
 def error_of(solution: Solution, name: str | Output) -> float | None:
-    """How far a quantity may be off, in its unit, or None; the size of a force by no more than its components together."""
-    errors = [solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))]
+    """How far a quantity may be off, in its unit, or None; the size of a force by no more than its
+    components together.
+    """
+    errors = [
+        solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))
+    ]
     known = [error for error in errors if error is not None]
     return math.hypot(*known) if len(known) == len(errors) else None

@@ -1,4 +1,6 @@
-"""What is no result, and why: the first instant at which a loop does not close, or is where its forces are not determined."""
+"""What is no result, and why: the first instant at which a loop does not close, or is where its
+forces are not determined.
+"""
 
 from __future__ import annotations
 
@@ -26,13 +28,18 @@ from .backends import Evaluated, run
 from .rules import limits, passes_dead_centre
 from .rung import Rung
 
-_JAM = "friction there has no force that holds its law, or several; expected less mu, a longer guide, or a push nearer to its line"
+_JAM = (
+    "friction there has no force that holds its law, or several; expected less mu, a longer guide,"
+    " or a push nearer to its line"
+)
 _TRIALS, _WIDE = 100, 0.1
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why there is no result: a status, and the same in words that name the joint, the instant and the driven coordinates."""
+    """Why there is no result: a status, and the same in words that name the joint, the instant and
+    the driven coordinates.
+    """
 
     status: Status
     message: str
@@ -59,18 +66,27 @@ def refusal(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung
     i = int(np.argmax(bad))
     coordinates = graph.data.kinds.coordinates
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
-    at = where((name, coordinates[name], value) for name, value in zip(graph.driven, driven, strict=True))
+    at = where(
+        (name, coordinates[name], value) for name, value in zip(graph.driven, driven, strict=True)
+    )
     at = f"at t = {t[i]:.6g} s{at}"
     status = Status(int(statuses[i]))
     if status in (Status.OK, Status.AT_REST):
         refused = Refusal(Status.NOT_FINITE, _not_finite(graph, evaluated.out[:, i], at))
     else:
         left_open = functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p)
-        refused = Refusal(status, _Broken(graph, graph.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(left_open))
+        refused = Refusal(
+            status,
+            _Broken(graph, graph.rules[numbers[i] - 1], evaluated.out[:, i], most, at).words(
+                left_open
+            ),
+        )
     return replace(refused, message=_beyond(graph, p, precision, at) or refused.message)
 
 
-def _first_broken(graph: Program, evaluated: Evaluated, most: Sequence[float], beside: Array) -> npt.NDArray[np.intp]:
+def _first_broken(
+    graph: Program, evaluated: Evaluated, most: Sequence[float], beside: Array
+) -> npt.NDArray[np.intp]:
     """The number of the first rule that each instant breaks (t,), or zero."""
     checks = [np.asarray(evaluated.out[bound.column], float) for bound in graph.bounds]
     given = [checks, [*map(np.float64, most)], [*beside], [evaluated.status.astype(float)]]
@@ -78,8 +94,12 @@ def _first_broken(graph: Program, evaluated: Evaluated, most: Sequence[float], b
     return np.broadcast_to(found[0], evaluated.status.shape).astype(np.intp)
 
 
-def _beside(graph: Program, out: Array, most: Sequence[float], t: Array, p: Array, rung: Rung) -> Array:
-    """What stands beside the checks of each instant (bounds, t), as :class:`.Bound` tells: it is seen of several instants."""
+def _beside(
+    graph: Program, out: Array, most: Sequence[float], t: Array, p: Array, rung: Rung
+) -> Array:
+    """What stands beside the checks of each instant (bounds, t), as :class:`.Bound` tells: it is
+    seen of several instants.
+    """
     found = np.zeros((len(graph.bounds), t.size))
     for k, (bound, limit) in enumerate(zip(graph.bounds, most, strict=True)):
         column = np.asarray(out[bound.column], float)
@@ -98,7 +118,9 @@ def _beside(graph: Program, out: Array, most: Sequence[float], t: Array, p: Arra
 
 
 def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
-    """At which instants of the columns ``out`` (columns, t) a joint that rubs is at rest: what depends on its friction is open."""
+    """At which instants of the columns ``out`` (columns, t) a joint that rubs is at rest: what
+    depends on its friction is open.
+    """
     found = np.zeros(out.shape[-1], dtype=bool)
     for row in graph.checks("rest").values():
         found |= np.asarray(out[row]) > 0.5
@@ -106,7 +128,9 @@ def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
 
 
 def unfinished(graph: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
-    """At which instants (t,) there is no result; at rest there is one, beside what friction reaches."""
+    """At which instants (t,) there is no result; at rest there is one, beside what friction
+    reaches.
+    """
     rests = (evaluated.status == Status.NOT_FINITE) & resting(graph, evaluated.out)
     return np.asarray((evaluated.status != Status.OK) & ~rests)
 
@@ -118,11 +142,15 @@ def _dead_between(
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
-        evaluated, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
+        evaluated, _ = run(
+            graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags)
+        )
         closure = evaluated.out[bound.column].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
-        start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1))
+        start, stop = (
+            np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1)
+        )
     return ~(lowest > limit)
 
 
@@ -133,16 +161,20 @@ def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | No
     for name, body in graph.data.at(p)["bodies"].items():
         length = body["length"]
         if length is not None and not low <= length <= high:
-            what = f"link '{name}' is {length:.3g} m long, and {precision} precision can only square {low:.1g} to {high:.1g} m"
+            what = (
+                f"link '{name}' is {length:.3g} m long, and {precision} precision can only square"
+                f" {low:.1g} to {high:.1g} m"
+            )
             return f"the mechanism has no result {at}: {what}"
     return None
 
 
 def _left_open(graph: Program, start: Array, t: float, p: Array) -> str:
-    """What closes the loops that iteration leaves open at an instant: those with the widest gaps, or all where these do not tell.
+    """What closes the loops that iteration leaves open at an instant: those with the widest gaps,
+    or all where these do not tell.
 
-    What it was begun from says nothing of that: it goes on from there, each coordinate by steps of its own, so that loops that can
-    be closed are.
+    What it was begun from says nothing of that: it goes on from there, each coordinate by steps of
+    its own, so that loops that can be closed are.
     """
     assert graph.newton is not None
     motion, z = graph.motion(t, p), start[:, None]
@@ -158,7 +190,9 @@ def _left_open(graph: Program, start: Array, t: float, p: Array) -> str:
 
 
 def _not_finite(graph: Program, out: Array, at: str) -> str:
-    name = next(column for column, value in zip(graph.columns, out, strict=True) if not math.isfinite(value))
+    name = next(
+        column for column, value in zip(graph.columns, out, strict=True) if not math.isfinite(value)
+    )
     return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
 
 
@@ -190,23 +224,40 @@ class _Broken:
             far = f"by {share_beyond(value):.3g} of what is between them"
             return f"the {part}: what is put into its curve is beyond the curve's ends {at}, {far}"
         if bound.kind == "GAP":
-            what = f"what was found for the loop closed by {self.graph.data.closing(part)} does not close it"
+            what = (
+                f"what was found for the loop closed by {self.graph.data.closing(part)} does not"
+                " close it"
+            )
             return f"{what} {at}: a gap of {abs(value):.3g} m"
         if bound.kind == "MISFIT":
             gap = f"a gap of {value:.3g} of the links' length"
-            return f"the loops closed by {self.graph.data.closing(part)} are over-constrained and do not fit {at}: {gap}"
+            return (
+                f"the loops closed by {self.graph.data.closing(part)} are over-constrained and do"
+                f" not fit {at}: {gap}"
+            )
         if bound.kind == "TURNED":
             what = f"the angle of '{part}', which a load sees with its turns,"
             if abs(value) <= self.most[k]:
-                return f"{what} goes most of a turn from the instant {at} to the next: take more instants"
-            swing = f"swings {math.degrees(value):.3g} deg from the middle of its swing over the scene's motion {at}"
-            further = "it might be a turn further; take defaults and a motion that show how far it goes"
+                return (
+                    f"{what} goes most of a turn from the instant {at} to the next: take more"
+                    " instants"
+                )
+            swing = (
+                f"swings {math.degrees(value):.3g} deg from the middle of its swing over the"
+                f" scene's motion {at}"
+            )
+            further = (
+                "it might be a turn further; take defaults and a motion that show how far it goes"
+            )
             return f"{what} {swing}: {further}"
         if bound.kind == "JAM":
             what = "frictions" if ", " in part else "friction"
             return f"{what} '{part}': the mechanism jams {at}: {_JAM}"
         if bound.kind == "SLIP":
-            return f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it nearly jams"
+            return (
+                f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it"
+                " nearly jams"
+            )
         return f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
 
     def _loop(self, bound: Bound) -> str:
@@ -214,22 +265,47 @@ class _Broken:
         status, at, part = self.rule.status, self.at, bound.part
         closed = self.graph.data.closing(str(part))
         if status == Status.JUMPED:
-            return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
+            return (
+                f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
+            )
         if status == Status.OUT_OF_REACH:
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         passes = status == Status.PASSES_DEAD_CENTRE
         after = f"after {at.removeprefix('at ')}"
         if bound.column in self.graph.checks("gimbal").values():
             lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {at}"
-            why = "its third axis comes to lie along its first; choose axis and second so that turn_2 keeps away from 90 deg"
+            why = (
+                "its third axis comes to lie along its first; choose axis and second so that turn_2"
+                " keeps away from 90 deg"
+            )
             return f"joint '{part}' {lock}: {why}"
         if bound.column in self.graph.checks("roll").values():
-            lies = f"comes to lie along its beside {after}" if passes else f"lies along its beside {at}"
-            return f"bar '{part}' {lies}, which then tells no y axis; choose a direction that stays across it"
+            lies = (
+                f"comes to lie along its beside {after}"
+                if passes
+                else f"lies along its beside {at}"
+            )
+            return (
+                f"bar '{part}' {lies}, which then tells no y axis; choose a direction that stays"
+                " across it"
+            )
         if bound.column in self.graph.checks("hold").values():
             where_to = f"cannot make the motion {after if passes else at}"
-            return f"the drives {part} {where_to}: it can go on there without moving them; drive other joints"
+            return (
+                f"the drives {part} {where_to}: it can go on there without moving them; drive other"
+                " joints"
+            )
         if not passes:
-            return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
-        near = "; if it only comes near one, take more instants" if self.graph.newton is not None else ""
-        return f"the loop closed by {closed} passes a dead centre {after}, and can go on in two ways{near}"
+            return (
+                f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces"
+                " are not determined there"
+            )
+        near = (
+            "; if it only comes near one, take more instants"
+            if self.graph.newton is not None
+            else ""
+        )
+        return (
+            f"the loop closed by {closed} passes a dead centre {after}, and can go on in two"
+            f" ways{near}"
+        )

@@ -1,4 +1,6 @@
-"""Limits of what columns must keep to (:mod:`..equations.status`), by the precision in which they are evaluated."""
+"""Limits of what columns must keep to (:mod:`..equations.status`), by the precision in which they
+are evaluated.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +21,15 @@ from ..equations.status import Bound
 from ..equations.turns import REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
+"""How far equations that are too many may miss, of the links' length, and a row, of the size of its
+terms.
+"""
 
 OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 _COUNTED = 1e-3
-"""Where iterated loops are closed by so many steps: what is zero where they are closed is as small as what is left of them."""
+"""Where iterated loops are closed by so many steps: what is zero where they are closed is as small
+as what is left of them.
+"""
 
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
@@ -39,13 +45,19 @@ EXTENSIVE = ("GAP", "OPEN_MOMENT")
 
 
 def limits(graph: Program, precision: Precision, newton: int | None, extent: Any) -> list[Any]:
-    """The limits of a graph's bounds, in their order, for its ``extent``; ``newton`` as in :class:`.Rung`."""
-    shares = ((limit(graph, bound, precision, newton), bound.kind in EXTENSIVE) for bound in graph.bounds)
+    """The limits of a graph's bounds, in their order, for its ``extent``; ``newton`` as in
+    :class:`.Rung`.
+    """
+    shares = (
+        (limit(graph, bound, precision, newton), bound.kind in EXTENSIVE) for bound in graph.bounds
+    )
     return [share * extent if extensive else share for share, extensive in shares]
 
 
 def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None) -> float:
-    """The limit of a bound; of those that are :data:`EXTENSIVE` a share of the mechanism's extent."""
+    """The limit of a bound; of those that are :data:`EXTENSIVE` a share
+    of the mechanism's extent.
+    """
     exact, kind = newton is None, bound.kind
     if kind in ("OPEN", "OPEN_MOMENT"):
         return open_limit(graph, precision, newton)
@@ -54,7 +66,11 @@ def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None
     if kind in ("CLOSURE", "BRANCH"):
         check = graph.columns[bound.column]
         assert isinstance(check, Check)
-        return dead_centre(graph, precision, str(bound.part)) if check.kind == "closure" else _DEAD * ROUNDING[precision]
+        return (
+            dead_centre(graph, precision, str(bound.part))
+            if check.kind == "closure"
+            else _DEAD * ROUNDING[precision]
+        )
     if kind == "GAP":
         return MISFIT[precision] if exact else NEWTON_LOST
     if kind in ("MISFIT", "ROW"):
@@ -65,21 +81,28 @@ def limit(graph: Program, bound: Bound, precision: Precision, newton: int | None
 
 
 def open_limit(graph: Program, precision: Precision, newton: int | None) -> float:
-    """Limit of how far a determined force may change with what equilibrium leaves open; of a moment, a share of the extent."""
-    return max(OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision]), graph.data.rounding)
+    """Limit of how far a determined force may change with what equilibrium leaves open; of a
+    moment, a share of the extent.
+    """
+    return max(
+        OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision]), graph.data.rounding
+    )
 
 
 def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
-    """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
+    """Below what a closure says nothing: of a closed form it is the square of a sine, of an
+    iterated loop as the sine itself.
+    """
     square = _DEAD * ROUNDING[precision]
     return math.sqrt(square) if graph.iterates(closure) else square
 
 
 def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
-    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
+    """After which instants a loop may pass a dead centre: straight on from either side its
+    transmission angle's sine meets zero.
 
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
-    last are looked at too, each from its one side.
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With
+    ``ends`` the first interval and the last are looked at too, each from its one side.
     """
     found = np.zeros(closure.size, dtype=bool)
     sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))

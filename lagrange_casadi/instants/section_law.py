@@ -1,9 +1,11 @@
-"""The section law of a link as numbers: its forces at any ratio xi/l, and where along the link they peak.
+"""The section law of a link as numbers: its forces at any ratio xi/l, and where along the link they
+peak.
 
-With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density` gives, and of what acts on the
-link beyond it: at the tip (n0, f0, m0), at stations in between, each seen by the sections on its base side, and along the link
-(:mod:`.loads`). In space a link has two planes of bending, each like that of a planar link, and torsion, which nothing but
-the ends and stations changes.
+With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density`
+gives, and of what acts on the link beyond it: at the tip (n0, f0, m0), at stations in between, each
+seen by the sections on its base side, and along the link (:mod:`.loads`). In space a link has two
+planes of bending, each like that of a planar link, and torsion, which nothing but the ends and
+stations changes.
 """
 
 from __future__ import annotations
@@ -37,10 +39,12 @@ _BLOCK = 1 << 15
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SectionLaw(Brief):
-    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at stations, and ``spreads`` along it.
+    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at
+    stations, and ``spreads`` along it.
 
-    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which. ``slack`` is how
-    near to a section a station is that is at it, as a ratio to the length: see :func:`.edge`.
+    The coefficients are the seven of a planar mechanism or the twelve of a spatial one;
+    :attr:`table` says which. ``slack`` is how near to a section a station is that is at it, as a
+    ratio to the length: see :func:`.edge`.
     """
 
     length: float
@@ -60,14 +64,20 @@ class SectionLaw(Brief):
         return self.table.parts("section", force)
 
     def basis(self, xi: Array) -> Basis:
-        """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
+        """The functions along the link at ratios ``xi`` of any shape; they serve every force, and
+        the law at any instants.
+        """
         return Basis(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
 
-    def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
-        """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
+    def on_grid(
+        self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None
+    ) -> Array:
+        """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where
+        given; at a station, on its tip side.
 
-        Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one thread a core shares a grid that
-        is worth it; the bits do not depend on it. Raises :class:`SizeError` where there is less memory than that.
+        Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one
+        thread a core shares a grid that is worth it; the bits do not depend on it. Raises
+        :class:`SizeError` where there is less memory than that.
         """
         size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Basis) else xi.size)
         if out is None:
@@ -79,9 +89,11 @@ class SectionLaw(Brief):
         return out
 
     def largest(self, force: str, basis: Basis) -> Array:
-        """Of n laws, whose members are (n, t), length and density (n, 1): a force, largest in size over the instants, (n, xi).
+        """Of n laws, whose members are (n, t), length and density (n, 1): a force, largest in size
+        over the instants, (n, xi).
 
-        It has its sign, the positive one where both are as large, and is NaN of a law that is not finite throughout.
+        It has its sign, the positive one where both are as large, and is NaN of a law that is not
+        finite throughout.
         """
         columns, rows, acting, planes = self._planes(force, basis)
         return grids.largest(columns, rows, acting, basis.u, planes, self.slack)
@@ -94,7 +106,9 @@ class SectionLaw(Brief):
         return replace(self, coefficients=coefficients, loads=loads, spreads=spreads)
 
     def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
-        """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is meant at a station."""
+        """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is
+        meant at a station.
+        """
         u = np.asarray(xi, dtype=float)
         if len(parts := self._parts(force)) > 1:
             return size_of(self.at(part, u, side) for part in parts)
@@ -108,42 +122,76 @@ class SectionLaw(Brief):
         """The law of the same link with other numbers in it, (..., t)."""
         coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
         loads = tuple(
-            type(load)(load.name, *(outputs[Output("station", link, member, load.name)] for member in self.table.place_first))
+            type(load)(
+                load.name,
+                *(
+                    outputs[Output("station", link, member, load.name)]
+                    for member in self.table.place_first
+                ),
+            )
             for load in self.loads
         )
-        return replace(self, coefficients=coefficients, loads=loads, spreads=tuple(s.of(link, outputs) for s in self.spreads))
+        return replace(
+            self,
+            coefficients=coefficients,
+            loads=loads,
+            spreads=tuple(s.of(link, outputs) for s in self.spreads),
+        )
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
-        """By how much every force changes with its coefficients, loads and stations, and the sizes of all its terms added up.
+        """By how much every force changes with its coefficients, loads and stations, and the sizes
+        of all its terms added up.
 
-        ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at at ratios ``xi`` (n,) and at
-        every station, from both sides: (..., t, n + stations, sides). The sizes are (t, n + stations, sides). A section sees what
-        it saw before the change: that a station moves is no change by itself.
+        ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at
+        at ratios ``xi`` (n,) and at every station, from both sides: (..., t, n + stations, sides).
+        The sizes are (t, n + stations, sides). A section sees what it saw before the change: that a
+        station moves is no change by itself.
         """
         stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
-        u = np.stack([*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1)
-        seen = [[edge(u, self.slack, side) < load.station[:, None] for side in SIDES] for load in self.loads]
+        u = np.stack(
+            [*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1
+        )
+        seen = [
+            [edge(u, self.slack, side) < load.station[:, None] for side in SIDES]
+            for load in self.loads
+        ]
         basis, found = self.basis(u), {}
         for force in self.table.sections:
             columns, rows = self._terms(force, basis)
-            gaps = sum(change[..., None] * row for change, row in zip(changes._terms(force, basis)[0], rows, strict=True))
-            sizes = sum(np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True))
+            gaps = sum(
+                change[..., None] * row
+                for change, row in zip(changes._terms(force, basis)[0], rows, strict=True)
+            )
+            sizes = sum(
+                np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True)
+            )
             terms = self.table.sections[force]
             for spread, moving in zip(self.spreads, changes.spreads, strict=True):
-                gaps = gaps + (terms.arm or 1) * spread.moved(terms.spread, moving, u, self.length, arm=bool(terms.arm))
+                gaps = gaps + (terms.arm or 1) * spread.moved(
+                    terms.spread, moving, u, self.length, arm=bool(terms.arm)
+                )
                 gaps = gaps + spread.moved(terms.couple, moving, u, self.length, arm=False)
-            gaps, sizes = (np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
+            gaps, sizes = (
+                np.repeat(values[..., None], len(SIDES) if self.loads else 1, axis=-1)
+                for values in (gaps, sizes)
+            )
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
                 station, constant, slope = (values[:, None] for values in self._acting(force, load))
                 moved, more, steeper = (values[..., None] for values in self._acting(force, change))
-                gap, size = more + steeper * (station + moved - u) + slope * moved, np.abs(constant) + np.abs(slope * (station - u))
+                gap, size = (
+                    more + steeper * (station + moved - u) + slope * moved,
+                    np.abs(constant) + np.abs(slope * (station - u)),
+                )
                 for k, visible in enumerate(there):
                     gaps[..., k] += np.where(visible, gap, 0.0)
                     sizes[..., k] += np.where(visible, size, 0.0)
             found[force] = gaps, sizes
         for force in self.table.forces:
             if len(parts := self._parts(force)) > 1:
-                values = [np.stack([self.at(part, u, side) for side in SIDES[: gaps.shape[-1]]], axis=-1) for part in parts]
+                values = [
+                    np.stack([self.at(part, u, side) for side in SIDES[: gaps.shape[-1]]], axis=-1)
+                    for part in parts
+                ]
                 gap = growth_of_size(values, [found[part][0] for part in parts])
                 found[force] = gap, size_of(found[part][1] for part in parts)
         return found
@@ -152,7 +200,10 @@ class SectionLaw(Brief):
         """The derivative of a force by the ratio, at ratios of shape (t, ...)."""
         u = np.asarray(xi, dtype=float)
         if len(parts := self._parts(force)) > 1:
-            return slope_of_size([self.at(part, u, side) for part in parts], [self.along(part, u, side) for part in parts])
+            return slope_of_size(
+                [self.at(part, u, side) for part in parts],
+                [self.along(part, u, side) for part in parts],
+            )
         terms = self.table.sections[force]
         nudge = 1e-12 if side == "tip" else -1e-12
         if terms.arm:
@@ -161,13 +212,18 @@ class SectionLaw(Brief):
         return self._falling(force, u, u + nudge)
 
     def _falling(self, force: str, u: Array, middle: Array) -> Array:
-        """The derivative of a force that has no arm, where loads along the link act that act at the ``middle`` of its part."""
+        """The derivative of a force that has no arm, where loads along the link act that act at the
+        ``middle`` of its part.
+        """
         terms = self.table.sections[force]
         if len(terms.coefficients) == 1:
             return np.asarray(-self.length * self._turned(force, u, middle))
         first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
         slope = -self.density.at(u) * (first + self.length * u * second)
-        return np.asarray(slope - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads))
+        return np.asarray(
+            slope
+            - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads)
+        )
 
     def _turned(self, force: str, u: Array, middle: Array) -> Array:
         """The couple per length that the rotary inertia of slices puts into a moment."""
@@ -178,16 +234,26 @@ class SectionLaw(Brief):
         return found
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
-        """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
+        """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a
+        station, move with it.
 
         ``rates`` has the time derivatives of coefficients, loads and stations in their places.
         """
         u = np.asarray(xi, dtype=float)
         if len(parts := self._parts(force)) > 1:
-            return slope_of_size([self.at(part, u, side) for part in parts], [self.rate(part, rates, u, side) for part in parts])
+            return slope_of_size(
+                [self.at(part, u, side) for part in parts],
+                [self.rate(part, rates, u, side) for part in parts],
+            )
         # Loads along the link grow where they are.
-        spreads = tuple(replace(own, terms=change.terms) for own, change in zip(self.spreads, rates.spreads, strict=True))
-        values, passing = replace(rates, loads=(), spreads=spreads).at(force, u, side), np.zeros(u.shape)
+        spreads = tuple(
+            replace(own, terms=change.terms)
+            for own, change in zip(self.spreads, rates.spreads, strict=True)
+        )
+        values, passing = (
+            replace(rates, loads=(), spreads=spreads).at(force, u, side),
+            np.zeros(u.shape),
+        )
         for load, change in zip(self.loads, rates.loads, strict=True):
             station, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
@@ -198,14 +264,22 @@ class SectionLaw(Brief):
         return values + passing * self.along(force, u, side) if self.loads else values
 
     def bound(self, force: str, xi: Array) -> float:
-        """The largest size that a force may have at ratios ``xi`` where coefficients and loads have any sign."""
+        """The largest size that a force may have at ratios ``xi`` where coefficients and loads have
+        any sign.
+        """
         if len(parts := self._parts(force)) > 1:
             return math.hypot(*(self.bound(part, xi) for part in parts))
         bare = replace(self, spreads=())
         columns, rows = bare._terms(force, bare.basis(xi))
-        size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
+        size = sum(
+            np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True)
+        )
         for spread in self.spreads:
-            size = size + spread.bound(self.table.sections[force].spread, self.length, arm=bool(self.table.sections[force].arm))
+            size = size + spread.bound(
+                self.table.sections[force].spread,
+                self.length,
+                arm=bool(self.table.sections[force].arm),
+            )
             size = size + spread.bound(self.table.sections[force].couple, self.length, arm=False)
         for load in self.loads:
             _, constant, slope = self._acting(force, load)
@@ -213,25 +287,42 @@ class SectionLaw(Brief):
         return float(np.max(size, initial=0.0))
 
     def extreme(self, force: str) -> tuple[Array, Array]:
-        """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
+        """The ratio at which a force is largest in size, and the force there, at every instant,
+        both of shape (t,).
+        """
         blocks = [block._extreme(force) for block in self._blocks(force)]
-        return np.concatenate([place for place, _ in blocks]), np.concatenate([value for _, value in blocks])
+        return np.concatenate([place for place, _ in blocks]), np.concatenate(
+            [value for _, value in blocks]
+        )
 
     def reached(self, force: str) -> tuple[Array, Array]:
-        """Where along a link a force is smallest, largest, and largest in size as by :meth:`extreme`, and what it is: (3, t)."""
+        """Where along a link a force is smallest, largest, and largest in size as by
+        :meth:`extreme`, and what it is: (3, t).
+        """
         blocks = [block._reached(force) for block in self._blocks(force)]
-        return np.concatenate([place for place, _ in blocks], axis=1), np.concatenate([value for _, value in blocks], axis=1)
+        return np.concatenate([place for place, _ in blocks], axis=1), np.concatenate(
+            [value for _, value in blocks], axis=1
+        )
 
     def _blocks(self, force: str) -> list[SectionLaw]:
         """The law over few instants after another, so that what is sought at them stays at hand."""
         many = len(self._parts(force)) > 1 or self.spreads
         turns = (2 * self._highest + 4) * len(self.density.cells) if many else 1
         height = max(1, _BLOCK // (turns * (len(self._marked) + 1))) if turns > 1 else _BLOCK
-        return [self.during(slice(i, i + height)) for i in range(0, self.coefficients["n0"].size, height)]
+        return [
+            self.during(slice(i, i + height))
+            for i in range(0, self.coefficients["n0"].size, height)
+        ]
 
     def _reached(self, force: str) -> tuple[Array, Array]:
         places, values = self._marks(force, all_turns=True)
-        columns = np.stack([np.argmin(values, axis=1), np.argmax(values, axis=1), np.argmax(np.abs(values), axis=1)])
+        columns = np.stack(
+            [
+                np.argmin(values, axis=1),
+                np.argmax(values, axis=1),
+                np.argmax(np.abs(values), axis=1),
+            ]
+        )
         every = np.arange(len(values))
         return places[every, columns], values[every, columns]
 
@@ -241,13 +332,15 @@ class SectionLaw(Brief):
         return np.take_along_axis(places, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
 
     def curves(self, force: str) -> tuple[Array, Array]:
-        """Ratios among which a force is largest in size at every instant, and the force there, both of shape (t, k).
+        """Ratios among which a force is largest in size at every instant, and the force there, both
+        of shape (t, k).
 
-        They are those of the base, the tip, every station, once for each of its sides, and between two stations that at which the
-        force turns along the link, or else the end that is next to that; of a resultant its two largest summits there. So each is a
-        smooth curve over time, as long as no station passes another one and no summit of a resultant comes or goes. Where loads act
-        along the link, stations are also where these begin and end and where the density jumps, and every force is looked at as
-        resultants are.
+        They are those of the base, the tip, every station, once for each of its sides, and between
+        two stations that at which the force turns along the link, or else the end that is next to
+        that; of a resultant its two largest summits there. So each is a smooth curve over time, as
+        long as no station passes another one and no summit of a resultant comes or goes. Where
+        loads act along the link, stations are also where these begin and end and where the density
+        jumps, and every force is looked at as resultants are.
         """
         return self._marks(force, all_turns=False)
 
@@ -255,7 +348,9 @@ class SectionLaw(Brief):
         """The same; or of a resultant wherever it turns, its smallest sizes too."""
         still = np.zeros_like(self.coefficients["n0"])
         stations = self._marked
-        places = np.stack([still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1)
+        places = np.stack(
+            [still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1
+        )
         values = self.at(force, places)
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
@@ -266,38 +361,65 @@ class SectionLaw(Brief):
             if len(parts := self._parts(name)) > 1:
                 return size_of(within(part, u) for part in parts)
             masks = (mask.reshape(mask.shape + (1,) * (u.ndim - mask.ndim)) for mask in seen)
-            beyond = (self._beyond(name, load, u, mask) for load, mask in zip(self.loads, masks, strict=True))
+            beyond = (
+                self._beyond(name, load, u, mask)
+                for load, mask in zip(self.loads, masks, strict=True)
+            )
             return np.asarray(self._smooth(name, u) + sum(beyond))
 
         parts = self._parts(force)
         if len(parts) == 1 and not self.spreads:
             found = self._turning(force, within, low, high)
-        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1 and not self._thick:
+        elif (
+            force in self.table.sections
+            and len(self.table.sections[force].coefficients) == 1
+            and not self._thick
+        ):
             found = []
         else:
             turns = self._turns_of_size(parts, within, low, high)
-            found = list(np.moveaxis(turns.places, -1, 0)) if all_turns else turns.summits(np.abs(within(force, turns.places)))
-        return np.hstack([places, *found]), np.hstack([values, *(within(force, place) for place in found)])
+            found = (
+                list(np.moveaxis(turns.places, -1, 0))
+                if all_turns
+                else turns.summits(np.abs(within(force, turns.places)))
+            )
+        return np.hstack([places, *found]), np.hstack(
+            [values, *(within(force, place) for place in found)]
+        )
 
     @property
     def _marked(self) -> list[Array]:
-        """Ratios of the places at which something begins or ends to act between base and tip, each (t,)."""
-        marks = [*(load.station for load in self.loads), *(mark for spread in self.spreads for mark in spread.marks)]
+        """Ratios of the places at which something begins or ends to act between base and tip, each
+        (t,).
+        """
+        marks = [
+            *(load.station for load in self.loads),
+            *(mark for spread in self.spreads for mark in spread.marks),
+        ]
         if self.spreads:
             marks += [np.full_like(self.coefficients["n0"], jump) for jump in self.density.jumps]
         return [np.clip(mark, 0.0, 1.0) for mark in marks]
 
     def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
-        """Functions along the link, and columns and loads of a force, or of all that it is the size of, one after another."""
+        """Functions along the link, and columns and loads of a force, or of all that it is the size
+        of, one after another.
+        """
         parts = self._parts(force)
         terms = [self._terms(part, basis) for part in parts]
         acting = [self._acting(part, load) for part in parts for load in self.loads]
-        return [column for columns, _ in terms for column in columns], terms[0][1], acting, len(parts)
+        return (
+            [column for columns, _ in terms for column in columns],
+            terms[0][1],
+            acting,
+            len(parts),
+        )
 
     @property
     def _thick(self) -> bool:
         """Whether slices have rotary inertia."""
-        return any(couple in spread.terms for spread in self.spreads for couple in self.table.couples)
+        return any(
+            couple in spread.terms for spread in self.spreads for couple in self.table.couples
+        )
 
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
@@ -306,22 +428,30 @@ class SectionLaw(Brief):
 
     def _smooth(self, force: str, u: Array) -> Array:
         columns, rows = self._terms(force, self.basis(u))
-        return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
+        return np.asarray(
+            sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True))
+        )
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
         constant = getattr(load, terms.acting)
         if not terms.arm:
             return load.station, constant, np.zeros_like(constant)
-        return load.station, constant, terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length
+        return (
+            load.station,
+            constant,
+            terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length,
+        )
 
     def _beyond(self, force: str, load: AnyStationLoad, u: Array, seen: Any) -> Array:
         station, constant, slope = (_column(values, u) for values in self._acting(force, load))
         return np.where(seen, constant + slope * (station - u), 0.0)
 
-    def _turning(self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array) -> list[Array]:
-        """Where between two stations the force's derivative along the link is zero, or nearest to it: of a bending moment, first
-        where the shear rises through zero, then where it falls.
+    def _turning(
+        self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array
+    ) -> list[Array]:
+        """Where between two stations the force's derivative along the link is zero, or nearest to
+        it: of a bending moment, first where the shear rises through zero, then where it falls.
         """
         terms, l = self.table.sections[force], self.length
         if len(terms.coefficients) == 1:
@@ -331,17 +461,25 @@ class SectionLaw(Brief):
             turning = -first / (second * l)
             if terms.arm and self.density.uniform and not self.loads:
                 zeros = zeros_of_uniform_shear(constant, first, second, self.density.cells[0][0], l)
-                return [np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0) for zero in zeros]
+                return [
+                    np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0)
+                    for zero in zeros
+                ]
         middle = np.clip(np.where(np.isnan(turning), 0.0, turning)[:, None], low, high)
         if not terms.arm:
             return [middle]
         rises = ~np.signbit(second)[:, None]
         return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high, rises)
 
-    def _turns_of_size(self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array) -> Turns:
-        """Where a force turns, or the square of a resultant: of a shear force where V . V' = 0, of a bending one where M . M' = 0.
+    def _turns_of_size(
+        self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array
+    ) -> Turns:
+        """Where a force turns, or the square of a resultant: of a shear force where V .
 
-        Of a uniform link with no load along it that is a cubic or a quintic. A density is a factor of V' then, and left out.
+        V' = 0, of a bending one where M . M' = 0.
+
+        Of a uniform link with no load along it that is a cubic or a quintic. A density is a factor
+        of V' then, and left out.
         """
         bends, middle = bool(self.table.sections[parts[0]].arm), (low + high) / 2
 
@@ -362,18 +500,37 @@ class SectionLaw(Brief):
                     return slope(parts[0], u)
                 return np.asarray(sum(within(part, u) * slope(part, u) for part in parts))
 
-        return turns_between(change, low, high, self.density.breaks, self._degree(parts, bends=bends), signed=len(parts) == 1)
+        return turns_between(
+            change,
+            low,
+            high,
+            self.density.breaks,
+            self._degree(parts, bends=bends),
+            signed=len(parts) == 1,
+        )
 
     def _degree(self, parts: tuple[str, ...], *, bends: bool) -> int:
-        """Of what is zero where forces turn: shear forces are of one degree more than their slope, bending moments of two."""
+        """Of what is zero where forces turn: shear forces are of one degree more than their slope,
+        bending moments of two.
+        """
         if len(parts) == 1:
             return self._highest + bends
-        return 2 * self._highest + 3 if bends else 2 * self._highest + 1 if self.spreads else self._highest + 2
+        return (
+            2 * self._highest + 3
+            if bends
+            else 2 * self._highest + 1
+            if self.spreads
+            else self._highest + 2
+        )
 
     @property
     def _highest(self) -> int:
-        """The degree of the slope of a shear force, between two stations and in a cell of the density."""
-        return max(*map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0)
+        """The degree of the slope of a shear force, between two stations and in a cell of the
+        density.
+        """
+        return max(
+            *map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0
+        )
 
 
 def _column(values: Array, like: Array) -> Array:

@@ -1,4 +1,6 @@
-"""The quantities of a scene as curves over time, at any times: what :mod:`.summits` searches, by CasADi's virtual machine."""
+"""The quantities of a scene as curves over time, at any times: what :mod:`.summits` searches, by
+CasADi's virtual machine.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ _BLOCK = 4096
 
 
 class Along(Protocol):
-    """What has several curves, or such as are told by a whole link: the columns it is made of, by what these are."""
+    """What has several curves, or such as are told by a whole link: the columns it is made of, by
+    what these are.
+    """
 
     @property
     def columns(self) -> Mapping[Output, int]:
@@ -43,7 +47,9 @@ class Along(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class SectionForce:
-    """A section force of a link: the columns of the outputs that its law is made of, and how its mass lies."""
+    """A section force of a link: the columns of the outputs that its law is made of, and how its
+    mass lies.
+    """
 
     force: str
     link: str
@@ -58,24 +64,35 @@ class SectionForce:
         return places.T, values.T
 
 
-def section_forces(description: Description, link: str, rows: Mapping[Output, int]) -> dict[str, SectionForce]:
-    """The section forces of a link of a described mechanism by name; ``rows`` are those of all outputs."""
+def section_forces(
+    description: Description, link: str, rows: Mapping[Output, int]
+) -> dict[str, SectionForce]:
+    """The section forces of a link of a described mechanism by name; ``rows`` are those of all
+    outputs.
+    """
     body = description["bodies"][link]
     length, density = body["length"], density_of(body)
     own = {output: k for output, k in rows.items() if output.along and output.part == link}
-    return {force: SectionForce(force, link, own, length, density) for force in table_of(in_space(description)).forces}
+    return {
+        force: SectionForce(force, link, own, length, density)
+        for force in table_of(in_space(description)).forces
+    }
 
 
 Quantity: TypeAlias = "tuple[int, ...] | Along"
-"""A column, some that are the components of a vector whose size is meant, or what is told along a link, as a section force."""
+"""A column, some that are the components of a vector whose size is meant, or what is told along a
+link, as a section force.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with iterated coordinates ``z`` there.
+    """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with
+    iterated coordinates ``z`` there.
 
-    ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set, its values at the instants, which
-    tell its turns. ``rounding`` (watched, 1) is how far from zero each of the watched counts as zero.
+    ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set,
+    its values at the instants, which tell its turns. ``rounding`` (watched, 1) is how far from zero
+    each of the watched counts as zero.
     """
 
     graph: Program
@@ -98,18 +115,28 @@ class Signals:
     ) -> Peaks:
         """The peaks of the quantities over all times between the first instant and the last.
 
-        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it. ``search`` is the
-        compiled search; without it the reference serves. ``listed`` says which local peaks are told too.
+        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are
+        that have it. ``search`` is the compiled search; without it the reference serves. ``listed``
+        says which local peaks are told too.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
         first = self.columns(self.t[:1], self.z[:, :1])
         with np.errstate(all="ignore"):
             counts = [len(values) for _, values in self.curves(first, np.zeros(1, int))]
         quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
-        curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
+        curves = Curves(
+            quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots
+        )
         with np.errstate(all="ignore"):
             find = peaks if search is None else search.peaks
-            return find(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p), listed)
+            return find(
+                self,
+                curves,
+                self.t,
+                samples,
+                bent(self.graph, self.sharpness, self.t, self.p),
+                listed,
+            )
 
     def at(self, t: Array) -> Samples:
         """All curves at times; NaN where iterated loops do not close."""
@@ -124,11 +151,20 @@ class Signals:
         return np.asarray(np.clip(np.round((t - self.t[0]) / step), 0, self.t.size - 1), np.intp)
 
     def closed(self, t: Array, near: npt.NDArray[np.intp]) -> tuple[Array, Flags]:
-        """The iterated coordinates at times next to instants (z, t), and where the loops do not close."""
+        """The iterated coordinates at times next to instants (z, t), and where the loops do not
+        close.
+        """
         z = np.zeros((self.z.shape[0], t.size))
         failed = np.zeros(t.size, dtype=bool)
         for k in range(t.size if self.graph.newton else 0):
-            at, status = follow(self.graph, t[k : k + 1], self.p, self.z[:, near[k]], stages=self.stages, newton=self.newton)
+            at, status = follow(
+                self.graph,
+                t[k : k + 1],
+                self.p,
+                self.z[:, near[k]],
+                stages=self.stages,
+                newton=self.newton,
+            )
             z[:, k], failed[k] = at[:, 0], status[0] == Status.NOT_CONVERGED
         return z, failed
 
@@ -143,7 +179,9 @@ class Signals:
         watched = self.sharpness.watched(*self.inputs(t, z)).full()
         watched[np.abs(watched) <= self.rounding] = 0.0
         with np.errstate(all="ignore"):
-            places, values = (np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True))
+            places, values = (
+                np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True)
+            )
         return Samples(values, places, watched)
 
     def inputs(self, t: Array, z: Array) -> tuple[Any, ...]:
@@ -152,10 +190,14 @@ class Signals:
 
     def columns(self, t: Array, z: Array) -> Array:
         """The graph's columns at times, (columns, t), where the iterated coordinates are told."""
-        return np.asarray(self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full())
+        return np.asarray(
+            self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full()
+        )
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
-        """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns (columns, t)."""
+        """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns
+        (columns, t).
+        """
         found = []
         for q, quantity in enumerate(self.quantities):
             if not isinstance(quantity, tuple):

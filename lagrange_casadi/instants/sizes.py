@@ -16,7 +16,9 @@ def size_of(components: Iterable[Array]) -> Array:
 
 
 def largest(values: Array, axis: int | None = None) -> Array:
-    """The place of the value that is largest in size, as of ``np.argmax``; of what is no number only where nothing else is."""
+    """The place of the value that is largest in size, as of ``np.argmax``; of what is no number
+    only where nothing else is.
+    """
     sizes = np.abs(values)
     return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
 
@@ -25,7 +27,9 @@ def growth_of_size(components: Sequence[Array], changes: Sequence[Array]) -> Arr
     """By how much the size changes with the components; nothing of it cancels."""
     before = size_of(components)
     after = size_of(value + change for value, change in zip(components, changes, strict=True))
-    product = sum((2.0 * value + change) * change for value, change in zip(components, changes, strict=True))
+    product = sum(
+        (2.0 * value + change) * change for value, change in zip(components, changes, strict=True)
+    )
     return _quotient(np.asarray(product), before + after)
 
 

@@ -1,4 +1,6 @@
-"""What an evaluation gives: named arrays over time, section forces over time and xi/l, and peaks."""
+"""What an evaluation gives: named arrays over time, section forces over time
+and xi/l, and peaks.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Provenance:
-    """How the numbers were made. Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`."""
+    """How the numbers were made.
+
+    Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`.
+    """
 
     backend: str
     precision: str
@@ -59,9 +64,10 @@ class Provenance:
 class Peak:
     """The value of a quantity that is largest in size, with its sign, in ``unit``, and where it is.
 
-    ``t`` is its time [s]; ``xi`` the ratio xi/l of a section force, None of other quantities. ``value`` is NaN where the peak
-    between the instants cannot be told; ``least`` is then the largest size that was found. ``over`` is the coordinate [rad or m] of
-    the drive by which instants were asked for, None where they were not.
+    ``t`` is its time [s]; ``xi`` the ratio xi/l of a section force, None of other quantities.
+    ``value`` is NaN where the peak between the instants cannot be told; ``least`` is then the
+    largest size that was found. ``over`` is the coordinate [rad or m] of the drive by which
+    instants were asked for, None where they were not.
     """
 
     name: str
@@ -78,16 +84,20 @@ class Peak:
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``outputs`` holds every array over time, each of shape (t,); :mod:`.base.tables` says what each means, its unit and its sign.
-    ``t`` are the instants [s], ``xi`` the ratios xi/l of the section grids. ``left_open`` are outputs that equilibrium does not
-    determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
-    by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
-    centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
-    :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
-    which the instants were asked for, or None. ``elasticity`` says which outputs least strain energy told; ``sensitivities`` are
-    derivatives by parameters, where these were wanted; ``held`` are ranges of efforts that joints at rest leave open.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.base.tables` says what each
+    means, its unit and its sign. ``t`` are the instants [s], ``xi`` the ratios xi/l of the section
+    grids. ``left_open`` are outputs that equilibrium does not determine, because the mechanism is
+    over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same by
+    full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near
+    the loops are to a dead centre; a residual above ``tolerance`` means that the solution is wrong,
+    not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be
+    off, over all instants, in its unit. ``over`` is the coordinate of the drive by which the
+    instants were asked for, or None. ``elasticity`` says which outputs least strain energy told;
+    ``sensitivities`` are derivatives by parameters, where these were wanted; ``held`` are ranges of
+    efforts that joints at rest leave open.
 
-    Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
+    Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not
+    have, and list those it has.
     """
 
     case: str
@@ -112,7 +122,9 @@ class Solution:
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
-        """Every array over time, (t,), by full name: ``effort:O``, ``reaction:guide:fy``, ``section:link:law:n0``."""
+        """Every array over time, (t,), by full name: ``effort:O``, ``reaction:guide:fy``,
+        ``section:link:law:n0``.
+        """
         return {str(output): values for output, values in self.outputs.items()}
 
     @property
@@ -123,7 +135,11 @@ class Solution:
     @property
     def failed(self) -> dict[str, float]:
         """The residuals that are above the tolerance, or no numbers, and the largest of each."""
-        residuals = {name: float(np.max(v, initial=0.0)) for name, v in self.certificate.items() if name != "condition"}
+        residuals = {
+            name: float(np.max(v, initial=0.0))
+            for name, v in self.certificate.items()
+            if name != "condition"
+        }
         return {name: value for name, value in residuals.items() if not value <= self.tolerance}
 
     @property
@@ -133,8 +149,17 @@ class Solution:
 
     def __repr__(self) -> str:
         many = sum(1 for _ in self.names())
-        word = "certified" if self.certified else "its certificate fails" if self.failed else "no certificate"
-        return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {many} quantities, {word}>"
+        word = (
+            "certified"
+            if self.certified
+            else "its certificate fails"
+            if self.failed
+            else "no certificate"
+        )
+        return (
+            f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {many}"
+            f" quantities, {word}>"
+        )
 
     def effort(self, joint: str) -> Array:
         """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""
@@ -142,14 +167,25 @@ class Solution:
 
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint: what its parent does to its child, without the drive's effort."""
-        fx, fy = (self._find("joint with a reaction", Output("reaction", joint, member)) for member in ("fx", "fy"))
-        mz, fz, mx, my = (self.outputs.get(Output("reaction", joint, member)) for member in ("mz", "fz", "mx", "my"))
+        fx, fy = (
+            self._find("joint with a reaction", Output("reaction", joint, member))
+            for member in ("fx", "fy")
+        )
+        mz, fz, mx, my = (
+            self.outputs.get(Output("reaction", joint, member))
+            for member in ("mz", "fz", "mx", "my")
+        )
         return Reaction(fx, fy, mz, None if fz is None else (fz, mx, my))
 
     def motion(self, joint: str) -> JointMotion:
         """Motion of a joint's coordinate: its value, rate and acceleration."""
         members = ("", "rate", "acceleration")
-        return JointMotion(*(self._find("joint with a motion", Output("motion", joint, member)) for member in members))
+        return JointMotion(
+            *(
+                self._find("joint with a motion", Output("motion", joint, member))
+                for member in members
+            )
+        )
 
     def output(self, name: str) -> Array:
         """An output of the mechanism's own (t,), in the unit that it was declared with."""
@@ -157,7 +193,9 @@ class Solution:
 
     def pose(self, body: str) -> Pose:
         """Place and direction of a link or point mass, in ground axes."""
-        x, y = (self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y"))
+        x, y = (
+            self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y")
+        )
         angle, z = (self.outputs.get(Output("pose", body, member)) for member in ("angle", "z"))
         return Pose(x, y, angle, z, self._axes(body))
 
@@ -171,7 +209,8 @@ class Solution:
     def section(self, link: str) -> Section:
         """Forces inside a link.
 
-        Raises :class:`.DeclarationError` where they were not wanted, or where only the link's mass, centre and inertia are known.
+        Raises :class:`.DeclarationError` where they were not wanted, or where only the link's mass,
+        centre and inertia are known.
         """
         if link in self._sections:
             return self._sections[link]
@@ -179,7 +218,9 @@ class Solution:
         if link not in bodies:
             raise UnknownNameError("link with sections", link, self._sections)
         if "density" in bodies[link]:
-            raise DeclarationError(f"the sections of link '{link}' were not wanted; want section:{link} too")
+            raise DeclarationError(
+                f"the sections of link '{link}' were not wanted; want section:{link} too"
+            )
         links = [name for name, body in bodies.items() if body["length"] is not None]
         raise DeclarationError(no_sections(link, link=link in links, links=links))
 
@@ -188,9 +229,15 @@ class Solution:
         found: Stress = method("Solution.stress")(self, link)
         return found
 
-    def safety(self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
-        """The factors of safety of a link that has a beam, or of what is fitted to a joint: see :func:`.strength.safety`."""
-        found: Safety = method("Solution.safety")(self, link, criterion=criterion, yielding=yielding)
+    def safety(
+        self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+    ) -> Safety:
+        """The factors of safety of a link that has a beam, or of what is fitted to a joint: see
+        :func:`.strength.safety`.
+        """
+        found: Safety = method("Solution.safety")(
+            self, link, criterion=criterion, yielding=yielding
+        )
         return found
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:
@@ -210,19 +257,31 @@ class Solution:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is worth a word though all is right: points beyond the end of a link, joints that rub at rest, links that swing."""
-        known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
+        """What is worth a word though all is right: points beyond the end of a link, joints that
+        rub at rest, links that swing.
+        """
+        known = {
+            output: values
+            for output, values in self.outputs.items()
+            if output not in self.left_open
+        }
         found = notes(self.t, known, self.description, self.resting)
-        slopes = () if self.resting.any() else self.sensitivities.notes()  # at rest all that rubs is open
+        slopes = (
+            () if self.resting.any() else self.sensitivities.notes()
+        )  # at rest all that rubs is open
         if any(output.group == "deflection" for output in self.outputs):
             slopes = (*slopes, *method("Solution.notes")(self))
         return (*found, *held_notes(self.held), *self.elasticity.notes, *slopes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
-        """At which instants (t,) a joint that rubs is at rest: what depends on its friction is NaN there."""
+        """At which instants (t,) a joint that rubs is at rest: what depends on its friction is NaN
+        there.
+        """
         found = np.zeros(self.t.size, dtype=bool)
-        if "losses" in self.description or any("friction" in load for load in self.description["loads"].values()):
+        if "losses" in self.description or any(
+            "friction" in load for load in self.description["loads"].values()
+        ):
             for output, values in self.outputs.items():
                 if output not in self.left_open:
                     found |= np.isnan(values)
@@ -230,22 +289,42 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
-        marked = isinstance(instants, np.ndarray) and instants.dtype == bool and instants.shape == self.t.shape
+        marked = (
+            isinstance(instants, np.ndarray)
+            and instants.dtype == bool
+            and instants.shape == self.t.shape
+        )
         if not (isinstance(instants, slice) or marked):
-            raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
+            raise DeclarationError(
+                "during: expected a slice, or True or False for each instant, got"
+                f" {shown(instants)}"
+            )
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         left = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
         slopes = self.sensitivities.during(instants)
         held = {name: found.during(instants) for name, found in self.held.items()}
-        return replace(self, t=self.t[instants], outputs=outputs, certificate=left, over=over, sensitivities=slopes, held=held)
+        return replace(
+            self,
+            t=self.t[instants],
+            outputs=outputs,
+            certificate=left,
+            over=over,
+            sensitivities=slopes,
+            held=held,
+        )
 
     @property
     def by_equilibrium(self) -> Solution:
         """The same without what elasticity told: it is open, and NaN."""
         told = self.elasticity.told
         nothing = {output: np.full_like(self.t, np.nan) for output in told}
-        return replace(self, outputs={**self.outputs, **nothing}, left_open=(*self.left_open, *told), elasticity=Elasticity())
+        return replace(
+            self,
+            outputs={**self.outputs, **nothing},
+            left_open=(*self.left_open, *told),
+            elasticity=Elasticity(),
+        )
 
     def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""
@@ -255,14 +334,20 @@ class Solution:
         return not any(component in self.left_open for component in output.components(self.table))
 
     def made_of(self, output: Output) -> tuple[Output, ...]:
-        """The series whose size a resultant is, of those that there are; any other output is made of itself."""
+        """The series whose size a resultant is, of those that there are; any other output is made
+        of itself.
+        """
         components = output.components(self.table)
         return tuple(o for o in components if o in self.outputs) or components
 
     def quantities(self) -> Iterator[Output]:
-        """All quantities, the coefficients of the laws left out and the section forces in their place."""
+        """All quantities, the coefficients of the laws left out and the section forces in their
+        place.
+        """
         yield from (output for output in self.outputs if not output.along)
-        yield from (Output("section", link, force) for link in self._sections for force in self.table.forces)
+        yield from (
+            Output("section", link, force) for link in self._sections for force in self.table.forces
+        )
 
     def names(self) -> Iterator[str]:
         """The full names of all quantities."""
@@ -287,7 +372,9 @@ class Solution:
         return self._of_section(output).array(output.member)
 
     def extremes(self, name: str | Output) -> tuple[Array, Array | None]:
-        """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
+        """A quantity at every instant, (t,); of a section force the value largest in size along the
+        link, and its ratio xi/l.
+        """
         output = self._output(name)
         if self._over_time(output):
             return self.array(output), None
@@ -295,7 +382,8 @@ class Solution:
         return values, places
 
     def peak(self, name: str | Output) -> Peak:
-        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi.
+        """The value of a quantity that is largest in size, over the instants; along a link exactly,
+        whatever the grid of xi.
 
         Between the instants it may be larger: :func:`.refine` gives the largest over all times.
         """
@@ -306,27 +394,38 @@ class Solution:
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), xi, over=over)
 
     def statistics(self, name: str | Output) -> Statistics:
-        """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity over the instants."""
+        """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity
+        over the instants.
+        """
         output = self._output(name)
         if output.group == "section":
-            return Statistics.along(str(output), self.unit(output), self.t, *self._of_section(output).law.reached(output.member))
+            return Statistics.along(
+                str(output),
+                self.unit(output),
+                self.t,
+                *self._of_section(output).law.reached(output.member),
+            )
         return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
 
     def report(self, path: str | os.PathLike[str]) -> None:
-        """Write a page that shows the mechanism moving, its forces on it, charts and tables: one HTML file for any browser.
+        """Write a page that shows the mechanism moving, its forces on it, charts and tables: one
+        HTML file for any browser.
 
-        Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end in .html; :class:`.PathError`
-        and :class:`.StoreError` where the file cannot be written.
+        Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end
+        in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be written.
         """
         method("Solution.report")(self, path)
 
     def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
-        """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends: see :func:`.write_animation`."""
+        """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends:
+        see :func:`.write_animation`.
+        """
         found: Animation = method("Solution.animate")(self, path, film)
         return found
 
     def view(self, height: int = 760) -> View:
-        """The same page for a notebook, which shows it in a frame of a height [points] where it is the last value of a cell.
+        """The same page for a notebook, which shows it in a frame of a height [points] where it is
+        the last value of a cell.
 
         Raises :class:`.DeclarationError` where ``motion`` was not wanted.
         """
@@ -339,11 +438,14 @@ class Solution:
         return found
 
     def to_xarray(self) -> xarray.Dataset:
-        """All quantities as an ``xarray.Dataset`` over t and xi, with units; an error of ours without xarray."""
+        """All quantities as an ``xarray.Dataset`` over t and xi, with units; an error of ours
+        without xarray.
+        """
         return dataset(self)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """All quantities as a ``pandas.DataFrame``, a row an instant, with units in the heads; a section force once for each xi.
+        """All quantities as a ``pandas.DataFrame``, a row an instant, with units in the heads; a
+        section force once for each xi.
 
         Raises :class:`.LagrangeCasadiError` where pandas is not installed.
         """
@@ -351,9 +453,16 @@ class Solution:
 
     @cached_property
     def _sections(self) -> dict[str, Section]:
-        links = {output.part: self.description["bodies"][output.part] for output in self.outputs if output.group == "law"}
+        links = {
+            output.part: self.description["bodies"][output.part]
+            for output in self.outputs
+            if output.group == "law"
+        }
         precision = self.provenance.precision
-        laws = {link: law_of(link, self.outputs, body["length"], density_of(body), precision) for link, body in links.items()}
+        laws = {
+            link: law_of(link, self.outputs, body["length"], density_of(body), precision)
+            for link, body in links.items()
+        }
         return {link: Section(law, self.xi) for link, law in laws.items()}
 
     def _output(self, name: str | Output) -> Output:
@@ -376,11 +485,16 @@ class Solution:
     def multiplier(self, name: str) -> Array:
         """Multiplier of a constraint or a non-holonomic constraint, (t,).
 
-        Its force is + lambda dPhi/dq along what Phi is written in (paper eq. 2); its unit is that of power over Phi'.
+        Its force is + lambda dPhi/dq along what Phi is written in (paper eq. 2); its unit is that
+        of power over Phi'.
         """
         return self._find("constraint or row with a multiplier", Output("multiplier", name))
 
     def _find(self, kind: str, output: Output) -> Array:
         if not isinstance(output.part, str) or output not in self.outputs:
-            raise UnknownNameError(kind, str(output.part), dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
+            raise UnknownNameError(
+                kind,
+                str(output.part),
+                dict.fromkeys(o.part for o in self.outputs if o.group == output.group),
+            )
         return self.outputs[output]

@@ -1,4 +1,6 @@
-"""What a quantity is over the whole time: its mean, its root mean square, and where it is smallest and largest."""
+"""What a quantity is over the whole time: its mean, its root mean square, and where it is smallest
+and largest.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from .sizes import largest
 
 @dataclass(frozen=True)
 class Extreme:
-    """A value that a quantity has, with its sign, its time [s], and of a section force its ratio xi/l, else None."""
+    """A value that a quantity has, with its sign, its time [s], and of a section force its ratio
+    xi/l, else None.
+    """
 
     value: float
     t: float
@@ -23,12 +27,13 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Statistics:
-    """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and largest value of the instants.
+    """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and
+    largest value of the instants.
 
-    Instants at which it is no number do not count: at rest friction may leave it open (see :func:`counted`).
-    ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is largest in size. Along a link they are exact,
-    whatever the grid of xi. ``mean`` and ``rms``, the root of the mean square, are None of a section force: they differ from ratio
-    to ratio.
+    Instants at which it is no number do not count: at rest friction may leave it open (see
+    :func:`counted`). ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is
+    largest in size. Along a link they are exact, whatever the grid of xi. ``mean`` and ``rms``, the
+    root of the mean square, are None of a section force: they differ from ratio to ratio.
     """
 
     name: str
@@ -50,27 +55,36 @@ class Statistics:
 
     @classmethod
     def along(cls, name: str, unit: str, t: Array, places: Array, values: Array) -> Statistics:
-        """Those of a section force, from where along the link it is smallest, largest, and largest in size, and what it is there.
+        """Those of a section force, from where along the link it is smallest, largest, and largest
+        in size, and what it is there.
 
         Places and values are (3, t).
         """
         chosen = (*_ends(values[0], values[1]), largest(values[2]))
-        ends = (Extreme(float(values[k, i]), float(t[i]), float(places[k, i])) for k, i in enumerate(map(int, chosen)))
+        ends = (
+            Extreme(float(values[k, i]), float(t[i]), float(places[k, i]))
+            for k, i in enumerate(map(int, chosen))
+        )
         return cls(name, unit, None, None, *ends)
 
 
 def _ends(low: Array, high: Array) -> tuple[Any, Any]:
     """Where values are smallest and largest; what is no number is neither."""
-    return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(np.where(np.isnan(high), -np.inf, high))
+    return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(
+        np.where(np.isnan(high), -np.inf, high)
+    )
 
 
 def counted(values: Array) -> npt.NDArray[np.bool_]:
-    """At which instants values (..., t) count: not where friction at rest leaves one of them open, which is then no number."""
+    """At which instants values (..., t) count: not where friction at rest leaves one of them open,
+    which is then no number.
+    """
     return np.asarray(~np.isnan(values).any(axis=tuple(range(values.ndim - 1))))
 
 
 def of_counted(values: Array) -> Array:
-    """Values (n, members, t) with those of an instant that counts in place of each that does not: their extremes are the same.
+    """Values (n, members, t) with those of an instant that counts in place of each that does not:
+    their extremes are the same.
 
     What counts at no instant stays as it is.
     """
@@ -81,7 +95,8 @@ def of_counted(values: Array) -> Array:
 
 
 def shares(t: Array, counts: npt.NDArray[np.bool_] | None = None) -> Array:
-    """The part of the time that each instant stands for, by trapezia, (t,): of the steps whose two ends count.
+    """The part of the time that each instant stands for, by trapezia, (t,): of the steps whose two
+    ends count.
 
     Where there is no such step, the instants that count have equal parts; NaN where none does.
     """
@@ -91,4 +106,6 @@ def shares(t: Array, counts: npt.NDArray[np.bool_] | None = None) -> Array:
     weights[1:] += steps
     if weights.any():
         return np.asarray(weights / weights.sum())
-    return np.asarray(counts / np.count_nonzero(counts) if counts.any() else np.full(t.size, np.nan))
+    return np.asarray(
+        counts / np.count_nonzero(counts) if counts.any() else np.full(t.size, np.nan)
+    )

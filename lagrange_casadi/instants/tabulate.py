@@ -1,4 +1,6 @@
-"""The table of a scene's cycle, with a given number of nodes, or with as many as an accuracy takes."""
+"""The table of a scene's cycle, with a given number of nodes, or with as
+many as an accuracy takes.
+"""
 
 from __future__ import annotations
 
@@ -29,39 +31,48 @@ _EPSILON = 2.0**-52
 _HALFWAY = np.array([float(weight) for weight in weights(np.array(0.5))])
 
 
-def tabulate(graph: Program, p: Array, table: int | float, rates: tuple[float, float]) -> CycleTable:
-    """The table of a scene's cycle for parameters ``p`` (in the mechanism's order), which serves any motion of its one drive.
+def tabulate(
+    graph: Program, p: Array, table: int | float, rates: tuple[float, float]
+) -> CycleTable:
+    """The table of a scene's cycle for parameters ``p`` (in the mechanism's order), which serves
+    any motion of its one drive.
 
     Parameters
     ----------
     table
-        A whole number from 8 to 16384: how many nodes. Or a number between 0 and 1: the accuracy; then nodes are doubled, from 16
-        on, until no column's largest error is more than that, of its peak over the cycle.
+        A whole number from 8 to 16384: how many nodes. Or a number between 0 and 1: the accuracy;
+        then nodes are doubled, from 16 on, until no column's largest error is more than that, of
+        its peak over the cycle.
     rates
-        The largest rate [rad/s] and acceleration [rad/s^2] of the motion that it will serve: peaks and errors are those at both
-        signs of these. A faster motion is served too, with errors that are larger in proportion.
+        The largest rate [rad/s] and acceleration [rad/s^2] of the motion that it will serve: peaks
+        and errors are those at both signs of these. A faster motion is served too, with errors that
+        are larger in proportion.
 
     Errors are those halfway between nodes, beyond the rounding of the graph itself.
 
-    Raises :class:`DeclarationError`, with the reason, for a scene whose cycle cannot be tabulated, for an accuracy that is not
-    reached, and for mistakes in the arguments.
+    Raises :class:`DeclarationError`, with the reason, for a scene whose cycle cannot be tabulated,
+    for an accuracy that is not reached, and for mistakes in the arguments.
     """
     accuracy, nodes = _asked(table)
     for output in graph.outputs:
         if output.group in LARGEST_ALONG:
             raise DeclarationError(
-                f"table: {output} is no polynomial of the rate; want section:{output.part}, and tell its strength"
+                f"table: {output} is no polynomial of the rate; want section:{output.part}, and"
+                " tell its strength"
             )
     largest = _largest(rates)
     cycle = cycle_of(graph, p, largest)
     values, best = cycle.values(nodes), None
     while True:
         between = cycle.values(nodes, halfway=True)
-        kept = np.maximum(np.abs(values).max(axis=-1), np.abs(between).max(axis=-1)) > cycle.rounding
+        kept = (
+            np.maximum(np.abs(values).max(axis=-1), np.abs(between).max(axis=-1)) > cycle.rounding
+        )
         if 8 * (nodes + 5) * np.count_nonzero(kept) > LARGEST:
             if best is None:
                 raise DeclarationError(
-                    f"table: {nodes} nodes take more than {LARGEST // 10**6} MB; expected fewer, or fewer outputs"
+                    f"table: {nodes} nodes take more than {LARGEST // 10**6} MB; expected fewer, or"
+                    " fewer outputs"
                 )
             break
         values[~kept] = between[~kept] = 0.0
@@ -71,57 +82,90 @@ def tabulate(graph: Program, p: Array, table: int | float, rates: tuple[float, f
         best = found if best is None or found.error < best.error else best
         if 2 * nodes > MOST:
             break
-        values, nodes = np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1), 2 * nodes
+        values, nodes = (
+            np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1),
+            2 * nodes,
+        )
     column = column_of(best.columns[int(np.argmax(best.errors))])
     worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
     raise DeclarationError(
-        f"table: an accuracy of {accuracy:g} is not reached; the best is {best.error:.2g}, with {best.nodes} nodes, and "
-        f"{worst} is the worst there"
+        f"table: an accuracy of {accuracy:g} is not reached; the best is {best.error:.2g}, with"
+        f" {best.nodes} nodes, and {worst} is the worst there"
     )
 
 
 @functools.lru_cache(maxsize=32)
 def still(graph: Program, p: tuple[float, ...]) -> dict[Output, float]:
-    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them to either side of a section.
+    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them
+    to either side of a section.
 
     And where loads along links begin and end.
     """
     places = {("station", "station"), ("spread", "width"), ("spread", "end")}
-    rows = {output: k for output, k in graph.outputs.items() if (output.group, output.member) in places}
+    rows = {
+        output: k for output, k in graph.outputs.items() if (output.group, output.member) in places
+    }
     if not rows:
         return {}
     t, *moving, parameters = graph.instant.sx_in()
     found = graph.instant(t, *moving, parameters)[list(rows.values())]
     depends = ca.jacobian_sparsity(found, ca.vertcat(t, *moving))
     fixed = [k for k in range(len(rows)) if k not in depends.row()]
-    places = ca.Function("still", [parameters], [ca.substitute(found[fixed], ca.vertcat(t, *moving), 0)])(list(p)).full().ravel()
+    places = (
+        ca.Function(
+            "still", [parameters], [ca.substitute(found[fixed], ca.vertcat(t, *moving), 0)]
+        )(list(p))
+        .full()
+        .ravel()
+    )
     return dict(zip((list(rows)[k] for k in fixed), places.tolist(), strict=True))
 
 
-def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.bool_], rates: tuple[float, float]) -> CycleTable:
-    """The table through values at the nodes, and its errors by those between them, (factors, columns, nodes)."""
+def _table(
+    cycle: Cycle,
+    values: Array,
+    between: Array,
+    kept: npt.NDArray[np.bool_],
+    rates: tuple[float, float],
+) -> CycleTable:
+    """The table through values at the nodes, and its errors by those between them, (factors,
+    columns, nodes).
+    """
     graph = cycle.drive.graph
     rate, acceleration = rates
     places = arranged(kept).terms
-    coefficients = splines(np.array([values[place] for place in places]).reshape(len(places), values.shape[-1]))
+    coefficients = splines(
+        np.array([values[place] for place in places]).reshape(len(places), values.shape[-1])
+    )
     gaps = between.copy()
     for place, spline in zip(places, coefficients.T, strict=True):
         gaps[place] -= np.convolve(spline, _HALFWAY, "valid")
-    peaks = np.max([_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0)
+    peaks = np.max(
+        [_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0
+    )
     peaks += np.abs(cycle.drift) * cycle.period
     peaks[[k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
-    # The rate's square and the acceleration have one unit: where there is but one, the other still rounds.
+    # The rate's square and the acceleration have one unit: where there is but one, the other still
+    # rounds.
     turning = max(rate**2, acceleration)
     rounding = np.array([1.0, math.sqrt(turning), turning, turning]) @ cycle.rounding
     beyond = np.maximum(_reach(gaps, rate, acceleration).max(axis=-1) - rounding, _EPSILON * peaks)
     errors = np.divide(beyond, peaks, out=np.zeros_like(beyond), where=peaks > 0.0)
-    return CycleTable(cycle.turns, graph.names, kept, coefficients, cycle.drift, rates, peaks, errors)
+    return CycleTable(
+        cycle.turns, graph.names, kept, coefficients, cycle.drift, rates, peaks, errors
+    )
 
 
 def _reach(terms: Array, rate: float, acceleration: float) -> Array:
-    """The largest absolute columns (columns, n), of terms (factors, columns, n), over both signs of rate and acceleration."""
+    """The largest absolute columns (columns, n), of terms (factors, columns, n), over both signs of
+    rate and acceleration.
+    """
     constant, by_rate, by_square, by_acceleration = terms
-    found: Array = np.abs(constant + rate**2 * by_square) + rate * np.abs(by_rate) + acceleration * np.abs(by_acceleration)
+    found: Array = (
+        np.abs(constant + rate**2 * by_square)
+        + rate * np.abs(by_rate)
+        + acceleration * np.abs(by_acceleration)
+    )
     return found
 
 
@@ -132,7 +176,8 @@ def _asked(table: int | float) -> tuple[float | None, int]:
     if isinstance(table, Real) and not isinstance(table, Integral) and 0.0 < float(table) < 1.0:
         return float(table), FEWEST
     raise DeclarationError(
-        f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy between 0 and 1, got {table!r}"
+        f"table: expected a whole number of nodes from {LEAST} to {MOST}, or an accuracy between 0"
+        f" and 1, got {table!r}"
     )
 
 
@@ -141,6 +186,11 @@ def _largest(rates: tuple[float, float]) -> tuple[float, float]:
         rate, acceleration = (float(size) for size in rates)
     except (TypeError, ValueError):
         rate = acceleration = math.nan
-    if not (math.isfinite(rate) and math.isfinite(acceleration) and rate >= 0.0 and acceleration >= 0.0):
-        raise DeclarationError(f"table: expected the largest rate and acceleration, two numbers of at least 0, got {rates!r}")
+    if not (
+        math.isfinite(rate) and math.isfinite(acceleration) and rate >= 0.0 and acceleration >= 0.0
+    ):
+        raise DeclarationError(
+            "table: expected the largest rate and acceleration, two numbers of at least 0, got"
+            f" {rates!r}"
+        )
     return rate, acceleration

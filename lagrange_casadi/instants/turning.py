@@ -1,4 +1,5 @@
-"""Where along a link a force turns: the zeros of its slope between two stations, or what is nearest to them.
+"""Where along a link a force turns: the zeros of its slope between two stations, or what is nearest
+to them.
 
 All of it is done at many instants at once.
 """
@@ -22,12 +23,15 @@ _CLOSE = 512 * float(np.finfo(float).eps)
 """Where something turns: what a place is off changes a summit by the square of that."""
 
 
-def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array) -> list[Array]:
+def zeros_of_shear(
+    shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array
+) -> list[Array]:
     """Where a shear force rises through zero, then where it falls.
 
-    It is monotonic on either side of its turning point ``middle``, whatever the density, so it has one zero there or none. Where it
-    has none, that end is taken at which it is nearer to zero. ``rises`` tells whether it rises before its turning point: where that
-    is at an end, its values there differ by rounding alone, and do not tell.
+    It is monotonic on either side of its turning point ``middle``, whatever the density, so it has
+    one zero there or none. Where it has none, that end is taken at which it is nearer to zero.
+    ``rises`` tells whether it rises before its turning point: where that is at an end, its values
+    there differ by rounding alone, and do not tell.
     """
     places = np.stack([low, middle, high])
     ends = np.stack([shear(u) for u in (low, middle, high)])
@@ -36,10 +40,12 @@ def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, h
 
 
 def _between(function: Callable[[Array], Array], places: Array, ends: Array) -> Array:
-    """The zero of what is monotonic between two ``places`` (2, ...), where it is ``ends``; or the place at which it is nearer.
+    """The zero of what is monotonic between two ``places`` (2, ...), where it is ``ends``; or the
+    place at which it is nearer.
 
-    By inverse quadratic interpolation, where that is safe, and else by halves: Chandrupatla, *A new hybrid quadratic/bisection
-    algorithm for finding the zero of a nonlinear function without using derivatives*, Advances in Engineering Software 28 (1997).
+    By inverse quadratic interpolation, where that is safe, and else by halves: Chandrupatla, *A new
+    hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using
+    derivatives*, Advances in Engineering Software 28 (1997).
     """
     nearer = np.where(np.abs(ends[0]) <= np.abs(ends[1]), places[0], places[1])
     sought = (ends[0] <= 0.0) != (ends[1] <= 0.0)
@@ -79,38 +85,53 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
 
 
 class Turns(NamedTuple):
-    """Where something may turn, (t, parts, n): its ``places``, and whether it has a ``summit`` there.
+    """Where something may turn, (t, parts, n): its ``places``, and whether it has a ``summit``
+    there.
 
-    All zeros of its slope are among the places. The last two are where it rests in a part that has no summit: the larger of them.
+    All zeros of its slope are among the places. The last two are where it rests in a part that has
+    no summit: the larger of them.
     """
 
     places: Array
     summit: npt.NDArray[np.bool_]
 
     def summits(self, sizes: Array) -> list[Array]:
-        """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
+        """Two summits for each part, (t, parts), in order along the link: the largest, by the
+        ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are the place at rest. So a summit that comes and goes by
-        rounding, as where the slope is zero at an end, changes nothing.
+        Where there is one, it is both; where there is none, both are the place at rest. So a summit
+        that comes and goes by rounding, as where the slope is zero at an end, changes nothing.
         """
         heights = np.where(self.summit, sizes, -np.inf)
         none, rests = ~self.summit.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
         larger = rests + np.argmax(sizes[..., rests:], axis=-1, keepdims=True)
         first = np.where(none, larger, np.argmax(heights, axis=-1, keepdims=True))
         np.put_along_axis(heights, first, -np.inf, -1)
-        second = np.where(heights.max(axis=-1, keepdims=True) > -np.inf, np.argmax(heights, axis=-1, keepdims=True), first)
+        second = np.where(
+            heights.max(axis=-1, keepdims=True) > -np.inf,
+            np.argmax(heights, axis=-1, keepdims=True),
+            first,
+        )
         both = [np.take_along_axis(self.places, which, -1)[..., 0] for which in (first, second)]
         return [np.minimum(*both), np.maximum(*both)]
 
 
 def turns_between(
-    slope: Callable[[Array], Array], low: Array, high: Array, breaks: Sequence[float], degree: int, *, signed: bool = False
+    slope: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    breaks: Sequence[float],
+    degree: int,
+    *,
+    signed: bool = False,
 ) -> Turns:
-    """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
+    """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a
+    ``degree`` between two ``breaks``.
 
-    ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative. What is
-    ``signed`` may be largest in size where it is smallest too. A size without a summit rests at its larger end; what is signed
-    nearer to that end at which its slope is smaller, for a summit comes in there.
+    ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any
+    factor that is not negative. What is ``signed`` may be largest in size where it is smallest too.
+    A size without a summit rests at its larger end; what is signed nearer to that end at which its
+    slope is smaller, for a summit comes in there.
     """
     nodes, weights = interpolation(degree)
     found: list[Turns] = []
@@ -133,11 +154,12 @@ def _rest(slope: Callable[[Array], Array], low: Array, high: Array) -> Array:
 
 
 def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of degree n; as many as that.
+    """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of
+    degree n; as many as that.
 
-    With them comes whether it falls through zero there, or rises. ``coefficients`` (n + 1, ...) are those of Chebyshev's
-    polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or none; then that end is
-    taken at which it is nearer to zero.
+    With them comes whether it falls through zero there, or rises. ``coefficients`` (n + 1, ...) are
+    those of Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative,
+    so it has one zero there or none; then that end is taken at which it is nearer to zero.
     """
     levels = [coefficients]
     while len(levels[-1]) > 1:
@@ -154,7 +176,8 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArr
 
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:
-    """The zeros of what is monotonic from a to b, by Newton's method kept within what encloses it; or the nearer end.
+    """The zeros of what is monotonic from a to b, by Newton's method kept within what encloses it;
+    or the nearer end.
 
     The ends are (parts, ...), the coefficients of polynomials (n + 1, ...).
     """
@@ -162,7 +185,9 @@ def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Arr
     there = (at_a <= 0.0) != (at_b <= 0.0)
     if not there.any():
         return found
-    level, slope = (np.broadcast_to(row[:, None], (len(row), *a.shape))[:, there] for row in (level, slope))
+    level, slope = (
+        np.broadcast_to(row[:, None], (len(row), *a.shape))[:, there] for row in (level, slope)
+    )
     a, b, negative = a[there], b[there], at_a[there] <= 0.0
     x = (a + b) / 2
     with np.errstate(all="ignore"):

@@ -1,4 +1,6 @@
-"""What a solution says of one part: the motion and reaction of a joint, the pose of a body, the forces inside a link."""
+"""What a solution says of one part: the motion and reaction of a joint, the pose of a body, the
+forces inside a link.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ from .sizes import size_of
 
 @dataclass(frozen=True, eq=False, repr=False)
 class JointMotion(Brief):
-    """Coordinate of a joint [rad or m] with its rate and acceleration, each (t,): child against parent.
+    """Coordinate of a joint [rad or m] with its rate and acceleration, each (t,): child against
+    parent.
 
     An angle is counter-clockwise, a slide along the joint's axis. Both are continuous in time.
     """
@@ -27,11 +30,12 @@ class JointMotion(Brief):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Reaction(Brief):
-    """Action of the joint's parent on its child, in ground axes, each (t,): ``fx``, ``fy`` [N], ``mz`` [N m] counter-clockwise.
+    """Action of the joint's parent on its child, in ground axes, each (t,): ``fx``, ``fy`` [N],
+    ``mz`` [N m] counter-clockwise.
 
-    In space there are ``fz``, ``mx`` and ``my`` too, ``across`` the plane; in a plane they raise :class:`.NoComponentError`, an
-    ``AttributeError``. Moments are about the joint's point on the child. What the joint does not bear is None. The drive's effort
-    is not part of it.
+    In space there are ``fz``, ``mx`` and ``my`` too, ``across`` the plane; in a plane they raise
+    :class:`.NoComponentError`, an ``AttributeError``. Moments are about the joint's point on the
+    child. What the joint does not bear is None. The drive's effort is not part of it.
     """
 
     fx: Array
@@ -75,8 +79,9 @@ class Reaction(Brief):
 class Pose(Brief):
     """Place of a body's base in ground axes [m] and direction of its axis [rad], each (t,).
 
-    ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass and in space. There ``z`` is told too,
-    and ``axes`` (t, 3, 3): its rows are the body's axes x, y and z in ground axes, NaN those that it has none of.
+    ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass and in
+    space. There ``z`` is told too, and ``axes`` (t, 3, 3): its rows are the body's axes x, y and z
+    in ground axes, NaN those that it has none of.
     """
 
     x: Array
@@ -88,21 +93,27 @@ class Pose(Brief):
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """The forces inside a link: what the part towards the tip does to the part towards the base, on the link's axes.
+    """The forces inside a link: what the part towards the tip does to the part towards the base, on
+    the link's axes.
 
-    In the plane these are (e, n, z): e runs from base to tip, n is 90 degrees counter-clockwise of e. In space they are x, from
-    base to tip, and the cross-section's y and z; ``shear`` and ``bending`` are then resultants. At a station the grids hold the
-    value on its tip side. What equilibrium does not determine is NaN. A grid is made when it is first asked for, from ``law``,
-    which holds seven numbers an instant, or twelve in space, and loads at stations and along the link; each raises
-    :class:`.SizeError` where memory does not hold it. Those of space raise :class:`.UnknownNameError` in the plane. The paper's
-    internal forces (Nguyen, Petre, Stroe, eq. 13, 20 and 21) have the opposite sign.
+    In the plane these are (e, n, z): e runs from base to tip, n is 90 degrees counter-clockwise of
+    e. In space they are x, from base to tip, and the cross-section's y and z; ``shear`` and
+    ``bending`` are then resultants. At a station the grids hold the value on its tip side. What
+    equilibrium does not determine is NaN. A grid is made when it is first asked for, from ``law``,
+    which holds seven numbers an instant, or twelve in space, and loads at stations and along the
+    link; each raises :class:`.SizeError` where memory does not hold it. Those of space raise
+    :class:`.UnknownNameError` in the plane. The paper's internal forces (Nguyen, Petre, Stroe, eq.
+    13, 20 and 21) have the opposite sign.
     """
 
     law: SectionLaw
     xi: Array
 
     def __repr__(self) -> str:
-        return f"<Section of a link of {self.law.length:g} m: {self.law.coefficients['n0'].size} instants, {self.xi.size} ratios>"
+        return (
+            f"<Section of a link of {self.law.length:g} m: {self.law.coefficients['n0'].size}"
+            f" instants, {self.xi.size} ratios>"
+        )
 
     @cached_property
     def axial(self) -> Array:
@@ -111,21 +122,27 @@ class Section:
 
     @cached_property
     def shear(self) -> Array:
-        """Shear force (t, xi) [N]: in the plane positive along n, minus the slope of ``bending``; in space the resultant."""
+        """Shear force (t, xi) [N]: in the plane positive along n, minus the slope of ``bending``;
+        in space the resultant.
+        """
         return self._grid("shear")
 
     @cached_property
     def bending(self) -> Array:
-        """Bending moment (t, xi) [N m]: in the plane positive counter-clockwise, in space the resultant.
+        """Bending moment (t, xi) [N m]: in the plane positive counter-clockwise, in space the
+        resultant.
 
-        In the plane a positive one stretches the fibres on the side of -n, to the right of whoever goes from base to tip, and
-        compresses those on the side of n. A cantilever whose tip is pulled along -n has a negative one.
+        In the plane a positive one stretches the fibres on the side of -n, to the right of whoever
+        goes from base to tip, and compresses those on the side of n. A cantilever whose tip is
+        pulled along -n has a negative one.
         """
         return self._grid("bending")
 
     @cached_property
     def shear_y(self) -> Array:
-        """Shear force along the link's y (t, xi) [N]: minus the slope of ``bending_z`` along the link."""
+        """Shear force along the link's y (t, xi) [N]: minus the slope of ``bending_z`` along the
+        link.
+        """
         return self._grid("shear_y")
 
     @cached_property

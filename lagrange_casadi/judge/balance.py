@@ -1,4 +1,5 @@
-"""Newton-Euler for every body, laws of loads, the power of all that does work, and sections at the bases of links.
+"""Newton-Euler for every body, laws of loads, the power of all that does work, and sections at the
+bases of links.
 
 All are from reported forces. Multipliers act along what stands in their equation.
 """
@@ -24,7 +25,8 @@ from .vectors import NIL, Axes, Scalar, Vector, less, product, total
 
 @dataclass(frozen=True, eq=False)
 class Action:
-    """A force and a couple on a body at a place, in ground axes; and the opposite there ``against`` another body, where given.
+    """A force and a couple on a body at a place, in ground axes; and the opposite there ``against``
+    another body, where given.
 
     ``works`` says whether they do work.
     """
@@ -39,7 +41,11 @@ class Action:
     @property
     def moving(self) -> Iterator[tuple[str, bool]]:
         """The bodies but for the ground, and whether they bear the opposite."""
-        return ((body, opposite) for body, opposite in ((self.body, False), (self.against, True)) if body != "ground")
+        return (
+            (body, opposite)
+            for body, opposite in ((self.body, False), (self.against, True))
+            if body != "ground"
+        )
 
     @cached_property
     def sizes(self) -> tuple[Scalar, Scalar]:
@@ -49,9 +55,11 @@ class Action:
 
 @dataclass(eq=False)
 class _Sums:
-    """What acts, added up: forces on each body and their moments about its centre, and the power of all.
+    """What acts, added up: forces on each body and their moments about its centre, and the power of
+    all.
 
-    Beside it sizes, none against another: ``largest`` of one action, ``pushes`` and ``twists`` of all, and ``flow`` of powers.
+    Beside it sizes, none against another: ``largest`` of one action, ``pushes`` and ``twists`` of
+    all, and ``flow`` of powers.
     """
 
     force: dict[str, Vector] = field(default_factory=dict)
@@ -69,7 +77,9 @@ class _Sums:
 
 
 def forces_reported(placed: Placed) -> bool:
-    """Whether every force that acts on the bodies is reported, and the equations along which multipliers act are known."""
+    """Whether every force that acts on the bodies is reported, and the equations along which
+    multipliers act are known.
+    """
     declared, outputs = placed.declared, placed.reported.outputs
     if len(declared.equations) < len(declared.multipliers):
         return False
@@ -84,12 +94,19 @@ def forces_reported(placed: Placed) -> bool:
 def balance(placed: Placed, digits: Digits) -> dict[str, list[Gaps]]:
     """The residuals of forces, each with what it is to be compared with."""
     acting = list(_acting(placed))
-    centres = {name: placed.bodies[name].point(Vector(*body.centre)) for name, body in placed.declared.bodies.items()}
+    centres = {
+        name: placed.bodies[name].point(Vector(*body.centre))
+        for name, body in placed.declared.bodies.items()
+    }
     sums = _sums(placed, acting, centres)
     worst, power = np.zeros_like(placed.reported.t), sums.power
     gravity, size = Vector(*placed.declared.gravity), placed.declared.size
     for name, body in placed.declared.bodies.items():
-        motion, (_, speed, change), inertia = placed.bodies[name], centres[name], Axes.of(body.inertia)
+        motion, (_, speed, change), inertia = (
+            placed.bodies[name],
+            centres[name],
+            Axes.of(body.inertia),
+        )
         inertial = body.mass * (change - gravity)
         spin = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.rate)))
         gains = motion.axes.turn(inertia.turn(motion.axes.resolve(motion.acceleration)))
@@ -103,10 +120,15 @@ def balance(placed: Placed, digits: Digits) -> dict[str, list[Gaps]]:
         sums.flow = sums.flow + speed.size * weight + rate * turning.size
     worst = np.maximum(worst, _unlike(placed))
     turned, fastest, _ = placed.rates
-    # Reported digits leave open places, which give arms, and the joints' rates, of which the rates of bodies are sums.
+    # Reported digits leave open places, which give arms, and the joints' rates, of which the rates
+    # of bodies are sums.
     largest = sums.largest * (1.0 + digits.coarseness * placed.declared.extent / size)
     worst = np.maximum(worst, off_laws(placed, digits, float(np.max(largest))))
-    flow = sums.flow + digits.least * fastest + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
+    flow = (
+        sums.flow
+        + digits.least * fastest
+        + digits.coarseness * (sums.pushes * fastest + sums.twists * turned)
+    )
     found = {
         "balance": [(worst, max(float(np.max(largest)), digits.least))],
         "power": [(np.abs(power), float(np.max(flow)))],
@@ -119,8 +141,16 @@ def _acting(placed: Placed) -> Iterator[Action]:
     reported, declared = placed.reported, placed.declared
     for name, joint in declared.joints.items():
         at, child, parent = placed.pins[name][0], joint.child.body, joint.parent.body
-        yield Action(child, at, reported.force("reaction", name), reported.force("reaction", name, "m"), parent, works=False)
-        # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
+        yield Action(
+            child,
+            at,
+            reported.force("reaction", name),
+            reported.force("reaction", name, "m"),
+            parent,
+            works=False,
+        )
+        # Near gimbal lock couples along coordinates are large, and all together what the joint
+        # needs.
         force, couple, driven = NIL, NIL, False
         for axis in joint.axes:
             if (effort := reported.outputs.get(Output("effort", axis.coordinate))) is not None:
@@ -140,27 +170,42 @@ def _acting(placed: Placed) -> Iterator[Action]:
 
 
 def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
-    """What the multiplier of an equation does: along whatever stands in it, or where the parts of a transmission touch."""
+    """What the multiplier of an equation does: along whatever stands in it, or where the parts of a
+    transmission touch.
+    """
     declared, reported = placed.declared, placed.reported
     multiplier = reported.outputs[Output("multiplier", equation.name)]
     for touch in equation.touches:
-        for part in actions(touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)):
+        for part in actions(
+            touch, placed.bodies[touch.carrier], multiplier, sense(touch, declared, reported)
+        ):
             yield Action(*part)
     if equation.touches:
         return
     places, moving, _ = stacked(placed, equation)
     forces = multiplier * equation.slopes_at(places, moving, reported.t)
-    axes = {axis.coordinate: (name, axis) for name, joint in declared.joints.items() for axis in joint.axes}
+    axes = {
+        axis.coordinate: (name, axis)
+        for name, joint in declared.joints.items()
+        for axis in joint.axes
+    }
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
             name, axis = axes[entry.part]
             joint = declared.joints[name]
-            yield Action(joint.child.body, placed.pins[name][0], *placed.along(name, axis, force), joint.parent.body)
+            yield Action(
+                joint.child.body,
+                placed.pins[name][0],
+                *placed.along(name, axis, force),
+                joint.parent.body,
+            )
         elif entry.kind == "direction":
             yield Action(entry.part, placed.bodies[entry.part].at, NIL, Vector(0.0, 0.0, force))
         else:
             push = Vector(*(force if entry.kind == x else 0.0 for x in "xyz"))
-            yield Action(entry.part, placed.bodies[entry.part].point(Vector(*entry.point))[0], push, NIL)
+            yield Action(
+                entry.part, placed.bodies[entry.part].point(Vector(*entry.point))[0], push, NIL
+            )
 
 
 def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion]) -> _Sums:
@@ -179,36 +224,50 @@ def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion
                 speed = motion.speed_at(act.at)
                 power = total(speed.dot(act.force), motion.rate.dot(act.couple))
                 found.power = less(found.power, power) if opposite else total(found.power, power)
-                found.flow = total(found.flow, total(product(speed.size, push), product(motion.sizes[2], twist)))
+                found.flow = total(
+                    found.flow, total(product(speed.size, push), product(motion.sizes[2], twist))
+                )
     return found
 
 
 def _weight(placed: Placed, body: str, reach: float) -> Scalar:
-    """The inertia of a body and its weight [N], none against another: of its origin, and of what turns about it."""
+    """The inertia of a body and its weight [N], none against another: of its origin, and of what
+    turns about it.
+    """
     _, change, rate, acceleration = placed.bodies[body].sizes
     weight = Vector(*placed.declared.gravity).size
     return placed.declared.bodies[body].mass * (change + (rate**2 + acceleration) * reach + weight)
 
 
 def _unlike(placed: Placed) -> Scalar:
-    """By how much reactions on the joints' own axes are other than those in ground axes: forces, and moments over the size."""
+    """By how much reactions on the joints' own axes are other than those in ground axes: forces,
+    and moments over the size.
+    """
     reported, worst = placed.reported, 0.0
     for name, joint in placed.declared.joints.items():
         if Output("reaction", name, "fu") in reported.outputs:
             axes = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
             for letter, arm in (("f", 1.0), ("m", placed.declared.size)):
-                there, own = (reported.force("reaction", name, letter, components) for components in ("xyz", "uvw"))
+                there, own = (
+                    reported.force("reaction", name, letter, components)
+                    for components in ("xyz", "uvw")
+                )
                 worst = np.maximum(worst, (there - axes.turn(own)).size / arm)
     return worst
 
 
 def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> Gaps:
-    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link.
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest
+    force on a link.
 
     And beside what the rounding of places leaves open, which turns short links most.
     """
     declared, reported = placed.declared, placed.reported
-    worst, scale, blurred = np.zeros_like(reported.t), digits.least, digits.coarseness * declared.extent
+    worst, scale, blurred = (
+        np.zeros_like(reported.t),
+        digits.least,
+        digits.coarseness * declared.extent,
+    )
     for link, law in reported.laws.items():
         inside, twisted = reported.inside(link)
         force, moment, flow = _before(placed, link, acting, law.slack * law.length)
@@ -219,8 +278,12 @@ def _ends(placed: Placed, acting: Sequence[Action], digits: Digits) -> Gaps:
     return worst, scale
 
 
-def _before(placed: Placed, link: str, acting: Sequence[Action], edge: float) -> tuple[Vector, Vector, Scalar]:
-    """The force and the moment about a link's base, in its axes, of all that acts at its base or before it; and the largest."""
+def _before(
+    placed: Placed, link: str, acting: Sequence[Action], edge: float
+) -> tuple[Vector, Vector, Scalar]:
+    """The force and the moment about a link's base, in its axes, of all that acts at its base or
+    before it; and the largest.
+    """
     motion, force, moment, largest = placed.bodies[link], NIL, NIL, 0.0
     for act in acting:
         for body, opposite in act.moving:
@@ -233,5 +296,8 @@ def _before(placed: Placed, link: str, acting: Sequence[Action], edge: float) ->
             if not np.any(there <= edge):
                 continue
             here = np.where(there <= edge, -1.0 if opposite else 1.0, 0.0)
-            force, moment = force + here * act.force, moment + here * (arm.cross(act.force) + act.couple)
+            force, moment = (
+                force + here * act.force,
+                moment + here * (arm.cross(act.force) + act.couple),
+            )
     return motion.axes.resolve(force), motion.axes.resolve(moment), largest

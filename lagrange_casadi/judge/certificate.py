@@ -1,9 +1,11 @@
-"""Independent checks of a solution, from its own arrays and from what was declared: none shares the graphs that made them.
+"""Independent checks of a solution, from its own arrays and from what was declared: none shares the
+graphs that made them.
 
-The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The reported reactions, efforts,
-loads and multipliers must then balance every body (Newton-Euler), the power of drives and loads must be the change of kinetic
-energy, loops must close and the users' equations hold, and the sections at a link's base must give back what its joints do there.
-A mechanism of the plane is one in space whose z is zero. Each residual is relative, (t,).
+The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The
+reported reactions, efforts, loads and multipliers must then balance every body (Newton-Euler), the
+power of drives and loads must be the change of kinetic energy, loops must close and the users'
+equations hold, and the sections at a link's base must give back what its joints do there. A
+mechanism of the plane is one in space whose z is zero. Each residual is relative, (t,).
 """
 
 from __future__ import annotations
@@ -44,12 +46,14 @@ def certify(
     hidden: Mapping[Output, Array] | None = None,
     phases: Mapping[Output, Array] | None = None,
 ) -> dict[str, Array]:
-    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, ``friction``, each where it
-    can be had; where a joint that rubs is at rest, ``closure``, and ``friction`` of others.
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``,
+    ``ends``, ``friction``, each where it can be had; where a joint that rubs is at rest,
+    ``closure``, and ``friction`` of others.
 
-    ``declared`` is the mechanism, with its constraints and rows, which a solution does not hold: without it, a solution of a
-    mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
-    not wanted, and what is open, which takes some value all the same. ``phases`` are angles that are known up to whole turns more
+    ``declared`` is the mechanism, with its constraints and rows, which a solution does not hold:
+    without it, a solution of a mechanism that has some is looked at for ``closure`` alone.
+    ``hidden`` are forces that it does not give: multipliers that were not wanted, and what is open,
+    which takes some value all the same. ``phases`` are angles that are known up to whole turns more
     closely than they are reported.
     """
     declared = declared or Declared.of(solution.description)
@@ -57,7 +61,10 @@ def certify(
     if resting.any() and not resting.all():
         merged: dict[str, Array] = {}
         for some in (~resting, resting):
-            pick = ({output: values[some] for output, values in (more or {}).items()} for more in (hidden, phases))
+            pick = (
+                {output: values[some] for output, values in (more or {}).items()}
+                for more in (hidden, phases)
+            )
             for name, gaps in certify(solution.during(some), declared, *pick).items():
                 merged.setdefault(name, np.zeros_like(solution.t))[some] = gaps
         return merged
@@ -67,7 +74,9 @@ def certify(
     found: dict[tuple[str, int], list[Array]] = {}
     scales: dict[tuple[str, int], float] = {}
     for start in range(0, whole.t.size, _BLOCK):
-        block = reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
+        block = (
+            reported if whole.t.size <= _BLOCK else reported.during(slice(start, start + _BLOCK))
+        )
         for name, parts in _residuals(declared, block, digits).items():
             for part, (gaps, scale) in enumerate(parts):
                 found.setdefault((name, part), []).append(np.broadcast_to(gaps, block.t.shape))
@@ -95,10 +104,18 @@ def failure(solution: Solution) -> str:
 
 def summary(residuals: Mapping[str, Array]) -> str:
     """The largest residuals, in one line; and how singular the loops are, where it matters."""
-    parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
-    said = "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
+    parts = [
+        f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"
+    ]
+    said = "certificate: " + (
+        ", ".join(parts) if parts else "nothing to check, for want of outputs"
+    )
     worst = float(np.max(residuals.get("condition", np.ones(1))))
-    return said + (f"; near a dead centre, where the loops magnify errors by {worst:.3g}" if worst > NEAR else "")
+    return said + (
+        f"; near a dead centre, where the loops magnify errors by {worst:.3g}"
+        if worst > NEAR
+        else ""
+    )
 
 
 def _reported(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
@@ -115,14 +132,19 @@ def _reported(solution: Solution, phases: Mapping[Output, Array]) -> Reported:
 
 
 def _law_at_base(solution: Solution, link: str) -> SectionLaw:
-    """The law of a link, for its section at the base: what slides over the base just now counts as at the base."""
+    """The law of a link, for its section at the base: what slides over the base just now counts as
+    at the base.
+    """
     law = solution.section(link).law
     return replace(law, slack=max(_EDGE, law.slack))
 
 
 def _residuals(declared: Declared, reported: Reported, digits: Digits) -> dict[str, list[Gaps]]:
     """The gaps of each residual, each with the largest of what it is to be compared with."""
-    if any(Output("motion", name) not in reported.outputs for name in {*declared.kinds} - reported.unmeasured):
+    if any(
+        Output("motion", name) not in reported.outputs
+        for name in {*declared.kinds} - reported.unmeasured
+    ):
         return {}
     if any(Output("pose", name, "x") not in reported.outputs for name in declared.bodies):
         return {}

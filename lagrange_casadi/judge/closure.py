@@ -1,4 +1,6 @@
-"""Gaps of joints, of reported poses and of the users' equations: how far the bodies are from where they are said to be."""
+"""Gaps of joints, of reported poses and of the users' equations: how far the bodies are from where
+they are said to be.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ Gaps = tuple[Array, float]
 
 
 def closure(placed: Placed, digits: Digits) -> list[Gaps]:
-    """The largest gap of places and angles, beside the length of all links; and those of rates, beside the largest there are."""
+    """The largest gap of places and angles, beside the length of all links; and those of rates,
+    beside the largest there are.
+    """
     worst = np.zeros_like(placed.reported.t)
     for gaps in (_of_joints, _of_angles, _of_poses, _of_equations):
         for gap in gaps(placed, digits):
@@ -56,7 +60,8 @@ def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Gap
 
 
 def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
-    """How far what is driven is from its law, with its rate and acceleration, (3, t); and whether it is an angle.
+    """How far what is driven is from its law, with its rate and acceleration, (3, t); and whether
+    it is an angle.
 
     Where a law jumps, rounding decides on which side of that an instant is.
     """
@@ -72,15 +77,22 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
             off[0] = np.abs(2.0 * np.sin(found[0] / 2.0))
         off[0] = np.maximum(off[0] - ROUNDINGS * digits.rounding * np.abs(moving[0][0]), 0.0)
         largest = [size, *(float(np.max(one)) for one in fastest)]
-        if any(np.max(gap) * (size if turns else 1.0) > digits.doubted * one for gap, one in zip(off, largest, strict=True)):
+        if any(
+            np.max(gap) * (size if turns else 1.0) > digits.doubted * one
+            for gap, one in zip(off, largest, strict=True)
+        ):
             blur = NEARBY * digits.rounding * np.max(np.abs(t))
-            open_ = np.nansum([np.abs(motion.at(*moving, t + way) - found) for way in (-blur, blur)], axis=0)
+            open_ = np.nansum(
+                [np.abs(motion.at(*moving, t + way) - found) for way in (-blur, blur)], axis=0
+            )
             off = np.maximum(off - open_, 0.0)
         yield turns, off
 
 
 def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far reported angles are from the phases that are known more closely; one of many turns has so many digits only."""
+    """How far reported angles are from the phases that are known more closely; one of many turns
+    has so many digits only.
+    """
     for output, phase in placed.reported.phases.items():
         if output.part not in placed.reported.unmeasured:
             angle = placed.reported.outputs[output]
@@ -101,12 +113,19 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
             continue
         axes = reported.axes(name)
         if not reported.space:
-            known = ROUNDINGS * digits.rounding * np.abs(reported.outputs[Output("pose", name, "angle")])
+            known = (
+                ROUNDINGS
+                * digits.rounding
+                * np.abs(reported.outputs[Output("pose", name, "angle")])
+            )
             yield (axes.off(body.axes) - known) * declared.size
             continue
         x, y, z = axes.x, axes.y, axes.z
         yield axes.off(body.axes) * declared.size
-        yield most([*(way.dot(way) - 1.0 for way in (x, y, z)), x.dot(y), y.dot(z), z.dot(x)]) * declared.size
+        yield (
+            most([*(way.dot(way) - 1.0 for way in (x, y, z)), x.dot(y), y.dot(z), z.dot(x)])
+            * declared.size
+        )
         yield (x.cross(y) - z).size * declared.size
         if name in reported.bars and name in declared.beside:
             beside = Vector(*declared.beside[name])
@@ -114,7 +133,9 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 
 
 def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far the users' equations are from zero, over their slopes; and that transmissions do no work."""
+    """How far the users' equations are from zero, over their slopes; and that transmissions do no
+    work.
+    """
     for equation in placed.declared.equations:
         yield _missed(placed, equation) * placed.declared.size
         for touch in equation.touches:
@@ -124,7 +145,9 @@ def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 def _missed(placed: Placed, equation: Equation) -> Array:
     size, t = placed.declared.size, placed.reported.t
     places, moving, changes = stacked(placed, equation)
-    units = [1.0 if entry.kind in ("coordinate", "direction") else size for entry in equation.entries]
+    units = [
+        1.0 if entry.kind in ("coordinate", "direction") else size for entry in equation.entries
+    ]
     sizes = np.reshape(units, (-1, 1)) + np.abs(moving if equation.row else places)
     scale = np.sum(np.abs(equation.slopes_at(places, moving, t)) * sizes, axis=0)
     missed = np.abs(equation.at(places, moving, changes, t)[0])

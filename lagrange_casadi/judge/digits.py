@@ -17,23 +17,31 @@ NEARBY = 32.0
 """So many roundings may be between what is reported, and what a law has seen of it."""
 
 TOLERANCE, LOOSE = 1e-9, 1e-3
-"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
+"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and
+where less was asked for.
+"""
 
 
 def blur(solution: Solution) -> float:
     """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
-    angles = [Output("motion", name) for name, kind in coordinates_of(solution.description).items() if kind == "angle"]
+    angles = [
+        Output("motion", name)
+        for name, kind in coordinates_of(solution.description).items()
+        if kind == "angle"
+    ]
     angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
     reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
-    return Digits.of(solution).rounding * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
+    return Digits.of(solution).rounding * max(
+        (float(np.max(np.abs(values))) for values in reported), default=0.0
+    )
 
 
 @dataclass(frozen=True)
 class Digits:
     """What a precision leaves open.
 
-    ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which what underflows is as small as a
-    rounding, and ``tolerance`` the least residual that fails.
+    ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which
+    what underflows is as small as a rounding, and ``tolerance`` the least residual that fails.
     """
 
     rounding: float
@@ -42,7 +50,9 @@ class Digits:
 
     @property
     def doubted(self) -> float:
-        """What a residual may be by the roundings of a law alone; what is more asks for a closer look."""
+        """What a residual may be by the roundings of a law alone; what is more asks for a closer
+        look.
+        """
         return 256.0 * self.rounding
 
     @property

@@ -1,10 +1,13 @@
-"""Graphs followed with errors put in, where an exact operation stays exact and what was decided stays decided.
+"""Graphs followed with errors put in, where an exact operation stays exact and what was decided
+stays decided.
 
-Monte Carlo arithmetic (D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997) gives every operation a random error as large
-as its rounding. Two things would make that a wild guess. A difference that rounds nothing would be given an error, which the next
-one magnifies. And where a load jumps, an error takes a trial over the jump. So the operations are first followed as they are
-computed, in numbers of the precision: that tells what each rounds, and how every comparison comes out. Trials then keep to that.
-Where errors could turn a comparison round, a result may stand on either side of the jump: the side that it took is found.
+Monte Carlo arithmetic (D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997) gives every
+operation a random error as large as its rounding. Two things would make that a wild guess. A
+difference that rounds nothing would be given an error, which the next one magnifies. And where a
+load jumps, an error takes a trial over the jump. So the operations are first followed as they are
+computed, in numbers of the precision: that tells what each rounds, and how every comparison comes
+out. Trials then keep to that. Where errors could turn a comparison round, a result may stand on
+either side of the jump: the side that it took is found.
 """
 
 from __future__ import annotations
@@ -21,20 +24,31 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
-from ..arithmetic.interpret import REMAINDERS, ROUNDINGS, Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.interpret import (
+    REMAINDERS,
+    ROUNDINGS,
+    Arithmetic,
+    followable,
+    interpret,
+    numpy_arithmetic,
+)
 from ..base.arrays import Array
 from ..codegen.stages import Stages
 from .roundings import left
 
 TRIALS = 8
 MAGNIFIED = 8.0
-"""By how much errors are put in too large, so that the trials' own rounding does not hide them: what comes of them is divided."""
+"""By how much errors are put in too large, so that the trials' own rounding does not hide them:
+what comes of them is divided.
+"""
 
 _BESIDE = 4.0
 """By how many of the magnified errors a result is off that may be on the other side of a jump."""
 
 _LEAST = 0.01
-"""The least part of half a unit in the last place that a rounding is taken for, of what is not exact throughout."""
+"""The least part of half a unit in the last place that a rounding is taken for, of what is not
+exact throughout.
+"""
 
 _JUMP = 1e3
 """By how many errors what a drive hands on jumps."""
@@ -52,7 +66,9 @@ _HANDED = -1
 
 @dataclass(frozen=True, eq=False)
 class Instants:
-    """Some instants of a scene's stages: times (n,), parameters, and iterated coordinates (k, n)."""
+    """Some instants of a scene's stages: times (n,), parameters, and
+    iterated coordinates (k, n).
+    """
 
     stages: Stages
     t: Array
@@ -62,7 +78,13 @@ class Instants:
     @property
     def followable(self) -> bool:
         """Whether what is done there can be followed."""
-        return all(followable(function) for function in (self.stages.instant, *([self.stages.loops] if self.stages.loops else [])))
+        return all(
+            followable(function)
+            for function in (
+                self.stages.instant,
+                *([self.stages.loops] if self.stages.loops else []),
+            )
+        )
 
     def at(self, which: Any) -> Instants:
         """Some of them."""
@@ -90,23 +112,37 @@ class Instants:
 
     @cached_property
     def handed(self) -> list[Array]:
-        """What the drive hands on, in doubles: counted numbers, rates, and accelerations, each (..., n)."""
+        """What the drive hands on, in doubles: counted numbers, rates, and accelerations, each
+        (..., n).
+        """
         return self._drive(self.t[None], self.p[:, None])
 
     def handed_beside(self, noise: _Noise) -> list[Array]:
-        """The same, each (..., trials, n), with errors in times and parameters as large as those of a pair of numbers."""
-        t, p = (np.tile(values, TRIALS) for values in (self.t[None], np.tile(self.p[:, None], self.t.size)))
-        return [rows.reshape(-1, TRIALS, self.t.size) for rows in self._drive(noise.paired(t), noise.paired(p))]
+        """The same, each (..., trials, n), with errors in times and parameters as large as those of
+        a pair of numbers.
+        """
+        t, p = (
+            np.tile(values, TRIALS)
+            for values in (self.t[None], np.tile(self.p[:, None], self.t.size))
+        )
+        return [
+            rows.reshape(-1, TRIALS, self.t.size)
+            for rows in self._drive(noise.paired(t), noise.paired(p))
+        ]
 
     def _drive(self, t: Array, p: Array) -> list[Array]:
         if self.stages.precision == "single":
-            t, p = (np.concatenate([x.astype(np.float32), x - x.astype(np.float32)]) for x in (t, p))
+            t, p = (
+                np.concatenate([x.astype(np.float32), x - x.astype(np.float32)]) for x in (t, p)
+            )
         return [rows.full() for rows in self.stages.drive(t, p)]
 
 
 @dataclass(frozen=True, eq=False)
 class _Step:
-    """An operation as it was done: its code, operands and result, (n,) or numbers; and what it decided, if it decides."""
+    """An operation as it was done: its code, operands and result, (n,) or numbers; and what it
+    decided, if it decides.
+    """
 
     code: int
     operands: tuple[Any, ...]
@@ -116,7 +152,9 @@ class _Step:
 
 @dataclass(frozen=True, eq=False)
 class _Course:
-    """The columns (columns, n) of instants followed as they are computed, and all that was done for them."""
+    """The columns (columns, n) of instants followed as they are computed, and all that was done for
+    them.
+    """
 
     instants: Instants
     steps: list[_Step]
@@ -124,10 +162,11 @@ class _Course:
 
 
 def effects(instants: Instants, out: Array, angles: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
-    """What errors do to the columns, a row a trial, (columns, trials, n), and the columns, (columns, n), where loops are closed.
+    """What errors do to the columns, a row a trial, (columns, trials, n), and the columns,
+    (columns, n), where loops are closed.
 
-    The last row is what was done to ``out``, a result, whose ``angles`` among its columns are known up to whole turns. It tells on
-    which side of a jump to look.
+    The last row is what was done to ``out``, a result, whose ``angles`` among its columns are known
+    up to whole turns. It tells on which side of a jump to look.
     """
     z, _ = _closed(instants, _STEPS)
     course = _followed(instants, {})
@@ -137,24 +176,34 @@ def effects(instants: Instants, out: Array, angles: npt.NDArray[np.bool_]) -> tu
     if taken:
         course = _followed(instants, taken)
         trials, _ = _trials(course, z)
-    columns = _quiet(instants, [step.decision for step in course.steps], list(z)) if z.size else course.columns
+    columns = (
+        _quiet(instants, [step.decision for step in course.steps], list(z))
+        if z.size
+        else course.columns
+    )
     changes = trials - columns[:, None]
     changes = (changes - _turns(changes, angles)) / MAGNIFIED
     return np.concatenate([changes, (out - columns)[:, None]], axis=1), columns
 
 
 def openness(instants: Instants) -> Array:
-    """How far iterated loops are open, (n,), in roundings: their next correction, angles in rad, slides over all links' length."""
+    """How far iterated loops are open, (n,), in roundings: their next correction, angles in rad,
+    slides over all links' length.
+    """
     return _closed(instants, 1)[1] / instants.unit
 
 
 def _turns(gaps: Array, angles: npt.NDArray[np.bool_]) -> Array:
     """The whole turns in gaps of angles."""
-    return np.where(angles.reshape(-1, *(1,) * (gaps.ndim - 1)), math.tau * np.rint(gaps / math.tau), 0.0)
+    return np.where(
+        angles.reshape(-1, *(1,) * (gaps.ndim - 1)), math.tau * np.rint(gaps / math.tau), 0.0
+    )
 
 
 def _closed(instants: Instants, most: int) -> tuple[Array, Array]:
-    """Iterated coordinates after at most so many steps of Newton's method, (k, n), in doubles; and how large the first step was."""
+    """Iterated coordinates after at most so many steps of Newton's method, (k, n), in doubles; and
+    how large the first step was.
+    """
     loops, z, first = instants.stages.loops, instants.z, np.zeros_like(instants.t)
     if loops is None:
         return z, first
@@ -168,7 +217,9 @@ def _closed(instants: Instants, most: int) -> tuple[Array, Array]:
 
 
 def _followed(instants: Instants, taken: Mapping[int, Array]) -> _Course:
-    """Follow instants in the precision's own numbers; ``taken`` are decisions (n,) taken before, by the number of the step."""
+    """Follow instants in the precision's own numbers; ``taken`` are decisions (n,) taken before, by
+    the number of the step.
+    """
     kind, steps = instants.kind, list[_Step]()
 
     def apply(k: int, code: int, values: tuple[Any, ...]) -> Any:
@@ -179,24 +230,47 @@ def _followed(instants: Instants, taken: Mapping[int, Array]) -> _Course:
         steps.append(_Step(code, values, result, decision))
         return result
 
-    found = _columns(instants, apply, kind, [kind(value) for value in instants.p], [row.astype(kind) for row in instants.z])
+    found = _columns(
+        instants,
+        apply,
+        kind,
+        [kind(value) for value in instants.p],
+        [row.astype(kind) for row in instants.z],
+    )
     if instants.stages.precision == "single":
         found = _quiet(instants, [step.decision for step in steps])
     return _Course(instants, steps, found)
 
 
 def _quiet(instants: Instants, decisions: Sequence[Any], z: Sequence[Array] | None = None) -> Array:
-    """The columns in doubles, by parameters and constants as given, with decisions (..., n) taken before: (columns, ..., n)."""
+    """The columns in doubles, by parameters and constants as given, with decisions (..., n) taken
+    before: (columns, ..., n).
+    """
 
     def apply(k: int, code: int, values: tuple[Any, ...]) -> Any:
-        return _operation(code, values) if decisions[k] is None else _following(code, values, decisions[k])
+        return (
+            _operation(code, values)
+            if decisions[k] is None
+            else _following(code, values, decisions[k])
+        )
 
-    shape = np.broadcast_shapes(instants.t.shape, *(np.shape(decision) for decision in decisions if decision is not None))
-    return _columns(instants, apply, np.float64, list(instants.p), list(instants.z) if z is None else z, shape=shape)
+    shape = np.broadcast_shapes(
+        instants.t.shape, *(np.shape(decision) for decision in decisions if decision is not None)
+    )
+    return _columns(
+        instants,
+        apply,
+        np.float64,
+        list(instants.p),
+        list(instants.z) if z is None else z,
+        shape=shape,
+    )
 
 
 def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
-    """The columns with errors, (columns, trials, n), and what else trials would have decided, (trials, n), by number."""
+    """The columns with errors, (columns, trials, n), and what else trials would have decided,
+    (trials, n), by number.
+    """
     instants, shape = course.instants, (TRIALS, course.instants.t.size)
     noise, sizes, sides = _Noise(instants, shape), _sizes(course), dict[int, Array]()
 
@@ -214,12 +288,16 @@ def _trials(course: _Course, z: Array) -> tuple[Array, dict[int, Array]]:
         return value if sizes[k] is None else noise.put(value, sizes[k])
 
     def closed(counted: Sequence[Any]) -> list[Any]:
-        correction, _ = interpret(instants.stages.loops, [list(z), counted, rounded], noise.arithmetic)
+        correction, _ = interpret(
+            instants.stages.loops, [list(z), counted, rounded], noise.arithmetic
+        )
         return [noise.rounded(a + b) for a, b in zip(z, correction, strict=True)]
 
     rounded = [float(instants.kind(value)) for value in instants.p]
     handed = None if instants.smooth else instants.handed_beside(noise)
-    return _columns(instants, apply, noise.constant, rounded, closed if z.size else [], handed, shape), sides
+    return _columns(
+        instants, apply, noise.constant, rounded, closed if z.size else [], handed, shape
+    ), sides
 
 
 def _columns(
@@ -231,7 +309,9 @@ def _columns(
     handed: Sequence[Array] | None = None,
     shape: tuple[int, ...] | None = None,
 ) -> Array:
-    """The columns by an arithmetic that is told each operation's number, code and operands; ``z`` may wait for what is counted."""
+    """The columns by an arithmetic that is told each operation's number, code and operands; ``z``
+    may wait for what is counted.
+    """
     count = itertools.count()
 
     def rule(code: int) -> Callable[..., Any]:
@@ -249,21 +329,33 @@ def _columns(
     return np.array([np.broadcast_to(row, shape) for row in found], float).reshape(-1, *shape)
 
 
-def _taken(course: _Course, trials: Array, sides: Mapping[int, Array], out: Array) -> dict[int, Array]:
-    """The decisions, by number, that a result ``out`` has taken otherwise, as some trial would have; none where it took none."""
+def _taken(
+    course: _Course, trials: Array, sides: Mapping[int, Array], out: Array
+) -> dict[int, Array]:
+    """The decisions, by number, that a result ``out`` has taken otherwise, as some trial would
+    have; none where it took none.
+    """
     instants = course.instants
     size = ROUNDING["double"] * np.fmax.reduce(np.abs(trials), axis=(1, 2), initial=0.0)[:, None]
     size = np.fmax.reduce(np.abs(trials - course.columns[:, None]), axis=1) + size
     beside = np.abs(out - course.columns) / np.where(size > 0.0, size, np.inf)
-    doubtful = np.any([(found != course.steps[k].decision).any(axis=0) for k, found in sides.items()], axis=0)
+    doubtful = np.any(
+        [(found != course.steps[k].decision).any(axis=0) for k, found in sides.items()], axis=0
+    )
     where = np.flatnonzero(doubtful & (np.fmax.reduce(beside, axis=0) > _BESIDE))
     if not where.size:
         return {}
-    own = [None if step.decision is None else np.broadcast_to(step.decision, instants.t.shape) for step in course.steps]
+    own = [
+        None if step.decision is None else np.broadcast_to(step.decision, instants.t.shape)
+        for step in course.steps
+    ]
     lanes: list[Any] = [None if decision is None else decision[where] for decision in own]
     for k, found in sides.items():
         lanes[k] = np.concatenate([lanes[k][None], found[:, where]])
-    gaps = np.abs(_quiet(instants.at(where), lanes) - out[:, None, where]) / np.where(size > 0.0, size, np.inf)[:, None, where]
+    gaps = (
+        np.abs(_quiet(instants.at(where), lanes) - out[:, None, where])
+        / np.where(size > 0.0, size, np.inf)[:, None, where]
+    )
     best = np.argmin(np.fmax.reduce(gaps, axis=0), axis=0)
     taken = {k: np.array(own[k], float) for k in sides}
     for k in taken:
@@ -276,8 +368,16 @@ def _operation(code: int, values: tuple[Any, ...]) -> Any:
 
 
 def _decision(code: int, operands: tuple[Any, ...], result: Any) -> Any:
-    """What a deciding operation decides: a truth, a sign, a whole number; or a number on the side of a jump on which it is."""
-    return operands[1] if code == ca.OP_COPYSIGN else operands[0] if code == ca.OP_IF_ELSE_ZERO else result
+    """What a deciding operation decides: a truth, a sign, a whole number; or a number on the side
+    of a jump on which it is.
+    """
+    return (
+        operands[1]
+        if code == ca.OP_COPYSIGN
+        else operands[0]
+        if code == ca.OP_IF_ELSE_ZERO
+        else result
+    )
 
 
 def _following(code: int, values: tuple[Any, ...], decision: Any) -> Any:
@@ -305,15 +405,20 @@ def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
         return np.asarray((decision != 0) != (own != 0))
     if step.code in _WHOLE:
         return np.asarray(decision != own)
-    return np.asarray(np.abs(decision - own) > (np.abs(step.operands[1]) if step.code in REMAINDERS else math.tau) / 2)
+    return np.asarray(
+        np.abs(decision - own)
+        > (np.abs(step.operands[1]) if step.code in REMAINDERS else math.tau) / 2
+    )
 
 
 def _sizes(course: _Course) -> list[Any]:
-    """By how much the rounding of each operation may be off, (n,); None where it rounds nothing at any instant.
+    """By how much the rounding of each operation may be off, (n,); None where it rounds nothing at
+    any instant.
 
-    An error may be half a unit in the last place. Where it happened to be next to nothing, it may be more at instants that are not
-    looked at, but not where one operation at one instant is all that counts. So the mean of what it may be and what it is: by its
-    square the arithmetic one, so that many operations have the errors that they should; where one counts, the geometric one.
+    An error may be half a unit in the last place. Where it happened to be next to nothing, it may
+    be more at instants that are not looked at, but not where one operation at one instant is all
+    that counts. So the mean of what it may be and what it is: by its square the arithmetic one, so
+    that many operations have the errors that they should; where one counts, the geometric one.
     """
     groups: dict[int, list[int]] = {}
     for k, step in enumerate(course.steps):
@@ -323,7 +428,8 @@ def _sizes(course: _Course) -> list[Any]:
     with np.errstate(all="ignore"):
         for code, numbers in groups.items():
             rows = np.empty(
-                (1 + len(course.steps[numbers[0]].operands), len(numbers), course.instants.t.size), course.instants.kind
+                (1 + len(course.steps[numbers[0]].operands), len(numbers), course.instants.t.size),
+                course.instants.kind,
             )
             for i, k in enumerate(numbers):
                 step = course.steps[k]
@@ -331,8 +437,12 @@ def _sizes(course: _Course) -> list[Any]:
                     rows[j, i] = values
             most = np.spacing(np.abs(rows[0])) * (ROUNDINGS[code] / 2)
             rest = np.abs(left(code, *rows))
-            between = np.where(np.isnan(rest), most, np.sqrt(2.0 * most * np.maximum(rest, _LEAST * most)))
-            for k, row, exact in zip(numbers, between, (rest == 0.0).all(axis=1).tolist(), strict=True):
+            between = np.where(
+                np.isnan(rest), most, np.sqrt(2.0 * most * np.maximum(rest, _LEAST * most))
+            )
+            for k, row, exact in zip(
+                numbers, between, (rest == 0.0).all(axis=1).tolist(), strict=True
+            ):
                 sizes[k] = None if exact else row
     return sizes
 
@@ -352,16 +462,27 @@ class _Noise:
 
     def rounded(self, value: Any, roundings: float = 1.0) -> Any:
         """A value with an error of up to so many roundings, exact or not."""
-        return self.put(value, np.spacing(np.abs(value).astype(self.instants.kind)) * (roundings / 2))
+        return self.put(
+            value, np.spacing(np.abs(value).astype(self.instants.kind)) * (roundings / 2)
+        )
 
     def handed(self, value: Any) -> Any:
         """A value with the error that it gets where pairs end, or a double becomes a single."""
         single = self.instants.kind is np.float32
-        return self.put(value, np.abs(value - value.astype(np.float32))) if single else self.rounded(value)
+        return (
+            self.put(value, np.abs(value - value.astype(np.float32)))
+            if single
+            else self.rounded(value)
+        )
 
     def paired(self, values: Array) -> Array:
         """Values with errors as large as those of a pair of numbers."""
-        return values + values * self.generator.uniform(-MAGNIFIED, MAGNIFIED, values.shape) * self.instants.unit**2
+        return (
+            values
+            + values
+            * self.generator.uniform(-MAGNIFIED, MAGNIFIED, values.shape)
+            * self.instants.unit**2
+        )
 
     def constant(self, value: float) -> float:
         """A constant as the precision has it."""
@@ -373,6 +494,10 @@ class _Noise:
 
         def rule(code: int) -> Callable[..., Any]:
             known, roundings = _KNOWN[code], ROUNDINGS.get(code)
-            return known if roundings is None else lambda *values: self.rounded(known(*values), roundings)
+            return (
+                known
+                if roundings is None
+                else lambda *values: self.rounded(known(*values), roundings)
+            )
 
         return Arithmetic(self.constant, {code: rule(code) for code in _KNOWN})

@@ -1,4 +1,6 @@
-"""Frictions of a solution held to their laws, from its own arrays: what is reported to press, and how fast it slides."""
+"""Frictions of a solution held to their laws, from its own arrays: what is reported to press, and
+how fast it slides.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from .reported import Reported
 from .vectors import Axes, Scalar, Vector
 
 _SLOW = 1e-9
-"""Of a joint's fastest rate, or of one that its accelerations lead to: below, either sign may be that of its rate."""
+"""Of a joint's fastest rate, or of one that its accelerations lead to: below, either sign may be
+that of its rate.
+"""
 
 _BESIDE = {"slide": "turn", "turn": "slide"}
 
@@ -24,9 +28,11 @@ Pressing = Callable[[Array], Scalar]
 
 
 def friction_gaps(placed: Placed, digits: Digits) -> Array | None:
-    """How far frictions are from what their laws say, and the power that they take from what they do (t,).
+    """How far frictions are from what their laws say, and the power that they take from what they
+    do (t,).
 
-    None where there is no friction, or what it takes is not among the outputs. What is open at rest is no gap.
+    None where there is no friction, or what it takes is not among the outputs. What is open at rest
+    is no gap.
     """
     found = [*_of_losses(placed, digits)]
     if (off := _of_laws(placed)) is not None:
@@ -35,10 +41,14 @@ def friction_gaps(placed: Placed, digits: Digits) -> Array | None:
 
 
 def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
-    """How far the power that each friction takes is from its force times its rate, over the largest of that."""
+    """How far the power that each friction takes is from its force times its rate, over the largest
+    of that.
+    """
     outputs, (turned, fastest, _) = placed.reported.outputs, placed.rates
     for name, rate, turns in _rubbing(placed):
-        value, lost = (outputs.get(Output("friction", name, member)) for member in ("along", "loss"))
+        value, lost = (
+            outputs.get(Output("friction", name, member)) for member in ("along", "loss")
+        )
         if value is None or lost is None:
             continue
         blur = digits.coarseness * np.max(turned if turns else fastest)
@@ -66,12 +76,17 @@ def _largest(values: Array) -> float:
 
 
 def _of_laws(placed: Placed) -> Array | None:
-    """How far frictions of joints are from what their laws say, over what they would be under the largest reaction of the cycle."""
+    """How far frictions of joints are from what their laws say, over what they would be under the
+    largest reaction of the cycle.
+    """
     declared, outputs = placed.declared, placed.reported.outputs
     worst: Array | None = None
     for name, load in declared.loads.items():
         numbers, holder = load.friction, load.coordinate.partition(":")[0]
-        value, rate = outputs.get(Output("friction", name, "along")), outputs.get(Output("motion", load.coordinate, "rate"))
+        value, rate = (
+            outputs.get(Output("friction", name, "along")),
+            outputs.get(Output("motion", load.coordinate, "rate")),
+        )
         if numbers is None or value is None or Output("reaction", holder, "fx") not in outputs:
             continue
         joint, spin = declared.joints[holder], None
@@ -96,22 +111,44 @@ def _of_laws(placed: Placed) -> Array | None:
         if "static" in numbers:
             mu += (numbers["static"] - mu) * np.exp(-((speed / numbers["stribeck"]) ** 2))
         steady = -numbers.get("viscous", 0.0) * rate
-        sign = np.tanh(rate / numbers["smooth"]) if "smooth" in numbers else np.sign(rate) if share is None else share
+        sign = (
+            np.tanh(rate / numbers["smooth"])
+            if "smooth" in numbers
+            else np.sign(rate)
+            if share is None
+            else share
+        )
         gap = np.abs(value - steady + mu * sign * pressing(sign))
         if "smooth" not in numbers:
-            ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
-            # Where it slides and turns, and both turn back at once, some share of it is along this coordinate.
-            slow = np.minimum(*ends) if share is None else np.maximum(np.abs(value - steady) - mu * pressing(np.sign(rate)), 0.0)
+            ends = [
+                np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate)))
+                for one in (1.0, -1.0)
+            ]
+            # Where it slides and turns, and both turn back at once, some share of it is along this
+            # coordinate.
+            slow = (
+                np.minimum(*ends)
+                if share is None
+                else np.maximum(np.abs(value - steady) - mu * pressing(np.sign(rate)), 0.0)
+            )
             quick = _quick(placed, load.coordinate, turns)
             moves = speed > _SLOW * max(float(np.max(speed)), lever * quick)
-            gap = np.where(moves, gap if spin is None else np.maximum(gap, _aside(placed.reported, name, value, spin)), slow)
+            gap = np.where(
+                moves,
+                gap
+                if spin is None
+                else np.maximum(gap, _aside(placed.reported, name, value, spin)),
+                slow,
+            )
         scale = float(np.max(mu)) * lever * _most(outputs, numbers) + float(np.max(np.abs(steady)))
         worst = np.fmax(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return worst
 
 
 def _aside(reported: Reported, name: str, value: Array, spin: Vector) -> Scalar:
-    """How far the couple of a spherical joint's friction is from one of that size about the axis of turning."""
+    """How far the couple of a spherical joint's friction is from one of that size about the axis of
+    turning.
+    """
     if not all(Output("load", name, member) in reported.outputs for member in ("mx", "my", "mz")):
         return 0.0
     size = np.broadcast_to(spin.size, value.shape)
@@ -120,7 +157,9 @@ def _aside(reported: Reported, name: str, value: Array, spin: Vector) -> Scalar:
 
 
 def _quick(placed: Placed, coordinate: str, turns: bool) -> float:
-    """A rate that the accelerations of a coordinate lead to: where all instants are ends of strokes, the rates are rounding."""
+    """A rate that the accelerations of a coordinate lead to: where all instants are ends of
+    strokes, the rates are rounding.
+    """
     change = placed.reported.outputs.get(Output("motion", coordinate, "acceleration"), np.zeros(1))
     return float(np.sqrt(np.max(np.abs(change)) * (1.0 if turns else placed.declared.size)))
 
@@ -137,7 +176,9 @@ def _most(outputs: Mapping[Output, Array], numbers: Mapping[str, float]) -> floa
     sizes = {"f": 0.0, "m": 0.0}
     for output, values in outputs.items():
         if output.group == "reaction":
-            sizes[output.member[0]] = max(sizes[output.member[0]], float(np.fmax.reduce(np.abs(values))))
+            sizes[output.member[0]] = max(
+                sizes[output.member[0]], float(np.fmax.reduce(np.abs(values)))
+            )
     return sizes["f"] + 2.0 * sizes["m"] / arm
 
 
@@ -165,7 +206,8 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], turns: bo
 def _thread(joint: JointNumbers, numbers: Mapping[str, float], force: Array) -> Pressing:
     """What presses in a screw, by the angles of the thread and of friction.
 
-    The couple of a force is radius tan(angle + phi) of it, and that without friction radius tan(angle).
+    The couple of a force is radius tan(angle + phi) of it, and that without friction radius
+    tan(angle).
     """
     radius = numbers["radius"]
     angle, phi = np.arctan(joint.pitch / radius), np.arctan(numbers["mu"])
@@ -174,6 +216,8 @@ def _thread(joint: JointNumbers, numbers: Mapping[str, float], force: Array) -> 
         way = np.sign(sign) * np.sign(force)
         whole = radius * np.abs(force) * (np.tan(way * angle + phi) - np.tan(way * angle))
         half = radius * np.abs(force) * (np.tan(phi - way * angle) + np.tan(way * angle))
-        return np.asarray(((1 + np.abs(sign)) * whole + (1 - np.abs(sign)) * half) / (2.0 * numbers["mu"] or 1.0))
+        return np.asarray(
+            ((1 + np.abs(sign)) * whole + (1 - np.abs(sign)) * half) / (2.0 * numbers["mu"] or 1.0)
+        )
 
     return pressing

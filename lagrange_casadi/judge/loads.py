@@ -1,7 +1,9 @@
-"""Loads of a solution held to their laws, as they were declared: from the reported motions, and not from the graphs.
+"""Loads of a solution held to their laws, as they were declared: from the reported motions, and not
+from the graphs.
 
-A law that jumps may be on either side of its jump, and a steep one tells little: what the rounding of reported places and
-rates leaves open counts for no gap. Friction has a law of its own (:mod:`.friction`); here is only where it acts.
+A law that jumps may be on either side of its jump, and a steep one tells little: what the rounding
+of reported places and rates leaves open counts for no gap. Friction has a law of its own
+(:mod:`.friction`); here is only where it acts.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ _TRIALS, _MOST = 8, 1e9
 
 
 def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
-    """How far loads are from what their laws say [N] (t,), couples by the size; ``largest`` is the largest force of the cycle."""
+    """How far loads are from what their laws say [N] (t,), couples by the size; ``largest`` is the
+    largest force of the cycle.
+    """
     worst = np.zeros_like(placed.reported.t)
     for law in placed.declared.laws:
         load = placed.declared.loads[law.name]
@@ -37,14 +41,30 @@ def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
         if np.max(gap) > digits.doubted * largest:
             places = _turned(placed, law, load, given, places, rates)
             acts = _acting(placed, law, load, law.at(places, rates, placed.reported.t))
-            gap = np.maximum(_apart(placed, given, acts) - _open(placed, law, load, places, rates, acts, digits), 0.0)
+            gap = np.maximum(
+                _apart(placed, given, acts) - _open(placed, law, load, places, rates, acts, digits),
+                0.0,
+            )
         worst = np.maximum(worst, gap)
     for name, load in placed.declared.loads.items():
-        value, holder = placed.reported.outputs.get(Output("friction", name, "along")), load.coordinate.partition(":")[0]
-        if load.friction is None or value is None or placed.declared.joints[holder].kind == "spherical":
+        value, holder = (
+            placed.reported.outputs.get(Output("friction", name, "along")),
+            load.coordinate.partition(":")[0],
+        )
+        if (
+            load.friction is None
+            or value is None
+            or placed.declared.joints[holder].kind == "spherical"
+        ):
             continue
-        axis = next(axis for axis in placed.declared.joints[holder].axes if axis.coordinate == load.coordinate)
-        worst = np.maximum(worst, _apart(placed, _given(placed, name), placed.along(holder, axis, value)))
+        axis = next(
+            axis
+            for axis in placed.declared.joints[holder].axes
+            if axis.coordinate == load.coordinate
+        )
+        worst = np.maximum(
+            worst, _apart(placed, _given(placed, name), placed.along(holder, axis, value))
+        )
     return worst
 
 
@@ -80,7 +100,9 @@ def _stretched(placed: Placed, load: LoadNumbers) -> tuple[Vector, Vector]:
 
 
 def _summed(numbers: Array, axes: Axes, *, turning: bool) -> Acts:
-    """The force of a load along a link, and its couple about the middle of where it acts, added up at Gauss's places."""
+    """The force of a load along a link, and its couple about the middle of where it acts, added up
+    at Gauss's places.
+    """
     reach, powers = numbers[0], numbers[1:].reshape(-1, 3, numbers.shape[1])
     force, couple = NIL, NIL
     nodes, weights = np.polynomial.legendre.leggauss(len(powers) // 2 + 1)
@@ -92,12 +114,19 @@ def _summed(numbers: Array, axes: Axes, *, turning: bool) -> Acts:
     return force, couple
 
 
-def _turned(placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts, places: Array, rates: Array) -> Array:
-    """The places that a law sees, with the whole turns of angles that loops set: where instants are far apart, none are reported.
+def _turned(
+    placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts, places: Array, rates: Array
+) -> Array:
+    """The places that a law sees, with the whole turns of angles that loops set: where instants are
+    far apart, none are reported.
 
     They are those with which the law comes nearest to the load.
     """
-    angles = [k for k, entry in enumerate(law.entries) if placed.turns(entry) and entry.part not in placed.declared.driven]
+    angles = [
+        k
+        for k, entry in enumerate(law.entries)
+        if placed.turns(entry) and entry.part not in placed.declared.driven
+    ]
     t = placed.reported.t
 
     def gap(there: Array) -> Array:
@@ -120,8 +149,18 @@ def _turned(placed: Placed, law: LoadLaw, load: LoadNumbers, given: Acts, places
     return places
 
 
-def _open(placed: Placed, law: LoadLaw, load: LoadNumbers, places: Array, rates: Array, acts: Acts, digits: Digits) -> Array:
-    """How far a load may be from its law, which ``acts`` so, for the rounding of what it sees: the change with each, added up."""
+def _open(
+    placed: Placed,
+    law: LoadLaw,
+    load: LoadNumbers,
+    places: Array,
+    rates: Array,
+    acts: Acts,
+    digits: Digits,
+) -> Array:
+    """How far a load may be from its law, which ``acts`` so, for the rounding of what it sees: the
+    change with each, added up.
+    """
     declared, off = placed.declared, NEARBY * digits.rounding
     t, (turned, fastest, _) = placed.reported.t, placed.rates
     found = np.zeros_like(t)

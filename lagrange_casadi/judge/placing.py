@@ -1,7 +1,9 @@
-"""Where the bodies of a solution are and how they move, in plain vectors, from the motions that it reports.
+"""Where the bodies of a solution are and how they move, in plain vectors, from the motions that it
+reports.
 
-It shares nothing with the graphs that made the solution. A joint's reported motion places what hangs on it, by Rodrigues' formula.
-What no joint of a known motion holds, as a bar, is taken where it is reported (:mod:`.unplaced`).
+It shares nothing with the graphs that made the solution. A joint's reported motion places what
+hangs on it, by Rodrigues' formula. What no joint of a known motion holds, as a bar, is taken where
+it is reported (:mod:`.unplaced`).
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ Motion = tuple[Vector, Vector, Vector]
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """Place of a body's origin, the directions of its axes, and both their derivatives, in ground axes."""
+    """Place of a body's origin, the directions of its axes, and both their derivatives, in ground
+    axes.
+    """
 
     at: Vector
     speed: Vector
@@ -35,8 +39,12 @@ class Moving:
     acceleration: Vector
 
     @classmethod
-    def holding(cls, at: Motion, point: Vector, axes: Axes, rate: Vector, acceleration: Vector) -> Moving:
-        """The motion of a body that turns as said and whose ``point`` has the given place, velocity and acceleration."""
+    def holding(
+        cls, at: Motion, point: Vector, axes: Axes, rate: Vector, acceleration: Vector
+    ) -> Moving:
+        """The motion of a body that turns as said and whose ``point`` has the given place, velocity
+        and acceleration.
+        """
         own = cls(NIL, NIL, NIL, axes, rate, acceleration).point(point)
         return cls(at[0] - own[0], at[1] - own[1], at[2] - own[2], axes, rate, acceleration)
 
@@ -49,7 +57,11 @@ class Moving:
         """Place, velocity and acceleration of the body's point."""
         arm = self.axes.turn(point)
         moves = self.rate.cross(arm)
-        return self.at + arm, self.speed + moves, self.change + self.acceleration.cross(arm) + self.rate.cross(moves)
+        return (
+            self.at + arm,
+            self.speed + moves,
+            self.change + self.acceleration.cross(arm) + self.rate.cross(moves),
+        )
 
     def under(self, place: Vector) -> Vector:
         """The body's point at a place."""
@@ -76,9 +88,11 @@ AT_REST = Moving(NIL, NIL, NIL, GROUND, NIL, NIL)
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """How a joint moves its child against its parent, in the parent's axes: its point by a ``slide``, and how it is ``turned``.
+    """How a joint moves its child against its parent, in the parent's axes: its point by a
+    ``slide``, and how it is ``turned``.
 
-    ``about`` are the directions of its turns at the moment, by coordinate. ``whole`` says whether all of its turning is known.
+    ``about`` are the directions of its turns at the moment, by coordinate. ``whole`` says whether
+    all of its turning is known.
     """
 
     slide: Motion
@@ -91,7 +105,9 @@ class Relative:
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A mechanism as it was declared, its results, how each of its joints moves, and the bodies that are placed."""
+    """A mechanism as it was declared, its results, how each of its joints moves, and the bodies
+    that are placed.
+    """
 
     declared: Declared
     reported: Reported
@@ -115,18 +131,34 @@ class Placed:
 
     @cached_property
     def rates(self) -> tuple[Scalar, Scalar, Scalar]:
-        """The largest rate of turning at each instant, of joints too; and a speed and an acceleration that none exceeds."""
+        """The largest rate of turning at each instant, of joints too; and a speed and an
+        acceleration that none exceeds.
+        """
         reported, declared = self.reported, self.declared
-        angles = [name for name, kind in declared.kinds.items() if kind == "angle" and name not in reported.unmeasured]
-        speeds, changes, turning, gains = zip(*(body.sizes for body in self.bodies.values()), strict=True)
-        turned, gained = most([*turning, *map(reported.rate, angles)]), most([*gains, *map(reported.acceleration, angles)])
-        return turned, most(speeds) + turned * declared.extent, most(changes) + (gained + turned**2) * declared.extent
+        angles = [
+            name
+            for name, kind in declared.kinds.items()
+            if kind == "angle" and name not in reported.unmeasured
+        ]
+        speeds, changes, turning, gains = zip(
+            *(body.sizes for body in self.bodies.values()), strict=True
+        )
+        turned, gained = (
+            most([*turning, *map(reported.rate, angles)]),
+            most([*gains, *map(reported.acceleration, angles)]),
+        )
+        return (
+            turned,
+            most(speeds) + turned * declared.extent,
+            most(changes) + (gained + turned**2) * declared.extent,
+        )
 
     def along(self, joint: str, axis: AxisNumbers, effort: Array) -> tuple[Vector, Vector]:
-        """The force and the couple of an effort along an axis of a joint, on its child at the joint's point.
+        """The force and the couple of an effort along an axis of a joint, on its child at the
+        joint's point.
 
-        It does no work along other coordinates: along a slide it is a force, about one of several axes a couple at right angles
-        to the other axes.
+        It does no work along other coordinates: along a slide it is a force, about one of several
+        axes a couple at right angles to the other axes.
         """
         near = self.ends(joint)[0]
         if axis.kind == "slide":
@@ -137,23 +169,35 @@ class Placed:
 
     def turns(self, entry: Entry) -> bool:
         """Whether an entry of an equation is an angle."""
-        return entry.kind == "direction" or (entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle")
+        return entry.kind == "direction" or (
+            entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle"
+        )
 
     def measured(self, entry: Entry) -> tuple[Scalar, Scalar, Scalar]:
         """An entry of an equation, its rate and its acceleration."""
         reported = self.reported
         if entry.kind == "coordinate":
-            return reported.value(entry.part), reported.rate(entry.part), reported.acceleration(entry.part)
+            return (
+                reported.value(entry.part),
+                reported.rate(entry.part),
+                reported.acceleration(entry.part),
+            )
         body = self.bodies[entry.part]
         if entry.kind == "direction":
-            return reported.outputs[Output("pose", entry.part, "angle")], body.rate.z, body.acceleration.z
+            return (
+                reported.outputs[Output("pose", entry.part, "angle")],
+                body.rate.z,
+                body.acceleration.z,
+            )
         place, speed, change = body.point(Vector(*entry.point))
         return getattr(place, entry.kind), getattr(speed, entry.kind), getattr(change, entry.kind)
 
 
 def place(declared: Declared, reported: Reported) -> Placed:
     """The motion of every body that the reported motions of joints place, the ground's included."""
-    relatives = {name: _relative(declared, reported, joint) for name, joint in declared.joints.items()}
+    relatives = {
+        name: _relative(declared, reported, joint) for name, joint in declared.joints.items()
+    }
     bodies = {"ground": AT_REST}
     waiting, moved = dict(declared.joints), True
     while waiting and moved:
@@ -163,7 +207,9 @@ def place(declared: Declared, reported: Reported) -> Placed:
             if (parent in bodies) == (child in bodies):
                 continue
             outward = parent in bodies
-            found = (_outward if outward else _inward)(declared, joint, relatives[name], bodies[parent if outward else child])
+            found = (_outward if outward else _inward)(
+                declared, joint, relatives[name], bodies[parent if outward else child]
+            )
             if found is not None:
                 bodies[child if outward else parent] = found
                 del waiting[name]
@@ -172,7 +218,10 @@ def place(declared: Declared, reported: Reported) -> Placed:
 
 
 def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Relative:
-    """How a joint moves, by its reported motions; of what is not reported, nothing. A screw slides by its turns too."""
+    """How a joint moves, by its reported motions; of what is not reported, nothing.
+
+    A screw slides by its turns too.
+    """
     slide, speed, change, turned, rate, acceleration = NIL, NIL, NIL, GROUND, NIL, NIL
     about: dict[str, Vector] = {}
     for axis in joint.axes:
@@ -182,7 +231,11 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
         moves, gains = reported.rate(name), reported.acceleration(name)
         way = direction if axis.kind == "slide" else joint.pitch * direction
         if any(way.components):
-            slide, speed, change = slide + reported.value(name) * way, speed + moves * way, change + gains * way
+            slide, speed, change = (
+                slide + reported.value(name) * way,
+                speed + moves * way,
+                change + gains * way,
+            )
         if axis.kind == "slide":
             continue
         about[name] = turned.turn(direction)
@@ -192,11 +245,20 @@ def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Re
         turned = turned.carry(Axes.about(direction, reported.phase(Output("motion", name))))
     known = not joint.free and not {axis.coordinate for axis in joint.axes} & reported.unmeasured
     whole = known and declared.oriented(joint.parent.body) and declared.oriented(joint.child.body)
-    return Relative((slide, speed, change), turned.carry(Axes.of(joint.turned)), rate, acceleration, about, whole)
+    return Relative(
+        (slide, speed, change),
+        turned.carry(Axes.of(joint.turned)),
+        rate,
+        acceleration,
+        about,
+        whole,
+    )
 
 
 def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
-    """The couple that does a unit of work for a turn about one of axes, and none for turns about the others."""
+    """The couple that does a unit of work for a turn about one of axes, and none for turns about
+    the others.
+    """
     if len(axes) < 3:
         return axes[number]
     first, second, third = (axes[(number + k) % 3] for k in range(3))
@@ -205,7 +267,9 @@ def _reciprocal(axes: Sequence[Vector], number: int) -> Vector:
         return (1.0 / np.asarray(first.dot(across))) * across
 
 
-def _outward(declared: Declared, joint: JointNumbers, motion: Relative, base: Moving) -> Moving | None:
+def _outward(
+    declared: Declared, joint: JointNumbers, motion: Relative, base: Moving
+) -> Moving | None:
     """The motion of a joint's child, or None where the joint does not give it."""
     if not motion.whole and declared.oriented(joint.child.body):
         return None
@@ -221,7 +285,9 @@ def _outward(declared: Declared, joint: JointNumbers, motion: Relative, base: Mo
     return Moving.holding(there, _vector(joint.child.at), *turning)
 
 
-def _inward(declared: Declared, joint: JointNumbers, motion: Relative, far: Moving) -> Moving | None:
+def _inward(
+    declared: Declared, joint: JointNumbers, motion: Relative, far: Moving
+) -> Moving | None:
     """The motion of a joint's parent, or None where the joint does not give it."""
     place, moves, changes = far.point(_vector(joint.child.at))
     if not motion.whole:

@@ -1,7 +1,8 @@
-"""A scene's own graphs evaluated with any number of digits: what rounding alone does to a result, seen from outside.
+"""A scene's own graphs evaluated with any number of digits: what rounding alone does to a result,
+seen from outside.
 
-The same instructions as in the emitted C, followed one by one (:mod:`.interpret`) in mpmath's arithmetic. Formulas are not
-checked by it: it takes the same ones.
+The same instructions as in the emitted C, followed one by one (:mod:`.interpret`) in mpmath's
+arithmetic. Formulas are not checked by it: it takes the same ones.
 """
 
 from __future__ import annotations
@@ -32,18 +33,22 @@ def reference(
     digits: int = DIGITS,
     following: Callable[[Arithmetic], Arithmetic] = lambda arithmetic: arithmetic,
 ) -> list[list[Any]]:
-    """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of so many digits.
+    """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of so many
+    digits.
 
-    Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from ``z`` (k, n), and are closed to
-    all digits. A motion by samples is read in doubles. ``following`` has the last word on the arithmetic of an instant. Raises
-    :class:`LagrangeCasadiError` where mpmath is not installed, :class:`AssemblyError` where a loop does not close, and
-    :class:`DeclarationError` for graphs that call functions of their own.
+    Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from
+    ``z`` (k, n), and are closed to all digits. A motion by samples is read in doubles.
+    ``following`` has the last word on the arithmetic of an instant. Raises
+    :class:`LagrangeCasadiError` where mpmath is not installed, :class:`AssemblyError` where a loop
+    does not close, and :class:`DeclarationError` for graphs that call functions of their own.
     """
     mp = _mpmath()
     with mp.workdps(digits):
         # A turn is meant, not the double that is nearest to it.
         plain = arithmetic()
-        known = replace(plain, constant=lambda value: 2 * mp.pi if value == math.tau else plain.constant(value))
+        known = replace(
+            plain, constant=lambda value: 2 * mp.pi if value == math.tau else plain.constant(value)
+        )
         values = [mp.mpf(value) for value in p]
         rows = []
         for i, moment in enumerate(t):
@@ -57,7 +62,10 @@ def reference(
 
 
 def arithmetic() -> Arithmetic:
-    """Mpmath's numbers of the digits that are set when they are computed. Raises where mpmath is not installed."""
+    """Mpmath's numbers of the digits that are set when they are computed.
+
+    Raises where mpmath is not installed.
+    """
     mp = _mpmath()
     return Arithmetic(mp.mpf, _operations(mp))
 
@@ -76,7 +84,10 @@ def _operations(mp: Any) -> dict[int, Any]:
         ca.OP_NOT: lambda x: zero if x else one,
         ca.OP_CALL: lambda lookup, x: mp.mpf(float(lookup.at(float(x)))),
     }
-    names = "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt floor ceil"
+    names = (
+        "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt"
+        " floor ceil"
+    )
     binary = {
         ca.OP_ADD: lambda x, y: x + y,
         ca.OP_SUB: lambda x, y: x - y,
@@ -99,14 +110,20 @@ def _operations(mp: Any) -> dict[int, Any]:
         ca.OP_FMOD: lambda x, y: mp.sign(x) * mp.fmod(abs(x), abs(y)),
         ca.OP_REMAINDER: lambda x, y: x - y * mp.nint(x / y),
     }
-    return unary | {getattr(ca, f"OP_{name.upper()}"): getattr(mp, name) for name in names.split()} | binary
+    return (
+        unary
+        | {getattr(ca, f"OP_{name.upper()}"): getattr(mp, name) for name in names.split()}
+        | binary
+    )
 
 
 def _mpmath() -> Any:
     try:
         from mpmath import mp
     except ImportError:
-        raise LagrangeCasadiError("a reference of many digits needs mpmath; install it with: pip install '.[trade]'") from None
+        raise LagrangeCasadiError(
+            "a reference of many digits needs mpmath; install it with: pip install '.[trade]'"
+        ) from None
     return mp
 
 
@@ -114,13 +131,20 @@ def _driven(graph: Program, time: Any, values: list[Any]) -> list[list[Any]]:
     return interpret(graph.laws.motion, [[time], values], arithmetic())
 
 
-def _closed(graph: Program, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any) -> list[Any]:
+def _closed(
+    graph: Program, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any
+) -> list[Any]:
     """The iterated coordinates, closed from a guess."""
     if graph.newton is None:
         return []
     for _ in range(_STEPS):
-        correction, (size,) = interpret(graph.newton.step, [z, [time], driven, values], arithmetic())
+        correction, (size,) = interpret(
+            graph.newton.step, [z, [time], driven, values], arithmetic()
+        )
         z = [a + b for a, b in zip(z, correction, strict=True)]
         if size < small:
             return z
-    raise AssemblyError(f"the loops closed by {graph.newton.joints} do not close to all digits at t = {float(time):.6g} s")
+    raise AssemblyError(
+        f"the loops closed by {graph.newton.joints} do not close to all digits at t ="
+        f" {float(time):.6g} s"
+    )

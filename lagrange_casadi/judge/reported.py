@@ -14,16 +14,18 @@ from ..instants.section_law import SectionLaw
 from .vectors import GROUND, Axes, Scalar, Vector
 
 _NEAR = 1e-3
-"""The square of the cosine of a second turn below which the rates of three turns have lost digits of the body's."""
+"""The square of the cosine of a second turn below which the rates of three turns have lost digits
+of the body's.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Reported:
     """Outputs at some instants ``t``, those that are hidden from users included.
 
-    ``phases`` are angles up to whole turns that are known more closely than they are reported. ``laws`` are the laws of links with
-    sections. ``bars`` are links whose spin about their own axis is taken to be none. ``unmeasured`` are coordinates that are not
-    reported, or not used.
+    ``phases`` are angles up to whole turns that are known more closely than they are reported.
+    ``laws`` are the laws of links with sections. ``bars`` are links whose spin about their own axis
+    is taken to be none. ``unmeasured`` are coordinates that are not reported, or not used.
     """
 
     t: Array
@@ -36,16 +38,23 @@ class Reported:
 
     def during(self, instants: slice) -> Reported:
         """The results at some of the instants."""
-        outputs, phases = ({output: values[instants] for output, values in one.items()} for one in (self.outputs, self.phases))
+        outputs, phases = (
+            {output: values[instants] for output, values in one.items()}
+            for one in (self.outputs, self.phases)
+        )
         laws = {link: law.during(instants) for link, law in self.laws.items()}
         return replace(self, t=self.t[instants], outputs=outputs, phases=phases, laws=laws)
 
     def without_locked(self, declared: Declared) -> Reported:
-        """The results without turns near gimbal lock among what is used: those bodies are taken where they are reported.
+        """The results without turns near gimbal lock among what is used: those bodies are taken
+        where they are reported.
 
-        Three turns that loops set say nothing where they lock, and little near it; driven ones are known all the same.
+        Three turns that loops set say nothing where they lock, and little near it; driven ones are
+        known all the same.
         """
-        locked = {name for joint in declared.joints.values() for name in self._locked(declared, joint)}
+        locked = {
+            name for joint in declared.joints.values() for name in self._locked(declared, joint)
+        }
         return replace(self, unmeasured=self.unmeasured | locked) if locked else self
 
     def _locked(self, declared: Declared, joint: JointNumbers) -> list[str]:
@@ -80,12 +89,19 @@ class Reported:
         if self.space:
             if Output("pose", body, "xx") not in self.outputs:
                 return GROUND
-            return Axes(*(Vector(*(self.outputs[Output("pose", body, axis + x)] for x in "xyz")) for axis in "xyz"))
+            return Axes(
+                *(
+                    Vector(*(self.outputs[Output("pose", body, axis + x)] for x in "xyz"))
+                    for axis in "xyz"
+                )
+            )
         angle = Output("pose", body, "angle")
         return Axes.about(GROUND.z, self.phase(angle)) if angle in self.outputs else GROUND
 
     def force(self, group: str, part: str, letter: str = "f", axes: str = "xyz") -> Vector:
-        """The force of a part, or by the ``letter`` "m" its moment; components that it has none of are zero."""
+        """The force of a part, or by the ``letter`` "m" its moment; components that it has none of
+        are zero.
+        """
         return Vector(*(self.outputs.get(Output(group, part, letter + x), 0.0) for x in axes))
 
     def inside(self, link: str) -> tuple[Vector, Vector]:

@@ -1,4 +1,6 @@
-"""What the rounding of an operation left of its result, to the last bit, from operands and result: arrays of doubles or singles."""
+"""What the rounding of an operation left of its result, to the last bit, from operands and result:
+arrays of doubles or singles.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +14,12 @@ _LEAST = 1e-280
 
 
 def left(code: int, result: Array, *operands: Array) -> Array:
-    """What the result of an operation, one of CasADi's ``OP_`` codes, lacks; zero where it is exact, NaN where unknown.
+    """What the result of an operation, one of CasADi's ``OP_`` codes, lacks; zero where it is
+    exact, NaN where unknown.
 
-    Of a sum by Knuth's error-free sum; of the others by the product that they undo, without error (Dekker, *A floating-point
-    technique for extending the available precision*, Numer. Math. 18, 1971).
+    Of a sum by Knuth's error-free sum; of the others by the product that they undo, without error
+    (Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18,
+    1971).
     """
     if code in (ca.OP_ADD, ca.OP_SUB):
         a, b = operands[0], operands[1] if code == ca.OP_ADD else -operands[1]
@@ -30,9 +34,13 @@ def left(code: int, result: Array, *operands: Array) -> Array:
     if code == ca.OP_INV:
         return np.asarray(-_product(result, operands[0], np.ones_like(result)) / operands[0])
     if code == ca.OP_SQRT:
-        return np.asarray(-_product(result, result, operands[0]) / np.where(result == 0.0, 1.0, 2.0 * result))
+        return np.asarray(
+            -_product(result, result, operands[0]) / np.where(result == 0.0, 1.0, 2.0 * result)
+        )
     # The sine of nothing, and its cosine.
-    exact = np.all([operand == 0.0 for operand in operands], axis=0) & ((result == 0.0) | (result == 1.0))
+    exact = np.all([operand == 0.0 for operand in operands], axis=0) & (
+        (result == 0.0) | (result == 1.0)
+    )
     return np.where(exact, 0.0, np.nan)
 
 

@@ -1,4 +1,6 @@
-"""What transmissions do to bodies, from reported multipliers, and that it does no work of its own."""
+"""What transmissions do to bodies, from reported multipliers, and that it does
+no work of its own.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ _REST = 1e-12
 
 
 def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
-    """The sign with which the first turns on the carrier; where it turns back, that of the instants right after."""
+    """The sign with which the first turns on the carrier; where it turns back, that of the instants
+    right after.
+    """
     if not touch.turns:
         return 0.0
     rate = np.sum([sign * reported.rate(name) for sign, name in touch.turns], axis=0)
@@ -30,7 +34,9 @@ def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
     return np.sign(np.where(np.abs(rate) > _REST * fastest, rate, change))
 
 
-def actions(touch: Touch, carrier: Moving, multiplier: Array, sense: Scalar) -> Iterator[tuple[str, Vector, Vector, Vector]]:
+def actions(
+    touch: Touch, carrier: Moving, multiplier: Array, sense: Scalar
+) -> Iterator[tuple[str, Vector, Vector, Vector]]:
     """On each of the two bodies: its name, where, the force and the couple, in ground axes.
 
     ``sense`` is the sign of the first one's rate, or zero without friction.
@@ -49,12 +55,16 @@ def actions(touch: Touch, carrier: Moving, multiplier: Array, sense: Scalar) -> 
 
 
 def idle(touch: Touch, bodies: Mapping[str, Moving], t: Array) -> Array:
-    """The power of a unit of the multiplier, over the largest power that is added up in it (t,): zero, but for rounding."""
+    """The power of a unit of the multiplier, over the largest power that is added up in it (t,):
+    zero, but for rounding.
+    """
     one, gaps, sizes = np.ones_like(t), [], []
     for sign in (1.0, -1.0):
         # What presses apart takes none either.
         terms: list[Scalar] = []
-        for name, at, force, couple in actions(replace(touch, slack=0.0), bodies[touch.carrier], sign * one, 0.0):
+        for name, at, force, couple in actions(
+            replace(touch, slack=0.0), bodies[touch.carrier], sign * one, 0.0
+        ):
             body, speed = bodies[name], bodies[name].speed_at(at)
             terms += [a * b for a, b in zip(force.components, speed.components, strict=True)]
             terms += [a * b for a, b in zip(couple.components, body.rate.components, strict=True)]

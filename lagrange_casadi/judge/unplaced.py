@@ -1,7 +1,8 @@
-"""Bodies that no joint of a known motion places, as bars and what hangs on points without a direction: taken where reported.
+"""Bodies that no joint of a known motion places, as bars and what hangs on points without a
+direction: taken where reported.
 
-Their rates and accelerations follow from what their joints and the users' equations leave them, by least squares. The spin of a bar
-about its own axis is idle, and none is taken.
+Their rates and accelerations follow from what their joints and the users' equations leave them, by
+least squares. The spin of a bar about its own axis is idle, and none is taken.
 """
 
 from __future__ import annotations
@@ -30,14 +31,21 @@ def place_all(placed: Placed) -> Placed:
 
 
 def gaps_of(placed: Placed, joint: str, pin: Motion) -> tuple[Vector, Vector, Vector, Vector]:
-    """What a joint leaves of velocities and angular velocities, and of both their changes: what moves otherwise than is reported.
+    """What a joint leaves of velocities and angular velocities, and of both their changes: what
+    moves otherwise than is reported.
 
-    All are in ground axes; those of turning are nil where it is not known how the joint turns. ``pin`` is how its point moves.
+    All are in ground axes; those of turning are nil where it is not known how the joint turns.
+    ``pin`` is how its point moves.
     """
     (near, far), motion = placed.ends(joint), placed.relatives[joint]
     place, moves, changes = pin
     speed = moves - near.speed_at(place)
-    change = changes - near.change_at(place) - 2.0 * near.rate.cross(speed) - near.axes.turn(motion.slide[2])
+    change = (
+        changes
+        - near.change_at(place)
+        - 2.0 * near.rate.cross(speed)
+        - near.axes.turn(motion.slide[2])
+    )
     about = NIL, NIL
     if motion.whole:
         spin, gains = far.rate - near.rate, far.acceleration - near.acceleration
@@ -68,7 +76,9 @@ def _together(placed: Placed) -> list[list[str]]:
     for ends in joined:
         own = [group for group in groups if ends & {*group}]
         if len(own) > 1:
-            groups = [group for group in groups if group not in own] + [[name for group in own for name in group]]
+            groups = [group for group in groups if group not in own] + [
+                [name for group in own for name in group]
+            ]
     return groups
 
 
@@ -81,7 +91,8 @@ def _parts(equation: Equation) -> set[str]:
 class _Unplaced:
     """Bodies of given ``names`` whose rates and accelerations are solved for, all together.
 
-    What joints and equations leave of velocities is affine in those of the bodies, so its slopes are differences.
+    What joints and equations leave of velocities is affine in those of the bodies, so its slopes
+    are differences.
     """
 
     placed: Placed
@@ -122,7 +133,14 @@ class _Unplaced:
                         components[k] = row
                 vectors += [Vector(*components[:3]), Vector(*components[3:])]
             speed, rate, change, acceleration = vectors
-            found[name] = Moving(self.reported.place(name), speed, change, self.reported.axes(name), rate, acceleration)
+            found[name] = Moving(
+                self.reported.place(name),
+                speed,
+                change,
+                self.reported.axes(name),
+                rate,
+                acceleration,
+            )
             start += len(free)
         return found
 
@@ -144,14 +162,20 @@ class _Unplaced:
             if not equation.row and parts & {*trial} and parts <= {*placed.bodies}:
                 found.append(equation.at(*stacked(placed, equation), self.reported.t)[order])
         rows = [row for row in found if not (type(row) is float and row == 0.0)]
-        return np.array([np.broadcast_to(row, self.reported.t.shape) for row in rows]).reshape(len(rows), self.reported.t.size)
+        return np.array([np.broadcast_to(row, self.reported.t.shape) for row in rows]).reshape(
+            len(rows), self.reported.t.size
+        )
 
     def _zero(self, gaps: Callable[[Array], Array], count: int) -> Array | None:
-        """The unknowns (count, t) at which gaps that are affine in them are zero; None where they are not decided."""
+        """The unknowns (count, t) at which gaps that are affine in them are zero; None where they
+        are not decided.
+        """
         rest = gaps(np.zeros((count, self.reported.t.size)))
         if len(rest) < count:
             return None
-        ones = (np.broadcast_to(row[:, None], (count, self.reported.t.size)) for row in np.eye(count))
+        ones = (
+            np.broadcast_to(row[:, None], (count, self.reported.t.size)) for row in np.eye(count)
+        )
         slopes = np.stack([gaps(one) - rest for one in ones], axis=1)
         q, r = np.linalg.qr(np.moveaxis(slopes, -1, 0))
         sizes = np.abs(np.diagonal(r, axis1=1, axis2=2))

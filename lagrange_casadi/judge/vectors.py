@@ -1,7 +1,8 @@
-"""Vectors over instants, in plain arithmetic: each component is an array (t,), or a number where it is the same throughout.
+"""Vectors over instants, in plain arithmetic: each component is an array (t,), or a number where it
+is the same throughout.
 
-A component that is the number 0.0 is zero by structure, and nothing is computed with it. So what lies in a plane costs what it
-would with two components.
+A component that is the number 0.0 is zero by structure, and nothing is computed with it. So what
+lies in a plane costs what it would with two components.
 """
 
 from __future__ import annotations
@@ -72,7 +73,9 @@ class Vector:
 
     def dot(self, other: Vector) -> Scalar:
         """The scalar product."""
-        return total(total(product(self.x, other.x), product(self.y, other.y)), product(self.z, other.z))
+        return total(
+            total(product(self.x, other.x), product(self.y, other.y)), product(self.z, other.z)
+        )
 
     def cross(self, other: Vector) -> Vector:
         """The vector product."""
@@ -91,7 +94,11 @@ class Vector:
         found: Scalar = 0.0
         for component in (self.x, self.y, self.z):
             if not (type(component) is float and component == 0.0):
-                found = np.abs(component) if type(found) is float and found == 0.0 else np.hypot(found, component)
+                found = (
+                    np.abs(component)
+                    if type(found) is float and found == 0.0
+                    else np.hypot(found, component)
+                )
         return found
 
     @property

@@ -1,4 +1,6 @@
-"""What an exported program takes and gives: its names, units, signs and ranges, which every consumer is written from."""
+"""What an exported program takes and gives: its names, units, signs and ranges, which every
+consumer is written from.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,8 @@ FAINT = 1e-9
 
 @dataclass(frozen=True)
 class Member:
-    """A member of a struct: its name in C, the full name of what it holds, and what a reader must know of it.
+    """A member of a struct: its name in C, the full name of what it holds, and what a reader must
+    know of it.
 
     ``wrapped`` tells that it is an angle known up to whole turns.
     """
@@ -52,7 +55,9 @@ class Member:
     @property
     def comment(self) -> str:
         """One line: meaning, unit, sign and range."""
-        return "; ".join(part for part in (f"{self.meaning} [{self.unit}]", self.sign, self.range) if part)
+        return "; ".join(
+            part for part in (f"{self.meaning} [{self.unit}]", self.sign, self.range) if part
+        )
 
     @property
     def path(self) -> str:
@@ -81,9 +86,10 @@ class LinkContract:
 class Contract:
     """An exported program's interface.
 
-    ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` tells that each coordinate, and the time, has
-    a second number, what rounding it to single precision left. ``settings`` are the parameters, ``links`` those with sections,
-    ``drives`` the driven joints. ``timed`` tells that the time itself matters. ``table`` says what they mean.
+    ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` tells that each
+    coordinate, and the time, has a second number, what rounding it to single precision left.
+    ``settings`` are the parameters, ``links`` those with sections, ``drives`` the driven joints.
+    ``timed`` tells that the time itself matters. ``table`` says what they mean.
     """
 
     prefix: str
@@ -115,15 +121,25 @@ class Contract:
 
     @property
     def mapped(self) -> dict[str, str]:
-        """Names that C writes otherwise: a parameter's or a joint's own name, and what it is called."""
+        """Names that C writes otherwise: a parameter's or a joint's own name, and what it is
+        called.
+        """
         found = {f"name {self.name}": self.prefix} if self.name != self.prefix else {}
-        for kind, struct in (("parameter", self.settings), ("input", self.inputs), ("output", self.outputs)):
+        for kind, struct in (
+            ("parameter", self.settings),
+            ("input", self.inputs),
+            ("output", self.outputs),
+        ):
             for m in struct:
                 own = _short(m.source, kind)
                 if m.name != re.sub(r"\W", "_", own):
                     found[f"{kind} {own}, a rest" if m.rest_of else f"{kind} {own}"] = m.name
         usual = {link.name: f"{self.prefix}_link_{link.name}".upper() for link in self.links}
-        return found | {f"link {link.name}": link.constant for link in self.links if link.constant != usual[link.name]}
+        return found | {
+            f"link {link.name}": link.constant
+            for link in self.links
+            if link.constant != usual[link.name]
+        }
 
     def input_of(self, name: str) -> str:
         """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
@@ -131,16 +147,30 @@ class Contract:
 
 
 def _short(source: str, kind: str = "") -> str:
-    """A full name without what C leaves out: of inputs, that they are motions; of a section's law, the word."""
+    """A full name without what C leaves out: of inputs, that they are motions; of a section's law,
+    the word.
+    """
     if kind != "input":
         return source.replace(":law:", ":")
-    return f"{_short(source.removeprefix(REST), kind)}_rest" if source.startswith(REST) else source.removeprefix("motion:")
+    return (
+        f"{_short(source.removeprefix(REST), kind)}_rest"
+        if source.startswith(REST)
+        else source.removeprefix("motion:")
+    )
 
 
 def contract(
-    graph: Program, name: str, precision: Precision, solution: Solution, left_open: tuple[Output, ...], *, fixed: bool
+    graph: Program,
+    name: str,
+    precision: Precision,
+    solution: Solution,
+    left_open: tuple[Output, ...],
+    *,
+    fixed: bool,
 ) -> Contract:
-    """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
+    """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no
+    parameter open.
+    """
     values = solution.description["parameters"]
     timed = _timed(graph)
     settings = [] if fixed else [_setting(key, values[key]) for key in graph.data.parameters]
@@ -175,7 +205,10 @@ def _timed(graph: Program) -> bool:
     """Whether anything but the motion depends on the time."""
     functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]
     called = ((function.sx_in(), function, place) for function, place in functions)
-    return any(ca.depends_on(ca.veccat(*function.call(symbols)), symbols[place]) for symbols, function, place in called)
+    return any(
+        ca.depends_on(ca.veccat(*function.call(symbols)), symbols[place])
+        for symbols, function, place in called
+    )
 
 
 def _setting(key: str, parameter: dict[str, float]) -> Setting:
@@ -206,7 +239,9 @@ def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Memb
     rests = precision == "single"
     found: dict[str, Member] = {}
 
-    def add(key: str, unit: str, meaning: str, sign: str = "", range_: str = "any finite number") -> None:
+    def add(
+        key: str, unit: str, meaning: str, sign: str = "", range_: str = "any finite number"
+    ) -> None:
         found[key] = Member("", key, unit, meaning, sign, range_)
 
     rest = "what rounding to single precision left of {}, 0 where it is not known"
@@ -218,7 +253,12 @@ def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Memb
         for member in ("", "rate", "acceleration"):
             output = Output("motion", joint, member)
             key, unit = str(output), output.unit(graph.data.kinds)
-            add(key, unit, f"{_where(output)}: {_brief(output.quantity.long_name)}", _sign(graph, output))
+            add(
+                key,
+                unit,
+                f"{_where(output)}: {_brief(output.quantity.long_name)}",
+                _sign(graph, output),
+            )
             if rests and not member:
                 add(f"{REST}{key}", unit, rest.format("it"))
     return found
@@ -227,11 +267,17 @@ def _inputs(graph: Program, precision: Precision, timed: bool) -> dict[str, Memb
 def _sign(graph: Program, output: Output) -> str:
     table = table_of(graph.data.space)
     if output == Output("motion", output.part) and table is PLANE:
-        return "counter-clockwise" if graph.data.kinds.coordinates[output.part] == "angle" else "along the axis"
+        return (
+            "counter-clockwise"
+            if graph.data.kinds.coordinates[output.part] == "angle"
+            else "along the axis"
+        )
     return output.meant(table).sign
 
 
-def _output(graph: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
+def _output(
+    graph: Program, output: Output, member: str, solution: Solution, largest: Mapping[str, float]
+) -> Member:
     unit, wrapped = output.unit(graph.data.kinds), output in graph.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"
@@ -239,24 +285,44 @@ def _output(graph: Program, output: Output, member: str, solution: Solution, lar
 
 
 def _where(output: Output) -> str:
-    kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "law": "link", "station": "link"}
+    kinds = {
+        "motion": "joint",
+        "pose": "body",
+        "effort": "joint",
+        "reaction": "joint",
+        "law": "link",
+        "station": "link",
+    }
     if output.group == "spread":
-        return f"link {output.part}, load {output.station}{'' if output.power is None else f', power {output.power}'}"
+        return (
+            f"link {output.part}, load"
+            f" {output.station}{'' if output.power is None else f', power {output.power}'}"
+        )
     found = f"{kinds.get(output.group, output.group)} {output.part}"
     return f"{found}, station {output.station}" if output.station else found
 
 
 def _brief(meaning: str) -> str:
     """A meaning as it is said of a part that was named."""
-    for words in (" of the joint's coordinate", " of the joint", " of the drive", ", continuous in time"):
+    for words in (
+        " of the joint's coordinate",
+        " of the joint",
+        " of the drive",
+        ", continuous in time",
+    ):
         meaning = meaning.replace(words, "")
     return meaning
 
 
 def _range(solution: Solution, output: Output, largest: float) -> str:
-    """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the largest of its unit."""
+    """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the
+    largest of its unit.
+    """
     values = solution.outputs[output]
     faint = max(FAINT * largest, 2.0 * solution.errors.get(str(output), 0.0))
     low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
     ends = [f"{x:.{_DIGITS}g}" for x in (low, high)]
-    return f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's motion"
+    return (
+        f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's"
+        " motion"
+    )

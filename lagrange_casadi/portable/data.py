@@ -25,7 +25,11 @@ def table_bytes(program: ExportedProgram) -> dict[str, int]:
     """The size of each table of numbers, by what it is."""
     size = 4 if program.precision == "single" else 8
     found = {}
-    called = {inner.name(): lookup(inner) for function in program.functions.values() for inner in function.find_functions()}
+    called = {
+        inner.name(): lookup(inner)
+        for function in program.functions.values()
+        for inner in function.find_functions()
+    }
     if curves := sum(table.numbers.size for table in called.values() if table is not None):
         found["what curves and motions by samples look up"] = size * curves
     if program.cycle is not None:
@@ -38,7 +42,8 @@ def check_size(program: ExportedProgram, limit: int) -> None:
     for what, size in table_bytes(program).items():
         if size > limit:
             raise SizeError(
-                f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer numbers, or raise the limit"
+                f"{what} takes {size} bytes of constants, and the limit is {limit}: take fewer"
+                " numbers, or raise the limit"
             )
 
 
@@ -49,10 +54,21 @@ def table_text(program: ExportedProgram) -> str:
         return ""
     text = (resources.files("lagrange_casadi.codegen") / "interpolate.c").read_text()
     text = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE)
-    text = text.replace("typedef REAL real;\n", "").replace("*restrict ", "*").replace("* restrict ", "* ")
-    for word, value in (("BLOCK", "1"), ("PACK", "1"), ("TILE", "32"), ("WEIGHTS", "6"), ("FACTORS", "4")):
+    text = (
+        text.replace("typedef REAL real;\n", "")
+        .replace("*restrict ", "*")
+        .replace("* restrict ", "* ")
+    )
+    for word, value in (
+        ("BLOCK", "1"),
+        ("PACK", "1"),
+        ("TILE", "32"),
+        ("WEIGHTS", "6"),
+        ("FACTORS", "4"),
+    ):
         text = re.sub(rf"\b{word}\b", value, text)
-    # A number becomes a long by one instruction of a small machine, a long long by a library's arithmetic of doubles.
+    # A number becomes a long by one instruction of a small machine, a long long by a library's
+    # arithmetic of doubles.
     text = text.replace("long long", "long")
     text = re.sub(r"\breal\b", "casadi_real", text)
     if program.precision == "single":
@@ -67,13 +83,16 @@ def table_text(program: ExportedProgram) -> str:
 
 
 def table_call(program: ExportedProgram) -> Iterable[str]:
-    """Statements that read the columns ``y`` from the table, for what the drive's own graph gave."""
+    """Statements that read the columns ``y`` from the table, for what the
+    drive's own graph gave.
+    """
     cycle = program.cycle
     assert cycle is not None
     phase = f"drive[{2 + cycle.turns}]"
     yield (
-        f"interpolate(1, 1, &{phase}, drive + 1, drive + 2, {cycle.nodes}, cell, {cycle.coefficients.shape[1]}, coefficients, "
-        f"{len(cycle.columns)}, order, slopes, {len(cycle.layout.runs)}, runs, y);"
+        f"interpolate(1, 1, &{phase}, drive + 1, drive + 2, {cycle.nodes}, cell,"
+        f" {cycle.coefficients.shape[1]}, coefficients, {len(cycle.columns)}, order, slopes,"
+        f" {len(cycle.layout.runs)}, runs, y);"
     )
     number = literal(program.precision)
     for k in np.flatnonzero(cycle.drift):

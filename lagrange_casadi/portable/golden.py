@@ -1,4 +1,6 @@
-"""What an exported program must compute: inputs and outputs at instants of the scene's motion, and how far off they may be."""
+"""What an exported program must compute: inputs and outputs at instants of the scene's motion, and
+how far off they may be.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ from .contract import FAINT, REST, Contract, Member
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
 ALLOWED = 16.0
-"""Estimates of the error: the same arithmetic by other compilers, libraries and machines is within."""
+"""Estimates of the error: the same arithmetic by other compilers, libraries
+and machines is within.
+"""
 
 _MOTION = 4096.0
 """Roundings of a motion's largest value."""
@@ -31,11 +35,13 @@ _MOTION = 4096.0
 
 @dataclass(frozen=True, eq=False)
 class Golden:
-    """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and ``outputs`` (instants, outputs).
+    """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and
+    ``outputs`` (instants, outputs).
 
-    ``forces`` (instants, links, ratios, forces) are those of sections. What has a tolerance has one a column, ``forces`` one a
-    link and force. ``times`` and, in single precision, ``inputs`` are what two singles hold of a value. ``worst`` is the largest
-    error expected of an output, of its largest value, and which output that is.
+    ``forces`` (instants, links, ratios, forces) are those of sections. What has a tolerance has one
+    a column, ``forces`` one a link and force. ``times`` and, in single precision, ``inputs`` are
+    what two singles hold of a value. ``worst`` is the largest error expected of an output, of its
+    largest value, and which output that is.
     """
 
     times: Array
@@ -49,8 +55,11 @@ class Golden:
     worst: tuple[float, str]
 
 
-def golden(graph: Program, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
-    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing of the graph.
+def golden(
+    graph: Program, contract: Contract, solution: Solution, exact: Solution, p: Array
+) -> Golden:
+    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which
+    saves nothing of the graph.
 
     ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
     """
@@ -73,7 +82,10 @@ def golden(graph: Program, contract: Contract, solution: Solution, exact: Soluti
         for k, force in enumerate(names):
             true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
             forces[:, i, :, k] = true[chosen]
-            forces_off[i, k] = ALLOWED * errors[str(Output("section", link.name, force))] + least * np.abs(true).max()
+            forces_off[i, k] = (
+                ALLOWED * errors[str(Output("section", link.name, force))]
+                + least * np.abs(true).max()
+            )
             forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if graph.newton is not None else 1
@@ -82,11 +94,16 @@ def golden(graph: Program, contract: Contract, solution: Solution, exact: Soluti
 
 
 def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
-    """How far outputs and section forces may be off in a precision, by their names: as much further as its roundings are larger.
+    """How far outputs and section forces may be off in a precision, by their names: as much further
+    as its roundings are larger.
 
-    What is a product of roundings grows with their square; so the graph is followed in that precision too.
+    What is a product of roundings grows with their square; so the graph is followed in that
+    precision too.
     """
-    errors = {name: error * (ROUNDING[precision] / ROUNDING["double"]) for name, error in exact.errors.items()}
+    errors = {
+        name: error * (ROUNDING[precision] / ROUNDING["double"])
+        for name, error in exact.errors.items()
+    }
     if precision == "single":
         evaluated, _ = run(graph, exact.t, p, Rung("vm"))
         own = estimate(graph, replace(evaluated, stages=compensated(graph, precision)), exact, p)
@@ -95,11 +112,19 @@ def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> 
 
 
 def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:
-    """The largest of some errors, of an output's largest value, where that is more than rounding of others of its unit."""
+    """The largest of some errors, of an output's largest value, where that is more than rounding of
+    others of its unit.
+    """
     peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
-    largest = {unit: max(p for p, m in zip(peaks, contract.outputs, strict=True) if m.unit == unit) for unit in contract.units}
+    largest = {
+        unit: max(p for p, m in zip(peaks, contract.outputs, strict=True) if m.unit == unit)
+        for unit in contract.units
+    }
     rows = zip(errors, peaks, contract.outputs, strict=True)
-    return max(((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]), default=(0.0, ""))
+    return max(
+        ((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]),
+        default=(0.0, ""),
+    )
 
 
 def _saved(member: Member, solution: Solution, exact: Solution) -> float:
@@ -117,7 +142,9 @@ def _input(graph: Program, source: str, t: Array, p: Array, precision: Precision
     else:
         output = Output.of(name)
         order = ("", "rate", "acceleration").index(output.member)
-        values = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())[graph.driven.index(output.part)]
+        values = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())[
+            graph.driven.index(output.part)
+        ]
     if source.startswith(REST):
         return np.asarray(values - values.astype(np.float32))
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

@@ -24,31 +24,56 @@ def header(source: Source) -> str:
         null=", 0" if c.settings else "",
         begin=_begin(source),
         story=filled(source.story),
-        conventions=filled(f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
+        conventions=filled(
+            f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."
+        ),
         law=law_in_words(c),
-        mapping=filled("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
-        if c.mapped
-        else "",
-        undetermined=filled("Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".", "\n\n")
-        if c.undetermined
-        else "",
+        mapping=(
+            filled(
+                "Called otherwise here: "
+                + ", ".join(f"{k} is {v}" for k, v in c.mapped.items())
+                + ".",
+                "\n\n",
+            )
+            if c.mapped
+            else ""
+        ),
+        undetermined=(
+            filled(
+                "Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".",
+                "\n\n",
+            )
+            if c.undetermined
+            else ""
+        ),
         precision=c.precision,
         stack=deepest(source.code),
         real=c.real,
-        statuses=",\n".join(f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())),
+        statuses=",\n".join(
+            f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())
+        ),
         parameters=_parameters(c),
         inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
-        outputs_note=" Angles that loops set are within a turn." if any(m.wrapped for m in c.outputs) else "",
+        outputs_note=(
+            " Angles that loops set are within a turn." if any(m.wrapped for m in c.outputs) else ""
+        ),
         outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
         links=_links(c) + (types(c, source.slopes) if source.slopes else ""),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
-        anew=" Begins anew: iterated loops are where the scene's motion begins." if source.iterated else "",
+        anew=(
+            " Begins anew: iterated loops are where the scene's motion begins."
+            if source.iterated
+            else ""
+        ),
         given=f", const {p}_parameters* parameters" if c.settings else "",
         span=f", from {span[0]:.6g} to {span[1]:.6g} s" if math.isfinite(span[0]) else "",
-        pair_note="\n   The time is time + time_rest, for single precision holds few digits of it; time_rest may be 0."
-        if c.rests
-        else "",
+        pair_note=(
+            "\n   The time is time + time_rest, for single precision holds few digits of it;"
+            " time_rest may be 0."
+            if c.rests
+            else ""
+        ),
         time_rest=f", {p}_real time_rest" if c.rests else "",
         follows=_follows(source),
         sections=_section_functions(c) + (declaration(c) if source.slopes else ""),
@@ -56,8 +81,9 @@ def header(source: Source) -> str:
 
 
 _ZERO = (
-    "A joint's angle is the direction of the child's axis less that of the parent's, which of the ground is x; a slide is how far "
-    "the child's point is from the parent's, along the joint's axis."
+    "A joint's angle is the direction of the child's axis less that of the parent's, which of the"
+    " ground is x; a slide is how far the child's point is from the parent's, along the joint's"
+    " axis."
 )
 
 
@@ -74,15 +100,23 @@ def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
     (start, stop), count = source.program.graph.data.span, source.program.graph.data.timing.count
-    near = f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion" if count > 1 else ""
+    near = (
+        f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion"
+        if count > 1
+        else ""
+    )
     return (
-        f" Iterated loops are followed from the instant before, which must be near{near};\n"
-        "   where a call fails they stay where they stood. To begin elsewhere than the scene does, go there in small steps."
+        f" Iterated loops are followed from the instant before, which must be near{near};\n   where"
+        " a call fails they stay where they stood. To begin elsewhere than the scene does, go"
+        " there in small steps."
     )
 
 
 def _gravity(source: Source) -> str:
-    return ", ".join(f"{component:g}" for component in source.program.graph.data.at([*source.values.values()])["gravity"])
+    return ", ".join(
+        f"{component:g}"
+        for component in source.program.graph.data.at([*source.values.values()])["gravity"]
+    )
 
 
 def _parameters(c: Contract) -> str:
@@ -91,12 +125,18 @@ def _parameters(c: Contract) -> str:
         return ""
     rows = "\n".join(member(p, m.name, m.comment) for m in c.settings)
     about = f"/* Numbers that may change without generating anything again.\n   {CORNERS} */"
-    return f"\n{about}\ntypedef struct {{\n{rows}\n}} {p}_parameters;\n\nextern const {p}_parameters {p}_defaults;\n"
+    return (
+        f"\n{about}\ntypedef struct {{\n{rows}\n}} {p}_parameters;\n\nextern const {p}_parameters"
+        f" {p}_defaults;\n"
+    )
 
 
 def _model(source: Source) -> list[str]:
     real = f"{source.contract.prefix}_real"
-    return [f"{real} {name}[{count}];" if kind == "real" else f"{kind} {name};" for name, kind, count in source.model]
+    return [
+        f"{real} {name}[{count}];" if kind == "real" else f"{kind} {name};"
+        for name, kind, count in source.model
+    ]
 
 
 def _links(c: Contract) -> str:
@@ -106,7 +146,10 @@ def _links(c: Contract) -> str:
     rows = ",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links))
     forces = "\n".join(member(p, force, about(c.table, force)) for force in c.table.forces)
     story = "/* What the part towards the tip does to the part towards the base. */"
-    return f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{story}\ntypedef struct {{\n{forces}\n}} {p}_forces;\n"
+    return (
+        f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{story}\ntypedef struct {{\n{forces}\n}}"
+        f" {p}_forces;\n"
+    )
 
 
 def _section_functions(c: Contract) -> str:
@@ -116,9 +159,10 @@ def _section_functions(c: Contract) -> str:
     take = f"const {p}_model* model, const {p}_outputs* outputs, {p}_link link"
     one, many = f"{p}_status {p}_section(", f"{p}_status {p}_sections("
     return (
-        "\n/* The forces inside a link at the ratio xi = distance from the base / length, from 0 to 1, for outputs of this\n"
-        "   model; at a station, where they jump, those on its side towards the tip. */\n"
-        f"{one}{take},\n{' ' * len(one)}{p}_real xi, {p}_forces* forces);\n"
-        f"\n/* The same at many ratios. Returns the first status that is not {p.upper()}_OK, if any. */\n"
-        f"{many}{take},\n{' ' * len(many)}long many, const {p}_real* xi, {p}_forces* forces);\n"
+        "\n/* The forces inside a link at the ratio xi = distance from the base / length, from 0"
+        " to 1, for outputs of this\n   model; at a station, where they jump, those on its side"
+        f" towards the tip. */\n{one}{take},\n{' ' * len(one)}{p}_real xi, {p}_forces*"
+        " forces);\n\n/* The same at many ratios. Returns the first status that is not"
+        f" {p.upper()}_OK, if any. */\n{many}{take},\n{' ' * len(many)}long many, const {p}_real*"
+        f" xi, {p}_forces* forces);\n"
     )

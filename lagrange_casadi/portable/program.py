@@ -1,4 +1,6 @@
-"""The functions of an exported program: what of a scene graph it evaluates, how much of it, and from what constants."""
+"""The functions of an exported program: what of a scene graph it evaluates, how much of it, and
+from what constants.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,10 @@ from ..instants.tabulate import still
 class ExportedProgram:
     """What is emitted.
 
-    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``cycle`` is a table to be
-    read instead of an instant, and ``still`` are stations that are told beside it, for they do not move. ``sections`` are, of each
-    link that has them, the name of the function that gives its section forces, and what that takes.
+    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all
+    vectors. ``cycle`` is a table to be read instead of an instant, and ``still`` are stations that
+    are told beside it, for they do not move. ``sections`` are, of each link that has them, the name
+    of the function that gives its section forces, and what that takes.
     """
 
     graph: Program
@@ -57,9 +60,15 @@ class ExportedProgram:
 
 @symbolic
 def program(
-    graph: Program, precision: Precision, newton: int | None, p: Array, read: tuple[Program, CycleTable] | None
+    graph: Program,
+    precision: Precision,
+    newton: int | None,
+    p: Array,
+    read: tuple[Program, CycleTable] | None,
 ) -> ExportedProgram:
-    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``."""
+    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for
+    parameters ``p``.
+    """
     evaluated = graph if read is None else read[0]
     fixed = read is not None
     stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
@@ -68,7 +77,9 @@ def program(
     columns = tuple(evaluated.columns[k] for k in kept) if read is None else graph.columns
     constants, instant = hoisted(stages.instant, kept)
     symbols = graph.data.symbols
-    gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
+    gapped = read is None and any(
+        isinstance(column, Check) and column.kind in ("gap", "open") for column in columns
+    )
     sound, positive = _sound(graph, symbols, precision)
     functions = {
         "law": stages.law,
@@ -86,7 +97,9 @@ def program(
         functions["beyond"] = _fixed(ends, p) if fixed else ends
     functions["instant"] = instant
     if graph.rules:
-        functions["status"] = _status(graph, columns, precision, newton, gapped, p if fixed else None)
+        functions["status"] = _status(
+            graph, columns, precision, newton, gapped, p if fixed else None
+        )
     if stages.loops is not None:
         functions["loops"] = stages.loops
     sizes = {
@@ -105,39 +118,69 @@ def program(
     }
     of_sections, sections = _sections(graph, symbols, precision)
     functions |= of_sections
-    filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
+    filled, cycle = (
+        {name: f for name, f in functions.items() if f.size1_out(0)},
+        None if read is None else read[1],
+    )
     places = {} if read is None else still(graph, tuple(p.tolist()))
-    return ExportedProgram(graph, precision, filled, columns, sizes, newton, cycle, places, sections)
+    return ExportedProgram(
+        graph, precision, filled, columns, sizes, newton, cycle, places, sections
+    )
 
 
 def _status(
-    graph: Program, columns: Sequence[Column], precision: Precision, newton: int | None, gapped: bool, p: Array | None
+    graph: Program,
+    columns: Sequence[Column],
+    precision: Precision,
+    newton: int | None,
+    gapped: bool,
+    p: Array | None,
 ) -> Any:
-    """``status(y, matter, iterated)``, with the limits as numbers, of all columns; the extent is the first of matter if ``gapped``.
+    """``status(y, matter, iterated)``, with the limits as numbers, of all columns; the extent is
+    the first of matter if ``gapped``.
 
     What is read from a table has gaps between its nodes, which say nothing.
     """
-    y, matter, iterated = ca.SX.sym("y", len(columns)), ca.SX.sym("matter", int(gapped)), ca.SX.sym("iterated")
+    y, matter, iterated = (
+        ca.SX.sym("y", len(columns)),
+        ca.SX.sym("matter", int(gapped)),
+        ca.SX.sym("iterated"),
+    )
     extent = matter[0] if gapped else graph.extent(p) if p is not None else 0.0
     most = limits(graph, precision, newton, extent)
-    most = [math.inf if bound.kind == "GAP" and p is not None else limit for bound, limit in zip(graph.bounds, most, strict=True)]
+    most = [
+        math.inf if bound.kind == "GAP" and p is not None else limit
+        for bound, limit in zip(graph.bounds, most, strict=True)
+    ]
     where = {column: k for k, column in enumerate(columns)}
     given = [y[where[graph.columns[bound.column]]] for bound in graph.bounds]
-    sizes = [y[where[graph.columns[bound.size]]] if bound.kind == "ROW" else 0.0 for bound in graph.bounds]
-    rule = graph.status(*(ca.vertcat(ca.SX(0, 1), *each) for each in (given, most, sizes)), iterated)
+    sizes = [
+        y[where[graph.columns[bound.size]]] if bound.kind == "ROW" else 0.0
+        for bound in graph.bounds
+    ]
+    rule = graph.status(
+        *(ca.vertcat(ca.SX(0, 1), *each) for each in (given, most, sizes)), iterated
+    )
     return ca.Function("status", [y, matter, iterated], [ca.densify(rule)], {"cse": True})
 
 
 def _fixed(function: Any, p: Array) -> Any:
     """A function with numbers for its parameters, which are its last input."""
     inputs = function.sx_in()
-    return ca.Function(function.name(), [*inputs[:-1], ca.SX(0, 1)], function.call([*inputs[:-1], ca.DM(p)]), {"cse": True})
+    return ca.Function(
+        function.name(),
+        [*inputs[:-1], ca.SX(0, 1)],
+        function.call([*inputs[:-1], ca.DM(p)]),
+        {"cse": True},
+    )
 
 
 def _matter(graph: Program, symbols: Any, *, extent_first: bool) -> Any:
-    """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio.
+    """``matter(p)``: of each link with sections its length, and the coefficients of its density per
+    unit of the ratio.
 
-    With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
+    With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to
+    be compared with.
     """
     found: list[Any] = [graph.data.extent(symbols)] if extent_first else []
     for name in graph.links:
@@ -146,8 +189,12 @@ def _matter(graph: Program, symbols: Any, *, extent_first: bool) -> Any:
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 
-def _sections(graph: Program, symbols: Any, precision: Precision) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
-    """The functions that give section forces, by name; and of each link which of them does, and what that takes."""
+def _sections(
+    graph: Program, symbols: Any, precision: Precision
+) -> tuple[dict[str, Any], dict[str, tuple[str, SectionInputs]]]:
+    """The functions that give section forces, by name; and of each link which of them does, and
+    what that takes.
+    """
     named: dict[Any, str] = {}
     functions: dict[str, Any] = {}
     found: dict[str, tuple[str, SectionInputs]] = {}
@@ -163,7 +210,8 @@ def _sections(graph: Program, symbols: Any, precision: Precision) -> tuple[dict[
 
 
 def _sound(graph: Program, symbols: Any, precision: Precision) -> tuple[Any, int]:
-    """``sound(p)``: what parameters change and must not be negative for the parts to be possible; and how many must be positive.
+    """``sound(p)``: what parameters change and must not be negative for the parts to be possible;
+    and how many must be positive.
 
     Those come first.
     """

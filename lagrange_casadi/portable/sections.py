@@ -1,4 +1,6 @@
-"""What an exported program says of the forces inside links: the functions that give them, and the members of their struct."""
+"""What an exported program says of the forces inside links: the functions that give them, and the
+members of their struct.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +11,27 @@ from .program import ExportedProgram
 from .text import template
 
 LAW = """ Those of a section law are for _section, which is all you need.
-   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 -
-   xi mu1) at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
-   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi)
+   + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1) at xi from the base, where mu0 is the mass from there to
+   the tip, mu1 and mu2 its first and second moment about the base; and then what acts on the link
+   at stations, where something joins or loads it between its ends, beyond xi."""
 LAW_IN_SPACE = """ Those of a section law are for _section, which is all you need.
-   They mean: axial = n0 + n1 mu0 + n2 mu1, shear_y = fy0 + fy1 mu0 + fy2 mu1, shear_z = fz0 + fz1 mu0 + fz2 mu1, torsion = mx0,
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear_y = fy0 + fy1 mu0 + fy2 mu1,
+   shear_z = fz0 + fz1 mu0 + fz2 mu1, torsion = mx0,
    bending_z = mz0 + fy0 (l - xi) + fy1 (mu1 - xi mu0) + fy2 (mu2 - xi mu1),
    bending_y = my0 - fz0 (l - xi) - fz1 (mu1 - xi mu0) - fz2 (mu2 - xi mu1)
-   at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
-   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+   at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and
+   second moment about the base; and then what acts on the link at stations, where something joins
+   or loads it between its ends, beyond xi."""
 
 LOADED = """
-   And then loads along the link, of which a section feels what acts beyond it: per length the sums of qn0, qn1, qn2, ... and of
-   qf0, qf1, qf2, ... (in space qfy0, ... and qfz0, ...) times 1, s, s^2, ..., where s = (end - xi/l)/width is between 0 and 1."""
+   And then loads along the link, of which a section feels what acts beyond it: per length the sums
+   of qn0, qn1, qn2, ... and of qf0, qf1, qf2, ... (in space qfy0, ... and qfz0, ...) times 1, s,
+   s^2, ..., where s = (end - xi/l)/width is between 0 and 1."""
 THICK = """
-   And then the rotary inertia of slices, couples along the link: per length the sums of cx0, cx1, ..., of cy0, ... and of cz0, ...
-   times 1, s, ..., of which torsion, bending_y and bending_z feel what acts beyond the section."""
+   And then the rotary inertia of slices, couples along the link: per length the sums of cx0, cx1,
+   ..., of cy0, ... and of cz0, ... times 1, s, ..., of which torsion, bending_y and bending_z feel
+   what acts beyond the section."""
 
 
 def law_in_words(c: Contract) -> str:
@@ -32,7 +39,11 @@ def law_in_words(c: Contract) -> str:
     if not c.links:
         return ""
     law = LAW if c.table is PLANE else LAW_IN_SPACE
-    return law + (LOADED if _acts(c, c.table.spread) else "") + (THICK if _acts(c, c.table.couples) else "")
+    return (
+        law
+        + (LOADED if _acts(c, c.table.spread) else "")
+        + (THICK if _acts(c, c.table.couples) else "")
+    )
 
 
 def functions(c: Contract, program: ExportedProgram) -> str:
@@ -44,8 +55,14 @@ def functions(c: Contract, program: ExportedProgram) -> str:
         function, inputs = program.sections[link.name]
         links.append(f"  case {link.constant}:")
         for vector, outputs in (("law", inputs.law), ("acting", inputs.acting)):
-            links += [f"    {vector}[{i}] = outputs->{names[output]};" for i, output in enumerate(outputs)]
-        links += [f"    arg[2] = model->matter + {place};", f"    {function}(arg, res);", "    break;"]
+            links += [
+                f"    {vector}[{i}] = outputs->{names[output]};" for i, output in enumerate(outputs)
+            ]
+        links += [
+            f"    arg[2] = model->matter + {place};",
+            f"    {function}(arg, res);",
+            "    break;",
+        ]
         place += program.functions[function].size1_in("matter")
     acting = max(len(inputs.acting) for _, inputs in program.sections.values())
     return template(
@@ -88,6 +105,7 @@ def comparisons(table: Table) -> str:
     many = len(table.forces)
     places = [f"{many}*i" if k == 0 else f"{many}*i + {k}" for k in range(many)]
     return "\n".join(
-        f'      compare("{table.row("section", force).long_name}", row[{k}], (double) forces.{force}, forces_off[{place}], 0);'
+        f'      compare("{table.row("section", force).long_name}", row[{k}], (double)'
+        f" forces.{force}, forces_off[{place}], 0);"
         for k, (force, place) in enumerate(zip(table.forces, places, strict=True))
     )

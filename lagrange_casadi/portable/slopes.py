@@ -1,4 +1,6 @@
-"""Derivatives of the outputs by parameters in an exported program: their function, their names in C, and what they must be."""
+"""Derivatives of the outputs by parameters in an exported program: their function, their names in
+C, and what they must be.
+"""
 
 from __future__ import annotations
 
@@ -24,16 +26,17 @@ FUNCTION = "slopes_of"
 """What CasADi's function is called in C."""
 
 _ROUNDING, _FAINT = 1e-9, 1e-11
-"""How far a derivative may be off, of its largest over the cycle, and of what is large of its unit: the derivatives by the same
-parameter, and the outputs over it. Of the latter are the terms of a derivative that is nothing."""
+"""How far a derivative may be off, of its largest over the cycle, and of what is large of its unit:
+the derivatives by the same parameter, and the outputs over it. Of the latter are the terms of a
+derivative that is nothing."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExportedSlopes:
     """The derivatives of all outputs of a contract ``by`` some of its parameters.
 
-    ``function`` is :func:`.total`; ``expected`` (instants, outputs, parameters) are what it must give at the instants of the
-    self-test, each within ``off`` (outputs, parameters).
+    ``function`` is :func:`.total`; ``expected`` (instants, outputs, parameters) are what it must
+    give at the instants of the self-test, each within ``off`` (outputs, parameters).
     """
 
     by: tuple[Setting, ...]
@@ -42,8 +45,12 @@ class ExportedSlopes:
     off: Array
 
 
-def exported_slopes(graph: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array) -> ExportedSlopes:
-    """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among those of the cycle ``t``."""
+def exported_slopes(
+    graph: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array
+) -> ExportedSlopes:
+    """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among
+    those of the cycle ``t``.
+    """
     rows = [Output.of(member.source) for member in contract.outputs]
     numbers = [list(graph.data.parameters).index(name) for name in by]
     function = total(graph, [graph.outputs[output] for output in rows], numbers)
@@ -63,16 +70,23 @@ def check_rung(rung: Rung) -> None:
     """Raise :class:`.DeclarationError` for a rung by which exported C computes no derivatives."""
     if rung.precision == "single" or rung.newton is not None or rung.table is not None:
         raise DeclarationError(
-            f"export: output '{SENSITIVITY}' goes with double precision, loops that are closed, and no table; want the others alone"
+            f"export: output '{SENSITIVITY}' goes with double precision, loops that are closed, and"
+            " no table; want the others alone"
         )
 
 
 def types(c: Contract, slopes: ExportedSlopes) -> str:
     """The structs, for the header."""
     p = c.prefix
-    rows = [f"  {p}_real {s.name}; /* {comment(f'by {s.meaning}, for a unit of it [{s.unit}]')} */" for s in slopes.by]
+    rows = [
+        f"  {p}_real {s.name}; /* {comment(f'by {s.meaning}, for a unit of it [{s.unit}]')} */"
+        for s in slopes.by
+    ]
     units = ("; ".join(quotient(m.unit, s.unit) for s in slopes.by) for m in c.outputs)
-    members = (f"  {p}_changes {m.name}; /* [{comment(unit)}] */" for m, unit in zip(c.outputs, units, strict=True))
+    members = (
+        f"  {p}_changes {m.name}; /* [{comment(unit)}] */"
+        for m, unit in zip(c.outputs, units, strict=True)
+    )
     return (
         "\n/* How an output changes with parameters. */\n"
         f"typedef struct {{\n{chr(10).join(rows)}\n}} {p}_changes;\n"
@@ -86,10 +100,11 @@ def declaration(c: Contract) -> str:
     p = c.prefix
     head = f"{p}_status {p}_sensitivity("
     return (
-        "\n/* The outputs at an instant, and their exact derivatives by parameters. The time [s] is that of the instant:\n"
-        "   where the scene's motion depends on parameters, drives change with them as its laws do at that time. */\n"
-        f"{head}{p}_model* model, {p}_real time, const {p}_inputs* inputs,\n"
-        f"{' ' * len(head)}{p}_outputs* outputs, {p}_sensitivities* sensitivities);\n"
+        "\n/* The outputs at an instant, and their exact derivatives by parameters. The time [s]"
+        " is that of the instant:\n   where the scene's motion depends on parameters, drives"
+        f" change with them as its laws do at that time. */\n{head}{p}_model* model, {p}_real time,"
+        f" const {p}_inputs* inputs,\n{' ' * len(head)}{p}_outputs* outputs, {p}_sensitivities*"
+        " sensitivities);\n"
     )
 
 
@@ -130,17 +145,25 @@ def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
     """How the self-test compares them."""
     pairs = itertools.product(c.outputs, slopes.by)
     compared = (
-        f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name}, slopes_off[{i}], 0);'
+        f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name},'
+        f" slopes_off[{i}], 0);"
         for i, (m, s) in enumerate(pairs)
     )
     first, by = c.outputs[0].name, slopes.by[0].name
-    return template("selftest_sensitivity.c", p=c.prefix, P=c.prefix.upper(), compared=indented(compared), first=f"{first}.{by}")
+    return template(
+        "selftest_sensitivity.c",
+        p=c.prefix,
+        P=c.prefix.upper(),
+        compared=indented(compared),
+        first=f"{first}.{by}",
+    )
 
 
 def in_readme(c: Contract, slopes: ExportedSlopes) -> str:
     """What the folder's README says of them."""
     by = ", ".join(f"`{s.name}`" for s in slopes.by)
     return (
-        f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their exact derivatives by {by}:\n"
-        f"`sensitivities.{c.outputs[0].name}.{slopes.by[0].name}`, in the output's unit over the parameter's.\n"
+        f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their"
+        f" exact derivatives by {by}:\n`sensitivities.{c.outputs[0].name}.{slopes.by[0].name}`, in"
+        " the output's unit over the parameter's.\n"
     )

@@ -30,9 +30,10 @@ from .text import comment, indented, printed, template
 class Source:
     """What header and source are written from.
 
-    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
-    ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute, ``slopes``
-    the derivatives of its outputs, where they are wanted.
+    ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the
+    options by which it is evaluated, ``values`` are the parameters, of which a table leaves none
+    open, and ``golden`` what it must compute, ``slopes`` the derivatives of its outputs, where they
+    are wanted.
     """
 
     contract: Contract
@@ -58,7 +59,9 @@ class Source:
             graph=self.program.text,
             seal=f"0x{self.identity[:8]}u",
             helpers=self._helpers(),
-            put="\n".join(f"  outputs->{m.name} = {self._value(m.source)};" for m in self.contract.outputs),
+            put="\n".join(
+                f"  outputs->{m.name} = {self._value(m.source)};" for m in self.contract.outputs
+            ),
             defaults=self._defaults(),
             given=f", const {p}_parameters* parameters" if self.contract.settings else "",
             time_rest=f", {p}_real time_rest" if self.contract.rests else "",
@@ -67,7 +70,10 @@ class Source:
             instant=indented(self._instant()),
             rows=sizes["rows"],
             sections=sections,
-            messages="\n".join(f'  case {self._upper}_{key}:\n    return "{text}";' for key, text in STATUSES.items()),
+            messages="\n".join(
+                f'  case {self._upper}_{key}:\n    return "{text}";'
+                for key, text in STATUSES.items()
+            ),
         )
 
     @property
@@ -97,9 +103,16 @@ class Source:
         """How it is evaluated, how exactly, and for which fixed numbers."""
         error, output = self.golden.worst
         told = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
-        told += f"Its outputs are off by about {error:.0e} of their largest values over the scene's motion at most ({output})."
+        told += (
+            f"Its outputs are off by about {error:.0e} of their largest values over the scene's"
+            f" motion at most ({output})."
+        )
         if self.fixed:
-            told += " Fixed here: " + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items()) + "."
+            told += (
+                " Fixed here: "
+                + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items())
+                + "."
+            )
         return told
 
     @property
@@ -109,11 +122,19 @@ class Source:
 
     @property
     def model(self) -> list[tuple[str, str, int]]:
-        """The members of a model: name, type, where ``real`` is that of the precision, and how many of it."""
+        """The members of a model: name, type, where ``real`` is that of the precision, and how many
+        of it.
+        """
         sizes = self.program.sizes
-        vectors = {"parameters": sizes["p"]} | {name: sizes[name] for name in ("constants", "matter", "loops")}
+        vectors = {"parameters": sizes["p"]} | {
+            name: sizes[name] for name in ("constants", "matter", "loops")
+        }
         closed = [("closed", "int", 1)] if self.program.newton is not None else []
-        return [("seal", "unsigned", 1), *closed, *((name, "real", size) for name, size in vectors.items() if size)]
+        return [
+            ("seal", "unsigned", 1),
+            *closed,
+            *((name, "real", size) for name, size in vectors.items() if size),
+        ]
 
     @property
     def span(self) -> tuple[float, float]:
@@ -136,8 +157,10 @@ class Source:
         if self.program.graph.loop_angles:
             turn = number(math.tau)
             found += (
-                "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"
-                f"  return angle - {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} - {number(0.5)});\n}}\n"
+                "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real"
+                " direction(casadi_real angle) {\n  return angle -"
+                f" {turn}*{function_name('ceil', self.contract.precision)}(angle/{turn} -"
+                f" {number(0.5)});\n}}\n"
             )
         if self.iterated:
             rule = {key: number(value) for key, value in self.program.rule.items()}
@@ -159,7 +182,9 @@ class Source:
         if "status" in self.program.functions:
             names = ", ".join(f"{self._upper}_{name}" for name in self._answers())
             kind = f"static const {self.contract.prefix}_status"
-            found += f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
+            found += (
+                f"\n/* What a broken rule says, by its number. */\n{kind} broken[] = {{{names}}};\n"
+            )
         return found + table_text(self.program)
 
     def _answers(self) -> Iterator[str]:
@@ -180,7 +205,10 @@ class Source:
     def _prepare(self) -> Iterable[str]:
         c, P, sizes, number = self.contract, self._upper, self.program.sizes, self._number
         if c.settings:
-            yield f"const {c.prefix}_parameters* values = parameters ? parameters : &{c.prefix}_defaults;"
+            yield (
+                f"const {c.prefix}_parameters* values = parameters ? parameters :"
+                f" &{c.prefix}_defaults;"
+            )
         if sizes["sound"]:
             yield f"casadi_real sound_of[{sizes['sound']}];"
             yield "int k;"
@@ -192,7 +220,9 @@ class Source:
                 (f"values->{m.name} >= {number(m.low)}" if math.isfinite(m.low) else ""),
                 (f"values->{m.name} <= {number(m.high)}" if math.isfinite(m.high) else ""),
             )
-            within = " && ".join(part for part in (f"is_finite(values->{m.name})", low, high) if part)
+            within = " && ".join(
+                part for part in (f"is_finite(values->{m.name})", low, high) if part
+            )
             yield f"if (!({within})) return {P}_BAD_PARAMETER;"
             yield f"model->parameters[{k}] = values->{m.name};"
         yield f"arg[0] = {self._p};"
@@ -201,11 +231,16 @@ class Source:
             yield "sound(arg, res);"
             if sizes["positive"]:
                 yield f"for (k = 0; k < {sizes['positive']}; ++k) {{"
-                yield f"  if (!(sound_of[k] > 0 && is_finite(sound_of[k]))) return {P}_BAD_PARAMETER;"
+                yield (
+                    f"  if (!(sound_of[k] > 0 && is_finite(sound_of[k]))) return {P}_BAD_PARAMETER;"
+                )
                 yield "}"
             if sizes["sound"] > sizes["positive"]:
                 yield f"for (k = {sizes['positive']}; k < {sizes['sound']}; ++k) {{"
-                yield f"  if (!(sound_of[k] >= 0 && is_finite(sound_of[k]))) return {P}_BAD_PARAMETER;"
+                yield (
+                    "  if (!(sound_of[k] >= 0 && is_finite(sound_of[k]))) return"
+                    f" {P}_BAD_PARAMETER;"
+                )
                 yield "}"
         for vector, function in (("constants", "constants_of"), ("matter", "matter")):
             if sizes[vector]:
@@ -227,7 +262,10 @@ class Source:
         ends = self.program.functions.get("beyond")
         if drives:
             values = 2 * drives if c.rests else drives
-            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{drives}], acceleration[{drives}];"
+            yield (
+                f"casadi_real at[{1 + c.rests}], d[{values}], rate[{drives}],"
+                f" acceleration[{drives}];"
+            )
             yield "const casadi_real* arg[2];"
             yield "casadi_real* res[3];"
         if ends is not None:
@@ -248,7 +286,9 @@ class Source:
             limit = self._number(BEYOND[self.contract.precision])
             yield "res[0] = far;"
             yield "beyond(arg, res);"
-            yield from self._refused(" || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME")
+            yield from self._refused(
+                " || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME"
+            )
         yield from self._driven()
         yield f"return {P}_OK;"
 
@@ -330,7 +370,10 @@ class Source:
         if self.program.newton is not None:
             full = newton_rule(self.contract.precision, None)
             limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
-            yield f"if (!model->closed && close_loops(model, counted, {limits}) == {P}_NOT_CONVERGED) {{"
+            yield (
+                f"if (!model->closed && close_loops(model, counted, {limits}) =="
+                f" {P}_NOT_CONVERGED) {{"
+            )
             yield f"  return {P}_NOT_CONVERGED;"
             yield "}"
             yield "model->closed = 1;"

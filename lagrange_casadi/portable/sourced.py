@@ -1,4 +1,6 @@
-"""From a scene to the source of an exported program: derived, evaluated once, and held to what that gives."""
+"""From a scene to the source of an exported program: derived, evaluated once, and held to what that
+gives.
+"""
 
 from __future__ import annotations
 
@@ -33,14 +35,20 @@ from .source import Source
 
 
 def sourced(
-    scene: Scene, name: str, parameters: Mapping[str, float] | None, wanted: Sequence[str] | None, rung: Rung, largest: int
+    scene: Scene,
+    name: str,
+    parameters: Mapping[str, float] | None,
+    wanted: Sequence[str] | None,
+    rung: Rung,
+    largest: int,
 ) -> Source:
-    """The program of a scene, called ``name``, else as its mechanism, with ``parameters`` as its defaults.
+    """The program of a scene, called ``name``, else as its mechanism, with ``parameters`` as its
+    defaults.
 
     A table takes ``largest`` bytes at most.
 
-    Raises :class:`SizeError` for a table that is too large, :class:`CertificateError` where the scene's own cycle fails its
-    certificate, and what :func:`.evaluate` raises.
+    Raises :class:`SizeError` for a table that is too large, :class:`CertificateError` where the
+    scene's own cycle fails its certificate, and what :func:`.evaluate` raises.
     """
     named, values = () if wanted is None else wanted, scene.values(parameters)
     without_life(named, "exports")
@@ -56,11 +64,17 @@ def sourced(
     declared = declaration(as_derived(scene, wanted, values), compiled.wanted) or compiled.dumps()
     rung.check(compiled)
     if not compiled.driven:
-        raise DeclarationError(f"export: '{data.name}' has no drive, and C without inputs computes nothing; evaluate it")
+        raise DeclarationError(
+            f"export: '{data.name}' has no drive, and C without inputs computes nothing;"
+            " evaluate it"
+        )
     scene.checked(values)
     checked_span(compiled.laws, data.timing, values)
     instants = instants_of(compiled.laws, data.timing, values).t
-    whole, (compiled, left_open) = compiled, determinate(compiled, instants, p, telling=table is None)
+    whole, (compiled, left_open) = (
+        compiled,
+        determinate(compiled, instants, p, telling=table is None),
+    )
     # What rounding alone makes of it: all steps that loops want, and no table.
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm")
     if exact.failed:
@@ -68,7 +82,12 @@ def sourced(
     solution = exact
     if newton is not None or table is not None:
         # It is held to the exact one, and as far off as that was asked for.
-        words: dict[str, Any] = {"parameters": values, "wanted": wanted, "newton": newton, "table": table}
+        words: dict[str, Any] = {
+            "parameters": values,
+            "wanted": wanted,
+            "newton": newton,
+            "table": table,
+        }
         solution = evaluate(scene, **words, backend="vm", certificate=False)
     read = None if table is None else (drive_of(compiled), table_of(compiled, solution.t, p, rung))
     agreed = contract(compiled, name, precision, solution, left_open, fixed=table is not None)
@@ -79,7 +98,9 @@ def sourced(
     slopes = exported_slopes(compiled, agreed, by, p, exact.t, vectors.times) if by else None
     if slopes is not None:
         emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
-    return Source(agreed, emitted, _hash(declared, values), guess, rung.options, values, vectors, slopes)
+    return Source(
+        agreed, emitted, _hash(declared, values), guess, rung.options, values, vectors, slopes
+    )
 
 
 def _hash(declared: str, values: Mapping[str, float]) -> str:

@@ -1,13 +1,19 @@
-"""How much stack straight C of this package's own style takes at most: what its functions declare, along the deepest calls."""
+"""How much stack straight C of this package's own style takes at most: what its functions declare,
+along the deepest calls.
+"""
 
 from __future__ import annotations
 
 import functools
 import re
 
-_DEFINITION = re.compile(r"^(?:static )?[\w \*]*?\b(\w+)\([^;{}]*\) \{(?:([^\n]*)\}\n|\n(.*?)^\}\n)", re.DOTALL | re.MULTILINE)
+_DEFINITION = re.compile(
+    r"^(?:static )?[\w \*]*?\b(\w+)\([^;{}]*\) \{(?:([^\n]*)\}\n|\n(.*?)^\}\n)",
+    re.DOTALL | re.MULTILINE,
+)
 _DECLARATION = re.compile(
-    r"^ +(?:const )?(?:casadi_real|int|long|double|float|\w+_(?:real|status|parameters))\b(\*?) ?([^()=;]*(?:=[^;]*)?);",
+    r"^ +(?:const )?(?:casadi_real|int|long|double|float|\w+_(?:real|status|parameters))\b(\*?)"
+    r" ?([^()=;]*(?:=[^;]*)?);",
     re.MULTILINE,
 )
 _CALL = re.compile(r"\b(\w+)\(")
@@ -16,14 +22,24 @@ _FRAME = 192
 """What a call and saved registers take besides, with a margin."""
 
 _LARGE, _PART = 128, 3
-"""From so many variables on a compiler that runs out of registers keeps other values too: up to one in so many more."""
+"""From so many variables on a compiler that runs out of registers keeps other values too: up to one
+in so many more.
+"""
 
 
 def deepest(source: str) -> int:
-    """Bytes, with 8 for every variable, also where a compiler keeps it in a register. Raises ``ValueError`` where calls recur."""
+    """Bytes, with 8 for every variable, also where a compiler keeps it in a register.
+
+    Raises ``ValueError`` where calls recur.
+    """
     bodies = {found[1]: found[2] or found[3] or "" for found in _DEFINITION.finditer(source)}
-    own = {name: _FRAME + _SLOT * _kept(sum(_slots(x[2]) for x in _DECLARATION.finditer(body))) for name, body in bodies.items()}
-    calls = {name: sorted(set(_CALL.findall(body)) & bodies.keys()) for name, body in bodies.items()}
+    own = {
+        name: _FRAME + _SLOT * _kept(sum(_slots(x[2]) for x in _DECLARATION.finditer(body)))
+        for name, body in bodies.items()
+    }
+    calls = {
+        name: sorted(set(_CALL.findall(body)) & bodies.keys()) for name, body in bodies.items()
+    }
 
     @functools.cache
     def depth(name: str, above: tuple[str, ...] = ()) -> int:

@@ -1,4 +1,6 @@
-"""What an exported function may answer, in the order of the enumeration in C, and which statuses of an instant that stands for."""
+"""What an exported function may answer, in the order of the enumeration in C, and which statuses of
+an instant that stands for.
+"""
 
 from __future__ import annotations
 
@@ -21,23 +23,53 @@ SHARED = {
 """What is said in the words of :class:`.Status`."""
 
 ANSWERS = {status: name for name, statuses in SHARED.items() for status in statuses}
-"""What is answered for a status of an instant; the neighbours of an instant are not seen, so some never are."""
+"""What is answered for a status of an instant; the neighbours of an instant are not seen, so some
+never are.
+"""
 
 _OWN = {
     "OK": "everything is well",
     "NOT_PREPARED": "the model was not prepared",
-    "BAD_PARAMETER": "a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass",
+    "BAD_PARAMETER": (
+        "a parameter is not finite, or out of its range, or leaves a link without length or with a"
+        " negative mass"
+    ),
     "BAD_INPUT": "an input is not finite",
     "BAD_TIME": "the time is not finite, or outside the samples or beyond the curves of the motion",
     "BAD_RATIO": "a ratio xi/l is outside 0 to 1",
     "NO_LINK": "there is no such link",
-    "UNDETERMINED": "equilibrium does not determine all outputs: the mechanism has more constraints than it needs",
+    "UNDETERMINED": (
+        "equilibrium does not determine all outputs: the mechanism has more constraints than it"
+        " needs"
+    ),
 }
 
 _ORDER = (
-    *("OK", "NOT_PREPARED", "BAD_PARAMETER", "BAD_INPUT", "BAD_TIME", "BAD_RATIO", "NO_LINK", "NOT_ASSEMBLED", "DEAD_CENTRE"),
-    *("NOT_CONVERGED", "JUMPED", "SLOW", "INCONSISTENT", "NOT_CLOSED", "UNDETERMINED", "NOT_FINITE", "TURNED"),
+    *(
+        "OK",
+        "NOT_PREPARED",
+        "BAD_PARAMETER",
+        "BAD_INPUT",
+        "BAD_TIME",
+        "BAD_RATIO",
+        "NO_LINK",
+        "NOT_ASSEMBLED",
+        "DEAD_CENTRE",
+    ),
+    *(
+        "NOT_CONVERGED",
+        "JUMPED",
+        "SLOW",
+        "INCONSISTENT",
+        "NOT_CLOSED",
+        "UNDETERMINED",
+        "NOT_FINITE",
+        "TURNED",
+    ),
     *("BEYOND_ENDS", "JAMS", "AT_REST"),
 )
 
-STATUSES = {name: _OWN.get(name) or ", or ".join(status.meaning for status in SHARED[name]) for name in _ORDER}
+STATUSES = {
+    name: _OWN.get(name) or ", or ".join(status.meaning for status in SHARED[name])
+    for name in _ORDER
+}

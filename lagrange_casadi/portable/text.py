@@ -18,7 +18,9 @@ def template(file: str, /, **words: object) -> str:
 
 
 def comment(text: str) -> str:
-    """A user's text within a comment of C, CMake or MATLAB: it neither ends that nor begins another."""
+    """A user's text within a comment of C, CMake or MATLAB: it neither ends that nor begins
+    another.
+    """
     for before, after in (("??/", "? ?/"), ("\\", "/"), ("*/", "* /"), ("/*", "/ *")):
         text = text.replace(before, after)
     return text
@@ -27,7 +29,10 @@ def comment(text: str) -> str:
 def quoted(text: str) -> str:
     """A user's text between the quotes of a string of C, byte by byte the same."""
     known = {"\\": "\\\\", '"': '\\"', "?": "\\?"}
-    return "".join(known.get(c) or (c if c.isascii() else "".join(f"\\{byte:03o}" for byte in c.encode())) for c in text)
+    return "".join(
+        known.get(c) or (c if c.isascii() else "".join(f"\\{byte:03o}" for byte in c.encode()))
+        for c in text
+    )
 
 
 def printed(text: str) -> str:

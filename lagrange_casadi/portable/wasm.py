@@ -1,4 +1,6 @@
-"""An exported program as WebAssembly, for web pages: the module, a wrapper in JavaScript, its types, and what to read first."""
+"""An exported program as WebAssembly, for web pages: the module, a wrapper in JavaScript, its
+types, and what to read first.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,15 @@ from .source import Source
 from .stack import deepest
 from .text import comment, markdown, template
 
-_FLAGS = ("-target", "wasm32-wasi", "-std=c99", "-Oz", "-ffp-contract=off", "-fno-math-errno", "-mexec-model=reactor")
+_FLAGS = (
+    "-target",
+    "wasm32-wasi",
+    "-std=c99",
+    "-Oz",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-mexec-model=reactor",
+)
 _STACK = 1 << 16
 """Bytes beside those that the program states: for the C library's mathematics."""
 
@@ -28,23 +38,38 @@ _CALLS = ("prepare", "motion", "batch", "message")
 
 
 def check_zig(what: str) -> None:
-    """Raise :class:`LagrangeCasadiError` where the package that compiles is missing, which ``what`` needs."""
+    """Raise :class:`LagrangeCasadiError` where the package that compiles is missing, which ``what``
+    needs.
+    """
     if importlib.util.find_spec("ziglang") is None:
-        raise LagrangeCasadiError(f"{what} needs ziglang; install it with: pip install 'lagrange_casadi[live]'")
+        raise LagrangeCasadiError(
+            f"{what} needs ziglang; install it with: pip install 'lagrange_casadi[live]'"
+        )
 
 
-def module(source: Source, more: Mapping[str, str] | None = None, calls: Sequence[str] = ()) -> bytes:
-    """The module of a program, which imports nothing; ``more`` are other files of C with functions ``calls`` that are seen too.
+def module(
+    source: Source, more: Mapping[str, str] | None = None, calls: Sequence[str] = ()
+) -> bytes:
+    """The module of a program, which imports nothing; ``more`` are other files of C with functions
+    ``calls`` that are seen too.
 
-    The same program gives the same bytes, as far as the compiler does. Raises :class:`LagrangeCasadiError` where ziglang is
-    missing, :class:`CompilerError` for what it refuses.
+    The same program gives the same bytes, as far as the compiler does. Raises
+    :class:`LagrangeCasadiError` where ziglang is missing, :class:`CompilerError` for what it
+    refuses.
     """
     check_zig("WebAssembly")
     c = source.contract
     seen = [f"{c.prefix}_{call}" for call in (*_CALLS, *(["section"] if c.links else []))]
     linked = [f"-Wl,--export={name}" for name in (*seen, *calls, "__heap_base")]
-    linked += ["-Wl,--strip-all", "-Wl,-z,stack-size=" + str(-(-(deepest(source.code) + _STACK) // 16) * 16)]
-    files = {f"{c.prefix}.h": header(source), f"{c.prefix}.c": source.code, "layout.c": _told(source)} | dict(more or {})
+    linked += [
+        "-Wl,--strip-all",
+        "-Wl,-z,stack-size=" + str(-(-(deepest(source.code) + _STACK) // 16) * 16),
+    ]
+    files = {
+        f"{c.prefix}.h": header(source),
+        f"{c.prefix}.c": source.code,
+        "layout.c": _told(source),
+    } | dict(more or {})
     compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
     with working_folder() as work:
         try:
@@ -62,7 +87,10 @@ def module(source: Source, more: Mapping[str, str] | None = None, calls: Sequenc
 def _told(source: Source) -> str:
     """C that compiles only where a model takes as many bytes as the wrapper is told."""
     p = source.contract.prefix
-    return f'#include "{p}.h"\ntypedef char as_told[sizeof({p}_model) == {places(source)["end"]} ? 1 : -1];\n'
+    return (
+        f'#include "{p}.h"\ntypedef char as_told[sizeof({p}_model) == {places(source)["end"]} ? 1 :'
+        " -1];\n"
+    )
 
 
 def engine() -> str:
@@ -71,10 +99,16 @@ def engine() -> str:
 
 
 def layout(source: Source) -> dict[str, Any]:
-    """What the wrapper must know of the C's structs: how many numbers each holds, and how many bytes a model takes."""
+    """What the wrapper must know of the C's structs: how many numbers each holds, and how many
+    bytes a model takes.
+    """
     c = source.contract
     counts = {"parameters": len(c.settings), "inputs": len(c.inputs), "outputs": len(c.outputs)}
-    return {"prefix": c.prefix, "precision": c.precision, "model": places(source)["end"]} | counts | {"forces": len(_forces(c))}
+    return (
+        {"prefix": c.prefix, "precision": c.precision, "model": places(source)["end"]}
+        | counts
+        | {"forces": len(_forces(c))}
+    )
 
 
 def places(source: Source) -> dict[str, int]:
@@ -92,7 +126,9 @@ def wasm(source: Source) -> dict[str, bytes]:
     """The files for web pages, by name."""
     c, content = source.contract, module(source)
     texts = {
-        f"{c.prefix}.js": template("wasm.js", **_words(source), contract=_contract(source), engine=engine()),
+        f"{c.prefix}.js": template(
+            "wasm.js", **_words(source), contract=_contract(source), engine=engine()
+        ),
         f"{c.prefix}.d.ts": _types(source),
         "README.wasm.md": _page(source, len(content)),
     }
@@ -123,11 +159,17 @@ def _contract(source: Source) -> str:
         "prefix": c.prefix,
         "precision": c.precision,
         "model": places(source)["end"],
-        "parameters": [told(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)} for m in c.settings],
+        "parameters": [
+            told(m) | {"default": m.default, "low": end(m.low), "high": end(m.high)}
+            for m in c.settings
+        ],
         "inputs": [told(m) for m in c.inputs],
         "outputs": [told(m) for m in c.outputs],
         "links": [link.name for link in c.links],
-        "forces": [{"name": name, "unit": row.unit, "meaning": about(c.table, name)} for name, row in rows.items()],
+        "forces": [
+            {"name": name, "unit": row.unit, "meaning": about(c.table, name)}
+            for name, row in rows.items()
+        ],
     }
     return json.dumps(content, indent=1)
 
@@ -155,8 +197,8 @@ def _page(source: Source, size: int) -> str:
     effort = next((m for m in c.outputs if m.source.startswith("effort:")), c.outputs[0])
     first = f"mechanism.evaluate(mechanism.motion({t[0]:.6g}))"
     followed = (
-        "\n- Iterated loops are followed from the instant before: times must be near each other, and begin where the scene's\n"
-        "  motion does."
+        "\n- Iterated loops are followed from the instant before: times must be near each other,"
+        " and begin where the scene's\n  motion does."
         if source.iterated
         else ""
     )
@@ -164,10 +206,18 @@ def _page(source: Source, size: int) -> str:
         "wasm.md",
         **_words(source) | {"name": markdown(c.name)},
         size=size,
-        prepare=f"mechanism.prepare({{ {setting.name}: {setting.default:.6g} }});" if setting else "mechanism.prepare();",
+        prepare=(
+            f"mechanism.prepare({{ {setting.name}: {setting.default:.6g} }});"
+            if setting
+            else "mechanism.prepare();"
+        ),
         times=", ".join(f"{time:.6g}" for time in t[:3]),
         output=effort.name,
-        section=f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n" if link else "",
+        section=(
+            f"console.log(mechanism.section({first}, {json.dumps(link.name)}, 0.5));\n"
+            if link
+            else ""
+        ),
         followed=followed,
         story=source.story,
     )

@@ -1,4 +1,6 @@
-"""A report that opens in a browser: the mechanism moving, its forces on it, charts and tables, in one file."""
+"""A report that opens in a browser: the mechanism moving, its forces on it, charts and tables, in
+one file.
+"""
 
 from .live import Live
 from .notebook import View, scene_summary, summary, view

@@ -14,9 +14,11 @@ from ..base.arrays import Array
 
 @dataclass(eq=False)
 class Arrays:
-    """Arrays that are added one by one, each of which gets a number; one whose values are all the same takes no room.
+    """Arrays that are added one by one, each of which gets a number; one whose values are all the
+    same takes no room.
 
-    ``of`` has for each the full names of the outputs that it is, or the size of; none where it is anything else.
+    ``of`` has for each the full names of the outputs that it is, or the size of; none where it is
+    anything else.
     """
 
     places: list[dict[str, Any]] = field(default_factory=list)

@@ -1,4 +1,6 @@
-"""What a page holds, as plain numbers and texts: the one place that says what the viewer in the page reads."""
+"""What a page holds, as plain numbers and texts: the one place that says what the viewer in the
+page reads.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,8 @@ _CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pos
 
 @dataclass(frozen=True)
 class Series:
-    """A quantity over the instants that are shown, for charts; of a section force, what is largest in size along its link.
+    """A quantity over the instants that are shown, for charts; of a section force, what is largest
+    in size along its link.
 
     ``values`` is the number of its array, ``places`` that of the ratios xi/l of a section force.
     """
@@ -56,7 +59,9 @@ class Series:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity over all instants: its peak, how far it may be off, its ends and means; only its name where it is ``open``."""
+    """A quantity over all instants: its peak, how far it may be off, its ends and means; only its
+    name where it is ``open``.
+    """
 
     name: str
     group: str
@@ -73,9 +78,11 @@ class Row:
 
 
 def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
-    """All of a page about a solution; with ``live`` the engine that evaluates its scene for other parameters, too.
+    """All of a page about a solution; with ``live`` the engine that evaluates its scene for other
+    parameters, too.
 
-    Raises :class:`.DeclarationError` where the solution does not have the poses of all bodies, which the picture is made of.
+    Raises :class:`.DeclarationError` where the solution does not have the poses of all bodies,
+    which the picture is made of.
     """
     require_poses(solution)
     arrays, chosen = Arrays(), shown_instants(solution)
@@ -102,7 +109,9 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "certificate": _certificate(solution),
         "notes": [*solution.notes, *(live.notes if live else ())],
         "undetermined": list(solution.undetermined),
-        "provenance": asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)},
+        "provenance": (
+            asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)}
+        ),
     }
     if live:
         found["live"] = live.entry(solution, chosen, arrays)
@@ -115,12 +124,19 @@ def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) 
         "total": solution.t.size,
         "shown": int(chosen.size),
         "t": arrays.add(solution.t[chosen]),
-        "over": over and {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])},
+        "over": (
+            over
+            and {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])}
+        ),
     }
 
 
-def _bodies(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[dict[str, Any]]:
-    """The bodies' shapes, colours, and poses: in the plane x, y and the angle; in space a place, and three axes one by one."""
+def _bodies(
+    solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> Iterator[dict[str, Any]]:
+    """The bodies' shapes, colours, and poses: in the plane x, y and the angle; in space a place,
+    and three axes one by one.
+    """
     for k, shape in enumerate(shapes(solution.description)):
         pose = solution.pose(shape.name)
         if pose.z is None:
@@ -129,7 +145,10 @@ def _bodies(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
         else:
             axes = _whole_axes(pose.axes, solution.t.size)
             told_of = [pose.x, pose.y, pose.z, *(axes[:, i, j] for i in range(3) for j in range(3))]
-        yield asdict(shape) | {"colour": COLOURS[k % len(COLOURS)], "pose": [arrays.add(values[chosen]) for values in told_of]}
+        yield asdict(shape) | {
+            "colour": COLOURS[k % len(COLOURS)],
+            "pose": [arrays.add(values[chosen]) for values in told_of],
+        }
 
 
 def _whole_axes(axes: Array | None, count: int) -> Array:
@@ -146,25 +165,56 @@ def _whole_axes(axes: Array | None, count: int) -> Array:
 
 
 def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
-    resultants = (output for output in told(solution) if len(output.components(solution.table)) > 1 and output.group == "reaction")
+    resultants = (
+        output
+        for output in told(solution)
+        if len(output.components(solution.table)) > 1 and output.group == "reaction"
+    )
     outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
-    for output in sorted([*outputs, *resultants], key=lambda output: list(GROUPS).index(output.group)):
+    for output in sorted(
+        [*outputs, *resultants], key=lambda output: list(GROUPS).index(output.group)
+    ):
         if not solution.determined(output):
             continue
         values, places = solution.extremes(output)
         words, unit = what(output, solution.table), solution.unit(output)
         along = None if places is None else arrays.add(places[chosen])
         of = map(str, solution.made_of(output)) if places is None else ()
-        yield Series(str(output), output.group, output.part, words, unit, arrays.add(values[chosen], *of), along)
+        yield Series(
+            str(output),
+            output.group,
+            output.part,
+            words,
+            unit,
+            arrays.add(values[chosen], *of),
+            along,
+        )
     for slope in derivatives(solution):
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
-            words = f"{what(slope.output, solution.table) or slope.output.part}, by {slope.name.split(':')[1]}"
-            yield Series(slope.name, "sensitivity", slope.output.part, words, slope.unit, arrays.add(slope.values[chosen]))
+            words = (
+                f"{what(slope.output, solution.table) or slope.output.part}, by"
+                f" {slope.name.split(':')[1]}"
+            )
+            yield Series(
+                slope.name,
+                "sensitivity",
+                slope.output.part,
+                words,
+                slope.unit,
+                arrays.add(slope.values[chosen]),
+            )
     for output, values in held_outputs(solution.held).items():
         words, unit = what(output, solution.table), solution.unit(output)
         yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
     for output, values in _residuals(solution):
-        yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
+        yield Series(
+            str(output),
+            output.group,
+            "",
+            what(output, solution.table),
+            "1",
+            arrays.add(values[chosen]),
+        )
 
 
 def _rows(solution: Solution) -> Iterator[Row]:
@@ -172,26 +222,44 @@ def _rows(solution: Solution) -> Iterator[Row]:
         return mark(solution, extreme.value, extreme.t, extreme.xi)
 
     for output in told(solution):
-        words = str(output), output.group, output.part, what(output, solution.table), solution.unit(output)
+        words = (
+            str(output),
+            output.group,
+            output.part,
+            what(output, solution.table),
+            solution.unit(output),
+        )
         if not solution.determined(output):
             yield Row(*words, open=True)
             continue
         own = solution.statistics(output)
-        peak, smallest, largest = (marked(extreme) for extreme in (own.peak, own.smallest, own.largest))
+        peak, smallest, largest = (
+            marked(extreme) for extreme in (own.peak, own.smallest, own.largest)
+        )
         means = (None if mean is None else finite(mean) for mean in (own.mean, own.rms))
         yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
 
 
 def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
-    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none.
+    """How far links and joints are used against each way to fail, and whether that governs; factors
+    beyond all numbers are none.
 
     What is ``open`` has its reason.
     """
     for found in looked(solution):
         for verdict in found.verdicts:
-            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where, "open": False}
+            told_of = {
+                "part": found.link,
+                "against": verdict.against,
+                "where": verdict.where,
+                "open": False,
+            }
             used = 1.0 / verdict.factor if verdict.factor else None
-            yield told_of | {"factor": finite(verdict.factor), "used": used, "governs": verdict is found.governs}
+            yield told_of | {
+                "factor": finite(verdict.factor),
+                "used": used,
+                "governs": verdict is found.governs,
+            }
         for why in found.is_open:
             told_of = {"part": found.link, "against": "", "where": why, "open": True}
             yield told_of | {"factor": None, "used": None, "governs": False}
@@ -200,7 +268,13 @@ def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:
     for name, parameter in description["parameters"].items():
         low, high = (finite(parameter[end]) for end in ("low", "high"))
-        yield {"name": name, "value": float(parameter["value"]), "unit": parameter["unit"], "low": low, "high": high}
+        yield {
+            "name": name,
+            "value": float(parameter["value"]),
+            "unit": parameter["unit"],
+            "low": low,
+            "high": high,
+        }
 
 
 def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:
@@ -214,8 +288,21 @@ def _certificate(solution: Solution) -> dict[str, Any]:
     """The certificate in words, and its residuals."""
     state = "certified" if solution.certified else "failed" if solution.failed else "none"
     residuals = [
-        {"name": output.member, "what": what(output, solution.table), "largest": finite(float(np.max(values)))}
+        {
+            "name": output.member,
+            "what": what(output, solution.table),
+            "largest": finite(float(np.max(values))),
+        }
         for output, values in _residuals(solution)
     ]
-    words = failure(solution) if solution.failed else summary({output.member: values for output, values in _residuals(solution)})
-    return {"state": state, "words": words, "tolerance": finite(solution.tolerance), "residuals": residuals}
+    words = (
+        failure(solution)
+        if solution.failed
+        else summary({output.member: values for output, values in _residuals(solution)})
+    )
+    return {
+        "state": state,
+        "words": words,
+        "tolerance": finite(solution.tolerance),
+        "residuals": residuals,
+    }

@@ -1,4 +1,6 @@
-"""Which instants a page shows: all, or where there are too many evenly spread ones, and those at which something peaks."""
+"""Which instants a page shows: all, or where there are too many evenly spread ones, and those at
+which something peaks.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ def shown_instants(solution: Solution) -> npt.NDArray[np.intp]:
     """The instants that are shown, by number."""
     total = solution.t.size
     varying = sum(1 for values in solution.outputs.values() if np.ptp(values) != 0.0)
-    largest = 2 * len(solution.links_with_sections) * len(solution.table.forces)  # of each where along its link, and how much
+    largest = (
+        2 * len(solution.links_with_sections) * len(solution.table.forces)
+    )  # of each where along its link, and how much
     most = max(LEAST, MOST // max(varying + largest, 1))
     if total <= most:
         return np.arange(total)
@@ -33,5 +37,8 @@ def _peaks(solution: Solution) -> list[int]:
     for output in told(solution):
         if solution.determined(output):
             own = solution.statistics(output)
-            found += [int(np.searchsorted(solution.t, extreme.t)) for extreme in (own.smallest, own.largest, own.peak)]
+            found += [
+                int(np.searchsorted(solution.t, extreme.t))
+                for extreme in (own.smallest, own.largest, own.peak)
+            ]
     return found

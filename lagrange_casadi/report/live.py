@@ -1,8 +1,9 @@
 """The engine itself in a page: the exported C as WebAssembly, and which of its numbers go where.
 
-The page evaluates the whole cycle anew for other parameters. What it shows are arrays with numbers (:mod:`.arrays`); here stands of
-which outputs each is made, and where the numbers of the picture come from: lengths, places and axes are expressions of parameters,
-and are evaluated in the module too.
+The page evaluates the whole cycle anew for other parameters. What it shows are arrays with numbers
+(:mod:`.arrays`); here stands of which outputs each is made, and where the numbers of the picture
+come from: lengths, places and axes are expressions of parameters, and are evaluated in the module
+too.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ from ..portable.wasm import check_zig, layout, module, places
 from .arrays import Arrays
 
 _CORNERS = (
-    "Corners of motions, constraints and lifts were looked for with the first values of the parameters alone, not with sliders'."
+    "Corners of motions, constraints and lifts were looked for with the first values of the"
+    " parameters alone, not with sliders'."
 )
 
 _NUMBERS = """#include <math.h>
@@ -56,7 +58,8 @@ def run_of(case: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Live:
-    """What a page comes alive with: the ``source`` of its solution's program, and how its instants were asked for.
+    """What a page comes alive with: the ``source`` of its solution's program, and how its instants
+    were asked for.
 
     ``command`` is how a command line begins that evaluates the same.
     """
@@ -67,18 +70,31 @@ class Live:
 
     @classmethod
     def of(
-        cls, scene: Scene, timing: Timing, wanted: Sequence[str] | None, command: str, parameters: Mapping[str, float] | None = None
+        cls,
+        scene: Scene,
+        timing: Timing,
+        wanted: Sequence[str] | None,
+        command: str,
+        parameters: Mapping[str, float] | None = None,
     ) -> Live:
-        """Compile a scene, for outputs that are ``wanted``; ``parameters`` are those of the solution.
+        """Compile a scene, for outputs that are ``wanted``; ``parameters`` are those of the
+        solution.
 
-        Raises :class:`.DeclarationError` where a scene has no parameter, :class:`.LagrangeCasadiError` where ziglang is missing,
-        and what :func:`.export` does.
+        Raises :class:`.DeclarationError` where a scene has no parameter,
+        :class:`.LagrangeCasadiError` where ziglang is missing, and what :func:`.export` does.
         """
         data = compile_scene(scene, wanted, parameters=parameters).data
         if not data.parameters:
-            raise DeclarationError(f"live: mechanism '{data.name}' has no parameter to change; declare one, or leave live out")
+            raise DeclarationError(
+                f"live: mechanism '{data.name}' has no parameter to change; declare one, or leave"
+                " live out"
+            )
         check_zig("a live report")
-        return cls(sourced(scene, "", parameters, wanted, Rung("auto", "double"), LARGEST["double"]), timing, command)
+        return cls(
+            sourced(scene, "", parameters, wanted, Rung("auto", "double"), LARGEST["double"]),
+            timing,
+            command,
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -86,30 +102,43 @@ class Live:
         corners = self.source.program.graph.data.corners
         return (_CORNERS,) if corners.laws or corners.constraints else ()
 
-    def entry(self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
-        """What a page needs beside its solution: the module, and what its inputs, outputs and numbers are.
+    def entry(
+        self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+    ) -> dict[str, Any]:
+        """What a page needs beside its solution: the module, and what its inputs, outputs and
+        numbers are.
 
         ``chosen`` are the instants that are shown, by number.
         """
         return _entry(self, solution, chosen, arrays)
 
 
-def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
+def _entry(
+    live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> dict[str, Any]:
     source, timing = live.source, live.timing
     data = source.program.graph.data
     described, asked = data.template.content, data.template.numbers(data.symbols)
     start, stop = timing.ends(data.symbols)
     bodies = described["bodies"]
-    numbers = ca.densify(ca.vertcat(start, stop, asked, *(data.mass(body, data.symbols) for body in bodies)))
+    numbers = ca.densify(
+        ca.vertcat(start, stop, asked, *(data.mass(body, data.symbols) for body in bodies))
+    )
     function = ca.Function("numbers_of", [data.symbols], [numbers], {"cse": True})
-    text = _NUMBERS.format(functions=print_functions({"numbers_of": function}, "double", prefix="live"))
+    text = _NUMBERS.format(
+        functions=print_functions({"numbers_of": function}, "double", prefix="live")
+    )
     contract = source.contract
     known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
     return {
-        "module": base64.b64encode(module(source, {"live.c": text}, ["live_numbers"])).decode("ascii"),
+        "module": (
+            base64.b64encode(module(source, {"live.c": text}, ["live_numbers"])).decode("ascii")
+        ),
         "layout": layout(source) | {"more": numbers.numel()},
         "defaults": data.defaults.tolist(),
-        "loops": [places(source)["loops"], source.program.sizes["loops"]] if source.iterated else None,
+        "loops": (
+            [places(source)["loops"], source.program.sizes["loops"]] if source.iterated else None
+        ),
         "wrapped": [k for k, member in enumerate(contract.outputs) if member.wrapped],
         "of": [
             [number, [known[name] for name in names]]
@@ -117,18 +146,28 @@ def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays:
             if names and known.keys() >= set(names)
         ],
         "poses": {body: _pose(body, solution, known) for body in solution.description["bodies"]},
-        "links": {link.name: _link(link.name, k, solution, known) for k, link in enumerate(contract.links)},
+        "links": {
+            link.name: _link(link.name, k, solution, known) for k, link in enumerate(contract.links)
+        },
         "forces": solution.table.forces,
-        "timing": {"count": timing.count, "joint": timing.joint, "coordinate": known.get(f"motion:{timing.joint}", -1)},
+        "timing": {
+            "count": timing.count,
+            "joint": timing.joint,
+            "coordinate": known.get(f"motion:{timing.joint}", -1),
+        },
         "shown": None if chosen.size == timing.count else chosen.tolist(),
         "numbers": numbers.numel(),
-        "picture": _picture(described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}),
+        "picture": _picture(
+            described, 2, {body: 2 + asked.numel() + k for k, body in enumerate(bodies)}
+        ),
         "command": live.command,
     }
 
 
 def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
-    """Where the numbers of a body's pose are, -1 for those that it has not; in the plane three, in space twelve."""
+    """Where the numbers of a body's pose are, -1 for those that it has not; in the plane three, in
+    space twelve.
+    """
     members = ["x", "y", "angle"]
     if len(solution.description["gravity"]) > 2:
         members = ["x", "y", "z", *(axis + component for axis in "xyz" for component in "xyz")]
@@ -136,10 +175,15 @@ def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
 
 
 def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
-    """Where a link's functions along it are polynomials: the breaks of its density, loads along it, and the highest degree."""
+    """Where a link's functions along it are polynomials: the breaks of its density, loads along it,
+    and the highest degree.
+    """
     law = solution.section(link).law
     density = law.density
-    spreads = [[known[str(Output("spread", link, member, load.name))] for member in ("width", "end")] for load in law.spreads]
+    spreads = [
+        [known[str(Output("spread", link, member, load.name))] for member in ("width", "end")]
+        for load in law.spreads
+    ]
     degree = max([*map(len, density.cells), *(load.powers for load in law.spreads)]) + 2
     return {"number": number, "breaks": density.breaks, "degree": degree, "spreads": spreads}
 
@@ -160,8 +204,14 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
         ends = {"parent": place(told["parent"]), "child": place(told["child"])}
         if "turned" in told:
             second = told["kind"] == "universal" and len(told["axes"]) > 1
-            return ends | {"axes": [*map(vector, told["axes"])], "turned": [*map(vector, told["turned"])] if second else None}
-        return ends | {"axes": [vector(told["axis"])] if told["kind"] in ("prismatic", "slot") else None, "turned": None}
+            return ends | {
+                "axes": [*map(vector, told["axes"])],
+                "turned": [*map(vector, told["turned"])] if second else None,
+            }
+        return ends | {
+            "axes": [vector(told["axis"])] if told["kind"] in ("prismatic", "slot") else None,
+            "turned": None,
+        }
 
     return {
         "bodies": {
@@ -173,6 +223,8 @@ def _picture(described: Description, first: int, masses: Mapping[str, int]) -> d
             for name, body in described["bodies"].items()
         },
         "joints": [joint(told) for told in described["joints"].values()],
-        "loads": [[place(point) for point in load["points"]] for load in described["loads"].values()],
+        "loads": [
+            [place(point) for point in load["points"]] for load in described["loads"].values()
+        ],
         "paths": [place(point) for point in described.get("paths", {}).values()],
     }

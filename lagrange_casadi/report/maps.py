@@ -1,4 +1,6 @@
-"""Maps along links that a page holds as numbers: stresses and deflections, which the viewer has no law of."""
+"""Maps along links that a page holds as numbers: stresses and deflections, which the viewer has no
+law of.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ RATIOS = 51
 """Equal ratios xi/l of a map, both ends included."""
 
 INSTANTS = 201
-"""Instants of a map at most, and that of its peak: a map is no wider on a screen than some hundred points."""
+"""Instants of a map at most, and that of its peak: a map is no wider on a screen than some hundred
+points.
+"""
 
 _BESIDE = 0.98
 
@@ -29,8 +33,9 @@ _BESIDE = 0.98
 class Map:
     """What is told of a link over time and along it.
 
-    ``t``, ``xi`` and ``values`` are numbers of arrays: times (t,), ratios (xi,), and values (t, xi), all of an instant together;
-    ``over`` that of the drive's coordinate (t,) where instants are over one. ``where`` says more of the peak's place.
+    ``t``, ``xi`` and ``values`` are numbers of arrays: times (t,), ratios (xi,), and values (t,
+    xi), all of an instant together; ``over`` that of the drive's coordinate (t,) where instants are
+    over one. ``where`` says more of the peak's place.
     """
 
     name: str
@@ -47,28 +52,61 @@ class Map:
 
 
 def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Any]]:
-    """The maps of the links that have a beam: von Mises' stress, and where the material's elasticity is known the deflection."""
+    """The maps of the links that have a beam: von Mises' stress, and where the material's
+    elasticity is known the deflection.
+    """
     for link in strong_of(solution):
         stress = solution.stress(link)
         peak = stress.peak("von_mises")
         chosen = _instants(solution, peak.t)
         grid = Stress(stress.member.during(chosen)).grid("von_mises", _ratios())
         top = mark(solution, peak.value, peak.t, peak.xi)
-        yield _entry(f"stress:{link}", link, "von Mises' stress", "Pa", False, top, peak.fibre, chosen, grid, solution, arrays)
+        yield _entry(
+            f"stress:{link}",
+            link,
+            "von Mises' stress",
+            "Pa",
+            False,
+            top,
+            peak.fibre,
+            chosen,
+            grid,
+            solution,
+            arrays,
+        )
     for link in bending_of(solution):
         bent = solution.deflection(link)
         sizes = bent.size(np.broadcast_to(_ratios(), (solution.t.size, RATIOS)))
         most = np.abs(sizes).max(axis=1)
         if not counted(most).any():
             continue
-        # A smooth line has its summit no farther above such a grid, so other instants need no search along it.
-        largest = solution.during(most >= _BESIDE * float(np.fmax.reduce(most))).deflection(link).peak()
+        # A smooth line has its summit no farther above such a grid, so other instants need no
+        # search along it.
+        largest = (
+            solution.during(most >= _BESIDE * float(np.fmax.reduce(most))).deflection(link).peak()
+        )
         chosen = _instants(solution, largest.t)
         grid = sizes[chosen]
         top = mark(solution, largest.value, largest.t, largest.xi)
-        from_where = "from the line between its ends" if bent.against == "ends" else "from its axis at the base"
+        from_where = (
+            "from the line between its ends"
+            if bent.against == "ends"
+            else "from its axis at the base"
+        )
         words, signed = "deflection across the link", not bent.member.space
-        yield _entry(f"deflection:{link}", link, words, "m", signed, top, from_where, chosen, grid, solution, arrays)
+        yield _entry(
+            f"deflection:{link}",
+            link,
+            words,
+            "m",
+            signed,
+            top,
+            from_where,
+            chosen,
+            grid,
+            solution,
+            arrays,
+        )
 
 
 def _ratios() -> Array:
@@ -95,5 +133,9 @@ def _entry(
     arrays: Arrays,
 ) -> dict[str, Any]:
     over = arrays.add(solution.over.values[chosen]) if solution.over else None
-    times, ratios, values = arrays.add(solution.t[chosen]), arrays.add(_ratios()), arrays.add(grid.ravel())
+    times, ratios, values = (
+        arrays.add(solution.t[chosen]),
+        arrays.add(_ratios()),
+        arrays.add(grid.ravel()),
+    )
     return asdict(Map(name, link, what, unit, signed, times, over, ratios, values, peak, where))

@@ -11,7 +11,9 @@ from ..instants.solution import Solution
 
 @dataclass(frozen=True)
 class Mark:
-    """A value with its time, its ratio xi/l where it is along a link, and the drive's coordinate where instants are over one."""
+    """A value with its time, its ratio xi/l where it is along a link, and the drive's coordinate
+    where instants are over one.
+    """
 
     value: float
     t: float
@@ -22,4 +24,6 @@ class Mark:
 def mark(solution: Solution, value: float, t: float, xi: float | None) -> Mark:
     """The mark of a value at one of a solution's instants."""
     own = solution.over
-    return Mark(value + 0.0, t, xi, float(own.values[int(np.argmax(solution.t == t))]) if own else None)
+    return Mark(
+        value + 0.0, t, xi, float(own.values[int(np.argmax(solution.t == t))]) if own else None
+    )

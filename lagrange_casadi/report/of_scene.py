@@ -12,13 +12,21 @@ from .page import write_report
 
 
 def scene_report(
-    scene: Scene, path: str | os.PathLike[str], parameters: Mapping[str, float] | None, wanted: Sequence[str] | None, live: bool
+    scene: Scene,
+    path: str | os.PathLike[str],
+    parameters: Mapping[str, float] | None,
+    wanted: Sequence[str] | None,
+    live: bool,
 ) -> None:
     """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
     scene.wants(wanted)
     asked = with_motion(scene.wanted if wanted is None else wanted)
     engine = Live.of(scene, scene.timing(), asked, run_of(scene.name), parameters) if live else None
-    write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None), path, engine)
+    write_report(
+        evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None),
+        path,
+        engine,
+    )
 
 
 def with_motion(wanted: Sequence[str]) -> list[str]:

@@ -1,4 +1,5 @@
-"""A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design that is looked at, in motion.
+"""A sweep as a page for browsers: maps, fronts, a table of designs, and the mechanism of the design
+that is looked at, in motion.
 
 The mechanism is a live page within the page: it evaluates whatever design it is told.
 """
@@ -41,12 +42,14 @@ _LEAST = 500
 _NO_SCENE = "For the mechanism in motion, make the page with the case that was swept."
 
 
-def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene | None = None, command: str = "") -> None:
+def write_sweep_report(
+    sweep: Sweep, path: str | os.PathLike[str], scene: Scene | None = None, command: str = ""
+) -> None:
     """Write a page that shows a sweep, replacing the file at ``path`` whole or not at all.
 
-    With its ``scene`` the mechanism of each design moves; ``command`` is how a command line begins that evaluates it. Raises
-    :class:`.DeclarationError` for the scene of another sweep, for a sweep without columns to show, and what
-    :func:`.write_report` raises.
+    With its ``scene`` the mechanism of each design moves; ``command`` is how a command line begins
+    that evaluates it. Raises :class:`.DeclarationError` for the scene of another sweep, for a sweep
+    without columns to show, and what :func:`.write_report` raises.
     """
     if not (scene is None or isinstance(scene, Scene)):
         raise DeclarationError(f"report: scene: expected a Scene, got {shown(scene)}")
@@ -54,32 +57,56 @@ def write_sweep_report(sweep: Sweep, path: str | os.PathLike[str], scene: Scene 
 
 
 def is_of(sweep: Sweep, scene: Scene) -> bool:
-    """Whether a sweep is of a scene: its parts are those that were swept, and where the same code says so its expressions too."""
+    """Whether a sweep is of a scene: its parts are those that were swept, and where the same code
+    says so its expressions too.
+    """
     swept = sweep.identity["mechanism"]
     values = values_of(swept)
-    if values.keys() != scene.parameters.keys() or json.loads(json.dumps(template(scene).filled(values))) != swept:
+    if (
+        values.keys() != scene.parameters.keys()
+        or json.loads(json.dumps(template(scene).filled(values))) != swept
+    ):
         return False
     told: dict[str, Any] = {}
     for name, value in sweep.identity["wanted"].items():
         if name != SENSITIVITY:  # of which the graph knows nothing
             told[name] = tuple(value) if isinstance(value, list) else value
     known = fingerprint(scene, Wanted(**told))
-    return known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
+    return (
+        known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
+    )
 
 
 def _page(sweep: Sweep, scene: Scene | None, command: str) -> str:
     if scene is not None and not is_of(sweep, scene):
-        raise DeclarationError(f"{sweep.path}: the sweep is not of this scene; take the case that was swept, as it was then")
+        raise DeclarationError(
+            f"{sweep.path}: the sweep is not of this scene; take the case that was swept, as it was"
+            " then"
+        )
     names = [name for name, column in sweep.columns.items() if not column.axes and name != STATUS]
     if not names:
-        raise DeclarationError(f"{sweep.path}: there is nothing to show: it keeps no column with one value for each design")
+        raise DeclarationError(
+            f"{sweep.path}: there is nothing to show: it keeps no column with one value for each"
+            " design"
+        )
     pair = next(iter(usual_pair(sweep, {})), tuple(names[:2]))
     front = [design.number for design in best(sweep, minimise=pair)] if len(pair) == 2 else []
     arrays, numbers = Arrays(), _shown(sweep, len(names), front)
     told: dict[str, Any] = {
         "case": sweep.case,
-        "parameters": [{"name": name, "title": name, "unit": unit, "sized": False} for name, unit in sweep.parameters.items()],
-        "columns": [{"name": name, "title": name, "unit": sweep.unit(name), "sized": name.startswith("peak:")} for name in names],
+        "parameters": [
+            {"name": name, "title": name, "unit": unit, "sized": False}
+            for name, unit in sweep.parameters.items()
+        ],
+        "columns": [
+            {
+                "name": name,
+                "title": name,
+                "unit": sweep.unit(name),
+                "sized": name.startswith("peak:"),
+            }
+            for name in names
+        ],
         "varied": varied(sweep),
         "pair": list(pair),
         "counts": [
@@ -114,10 +141,14 @@ def _shown(sweep: Sweep, many: int, front: list[int]) -> npt.NDArray[np.int64]:
     found = np.concatenate([numbers for numbers, _ in sweep.blocks([STATUS])])
     if found.size <= most:
         return found
-    return np.unique(np.concatenate([found[:: math.ceil(found.size / most)], np.array(front, np.int64)]))
+    return np.unique(
+        np.concatenate([found[:: math.ceil(found.size / most)], np.array(front, np.int64)])
+    )
 
 
-def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> dict[str, npt.NDArray[Any]]:
+def _values(
+    sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]
+) -> dict[str, npt.NDArray[Any]]:
     """Columns of some designs, by name."""
     parts: dict[str, list[npt.NDArray[Any]]] = {name: [] for name in names}
     for numbers, values in sweep.blocks(names):
@@ -129,7 +160,13 @@ def _values(sweep: Sweep, names: list[str], wanted: npt.NDArray[np.int64]) -> di
 
 def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     """The live page of the mechanism, which begins with a design that has a result."""
-    first = front[0] if front else next((int(n) for numbers, v in sweep.blocks([STATUS]) for n in numbers[v[STATUS] == 0]), None)
+    first = (
+        front[0]
+        if front
+        else next(
+            (int(n) for numbers, v in sweep.blocks([STATUS]) for n in numbers[v[STATUS] == 0]), None
+        )
+    )
     if first is None:
         raise DeclarationError(f"{sweep.path}: no design has a result: there is nothing to show")
     asked, design = sweep.identity["t"], sweep.design(first)
@@ -137,9 +174,17 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     timing, data = scene.timing(), compile_scene(scene, wanted, parameters=design).data
     if json.loads(json.dumps(timing.words(data.symbols))) != asked:
         if any(isinstance(bound, str) for bound in (*asked[:2], *asked[4:])):
-            raise DeclarationError(f"{sweep.path}: its instants are not those of the scene: {asked}")
-        timing = scene.timing(over=(asked[3], *asked[:3])) if len(asked) > 3 else scene.timing(t=tuple(asked))
-    words: dict[str, Any] = {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
+            raise DeclarationError(
+                f"{sweep.path}: its instants are not those of the scene: {asked}"
+            )
+        timing = (
+            scene.timing(over=(asked[3], *asked[:3]))
+            if len(asked) > 3
+            else scene.timing(t=tuple(asked))
+        )
+    words: dict[str, Any] = (
+        {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
+    )
     if any(isinstance(bound, str) for bound in asked[:2]):
         words = {}
     solution = evaluate(scene, parameters=design, wanted=wanted, elastic=False, **words)
@@ -152,6 +197,12 @@ def _bounds(asked: list[Any]) -> tuple[Any, ...]:
 
 def _names(told: dict[str, Any]) -> list[str]:
     """The names of outputs that were wanted."""
-    kinds = {"reactions": "reaction", "multipliers": "multiplier", "loads": "load", "sections": "section", "own": "output"}
+    kinds = {
+        "reactions": "reaction",
+        "multipliers": "multiplier",
+        "loads": "load",
+        "sections": "section",
+        "own": "output",
+    }
     found = [name for name in ("effort", "motion") if told[name]]
     return found + [f"{kind}:{part}" for group, kind in kinds.items() for part in told[group]]

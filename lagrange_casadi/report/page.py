@@ -1,8 +1,9 @@
 """A report as one page of HTML that needs nothing else: no server, no network, no other file.
 
-The viewer's sources in ``assets`` are what a page holds, word for word: plain JavaScript and CSS, nothing is built. What a solution
-says goes beside them as JSON; the viewer makes the page's elements of it, as texts and never as markup. A page may run no other
-script than the viewer, whose digest it tells the browser, and may load nothing.
+The viewer's sources in ``assets`` are what a page holds, word for word: plain JavaScript and CSS,
+nothing is built. What a solution says goes beside them as JSON; the viewer makes the page's
+elements of it, as texts and never as markup. A page may run no other script than the viewer, whose
+digest it tells the browser, and may load nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +27,21 @@ from .contents import contents
 from .live import Live
 
 SCRIPTS = (
-    *("data", "dom", "units", "instants", "law", "places", "paper", "solids", "symbols", "arrows", "ribbons", "stage", "gestures"),
+    *(
+        "data",
+        "dom",
+        "units",
+        "instants",
+        "law",
+        "places",
+        "paper",
+        "solids",
+        "symbols",
+        "arrows",
+        "ribbons",
+        "stage",
+        "gestures",
+    ),
     *("player", "axes", "chart", "polar", "heat", "cards", "sorted", "tables", "sliders", "page"),
 )
 """The viewer's sources, in the order in which they stand in a page."""
@@ -34,28 +49,49 @@ SCRIPTS = (
 LIVE_SCRIPTS = ("chebyshev", "along", "shapes", "alive")
 """Those that a live page has before them, after the engine's own wrapper."""
 
-SWEEP_SCRIPTS = ("data", "dom", "units", "axes", "chart", "sorted", "designs", "designs_plots", "designs_page")
+SWEEP_SCRIPTS = (
+    "data",
+    "dom",
+    "units",
+    "axes",
+    "chart",
+    "sorted",
+    "designs",
+    "designs_plots",
+    "designs_page",
+)
 """Those of the page of a sweep."""
 
 ENDINGS = (".html", ".htm")
 
 
-def write_report(solution: Solution, path: str | os.PathLike[str], live: Live | None = None) -> None:
-    """Write a page that shows a solution in a browser, replacing the file at ``path`` whole or not at all.
+def write_report(
+    solution: Solution, path: str | os.PathLike[str], live: Live | None = None
+) -> None:
+    """Write a page that shows a solution in a browser, replacing the file at ``path`` whole or not
+    at all.
 
-    With ``live`` the page evaluates its scene for other parameters. Raises :class:`.DeclarationError` where the solution lacks the
-    motion of its bodies, and where ``path`` does not end in .html; :class:`.PathError` and :class:`.StoreError` where the file
-    cannot be written.
+    With ``live`` the page evaluates its scene for other parameters. Raises
+    :class:`.DeclarationError` where the solution lacks the motion of its bodies, and where ``path``
+    does not end in .html; :class:`.PathError` and :class:`.StoreError` where the file cannot be
+    written.
     """
     if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
-        raise DeclarationError(f"report: expected a solution and a path, got {solution!r} and {path!r}")
+        raise DeclarationError(
+            f"report: expected a solution and a path, got {solution!r} and {path!r}"
+        )
     write_page(Path(path), lambda: page(solution, live))
 
 
 def write_page(target: Path, made: Callable[[], str]) -> None:
-    """Write the page that is ``made``, replacing the file whole or not at all. Raises what :func:`write_report` does."""
+    """Write the page that is ``made``, replacing the file whole or not at all.
+
+    Raises what :func:`write_report` does.
+    """
     if target.suffix.lower() not in ENDINGS:
-        raise DeclarationError(f"report {target}: expected a name that ends in {' or '.join(ENDINGS)}")
+        raise DeclarationError(
+            f"report {target}: expected a name that ends in {' or '.join(ENDINGS)}"
+        )
     text = made().encode()
     with writing(target) as (file,):
         file.write(text)
@@ -64,10 +100,19 @@ def write_page(target: Path, made: Callable[[], str]) -> None:
 def page(solution: Solution, live: Live | None = None) -> str:
     """The text of the page."""
     alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
-    return assembled(solution.case, contents(solution, live), [*alive, *map(script, SCRIPTS)], wasm=bool(live))
+    return assembled(
+        solution.case, contents(solution, live), [*alive, *map(script, SCRIPTS)], wasm=bool(live)
+    )
 
 
-def assembled(title: str, told: Mapping[str, Any], scripts: Sequence[str], *, wasm: bool, others: Sequence[str] = ()) -> str:
+def assembled(
+    title: str,
+    told: Mapping[str, Any],
+    scripts: Sequence[str],
+    *,
+    wasm: bool,
+    others: Sequence[str] = (),
+) -> str:
     """A page with what is ``told``, which runs ``scripts``; with ``wasm`` it may compile that.
 
     ``others`` are digests of scripts that pages within it run.
@@ -105,4 +150,6 @@ def _digest(text: str) -> str:
 
 
 def _asset(name: str) -> str:
-    return resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
+    return (
+        resources.files(__package__).joinpath("assets").joinpath(name).read_text(encoding="utf-8")
+    )

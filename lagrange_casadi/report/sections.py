@@ -1,6 +1,8 @@
-"""The section laws of links in a page: the functions along each link, and which coefficients go with them.
+"""The section laws of links in a page: the functions along each link, and which coefficients go
+with them.
 
-The viewer sums them up as :class:`.SectionLaw` does, so that the force at every section of every instant takes few numbers.
+The viewer sums them up as :class:`.SectionLaw` does, so that the force at every section of every
+instant takes few numbers.
 """
 
 from __future__ import annotations
@@ -24,11 +26,12 @@ RATIOS = 101
 
 @dataclass(frozen=True)
 class Force:
-    """A section force of a link: ``parts`` are the forces whose size it is; any other is a sum of ``terms`` and of loads.
+    """A section force of a link: ``parts`` are the forces whose size it is; any other is a sum of
+    ``terms`` and of loads.
 
-    A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and a sign. ``acting`` is the
-    member of what acts at stations that goes into it; of a moment with an ``arm`` of 1 or -1 so is that ``across``, times its
-    distance.
+    A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and
+    a sign. ``acting`` is the member of what acts at stations that goes into it; of a moment with an
+    ``arm`` of 1 or -1 so is that ``across``, times its distance.
     """
 
     name: str
@@ -42,7 +45,9 @@ class Force:
     arm: int = 0
 
 
-def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[dict[str, Any]]:
+def section_entries(
+    solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
+) -> Iterator[dict[str, Any]]:
     """The links that have sections, each with its forces."""
     xi = np.linspace(0.0, 1.0, RATIOS)
     for link in solution.links_with_sections:
@@ -53,14 +58,23 @@ def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Ar
             return arrays.add(solution.outputs[output][chosen], str(output))
 
         columns = {name: added(Output("law", link, name)) for name in law.coefficients}
-        of_force, of_moment = ([arrays.add(row) for row in rows] for rows in (basis.force, basis.bending))
+        of_force, of_moment = (
+            [arrays.add(row) for row in rows] for rows in (basis.force, basis.bending)
+        )
         loads = [
-            {"name": load.name} | {member: added(Output("station", link, member, load.name)) for member in table.station}
+            {"name": load.name}
+            | {
+                member: added(Output("station", link, member, load.name))
+                for member in table.station
+            }
             for load in law.loads
         ]
         spread = [
             {
-                direction: [added(Output("spread", link, direction, load.name, power)) for power in range(load.powers)]
+                direction: [
+                    added(Output("spread", link, direction, load.name, power))
+                    for power in range(load.powers)
+                ]
                 for direction in load.terms
             }
             for load in law.spreads
@@ -71,7 +85,14 @@ def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Ar
             made = _made(name, table, columns, spread, (of_force, of_moment))
             words = what(output, table), solution.unit(output), not solution.determined(output)
             forces.append(asdict(Force(name, *words, **made)))
-        yield {"link": link, "length": law.length, "slack": law.slack, "xi": arrays.add(xi), "forces": forces, "loads": loads}
+        yield {
+            "link": link,
+            "length": law.length,
+            "slack": law.slack,
+            "xi": arrays.add(xi),
+            "forces": forces,
+            "loads": loads,
+        }
 
 
 def _made(
@@ -91,8 +112,14 @@ def _made(
     # After those of the law, a row for each power of each load; couples have no arm.
     first = 0
     for load in spread:
-        for direction, there, way in ((terms.spread, plain[4 if terms.arm else 3 :], sign), (terms.couple, rows[0][3:], 1)):
-            summed += [(factor, there[first + power], way) for power, factor in enumerate(load.get(direction, ()))]
+        for direction, there, way in (
+            (terms.spread, plain[4 if terms.arm else 3 :], sign),
+            (terms.couple, rows[0][3:], 1),
+        ):
+            summed += [
+                (factor, there[first + power], way)
+                for power, factor in enumerate(load.get(direction, ()))
+            ]
         first += max(map(len, load.values()))
     across = table.sections[terms.shear].acting if terms.arm else ""
     return {"terms": tuple(summed), "acting": terms.acting, "across": across, "arm": terms.arm}

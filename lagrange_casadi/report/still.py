@@ -50,13 +50,19 @@ def still(solution: Solution) -> str:
     middle = (low + high) / 2
 
     def on_sheet(spot: Spot) -> Array:
-        found: Array = np.array([_WIDE / 2, _HIGH / 2]) + scale * (flat(spot) - middle) * [1.0, -1.0]
+        found: Array = np.array([_WIDE / 2, _HIGH / 2]) + scale * (flat(spot) - middle) * [
+            1.0,
+            -1.0,
+        ]
         return found
 
     lines = "".join(_drawn(solution, on_sheet))
     size = f'width="{_WIDE:g}" height="{_HIGH:g}" viewBox="0 0 {_WIDE:g} {_HIGH:g}"'
     label = f'role="img" aria-label="{escape(solution.case)} at its first instant"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {label} stroke-linecap="round" stroke-linejoin="round">{lines}</svg>'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} {label} stroke-linecap="round"'
+        f' stroke-linejoin="round">{lines}</svg>'
+    )
 
 
 def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
@@ -71,21 +77,40 @@ def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
         for plate in shape.plates:
             yield _line(first([Spot(name, at) for at in plate]), colour, 1.6, closed=True)
         for ends in ([shape.axis] if shape.axis else []) + list(shape.arms):
-            yield _line(first([Spot(name, at) for at in ends]), colour, 6.0 if shape.axis and ends is shape.axis else 4.0)
+            yield _line(
+                first([Spot(name, at) for at in ends]),
+                colour,
+                6.0 if shape.axis and ends is shape.axis else 4.0,
+            )
         if shape.kind == "point":
             x, y = first([Spot(name, (0.0, 0.0, 0.0))])[0]
-            yield f'<rect x="{x - 8:.1f}" y="{y - 8:.1f}" width="16" height="16" rx="2" fill="{colour}"/>'
+            yield (
+                f'<rect x="{x - 8:.1f}" y="{y - 8:.1f}" width="16" height="16" rx="2"'
+                f' fill="{colour}"/>'
+            )
     for load in load_shapes(description):
         if load.kind == "spring":
             yield _line(first(load.spots), "currentColor", 1.4, dashed=True)
     names: dict[tuple[float, float], str] = {}
     for joint in joint_shapes(description):
         x, y = (float(value) for value in first([joint.child])[0])
-        if "ground" in (joint.parent.body, joint.child.body) and joint.kind not in ("free", "prismatic", "slot"):
-            yield f'<path transform="translate({x:.1f} {y:.1f})" d="{_STAND}" fill="none" stroke="currentColor"/>'
+        if "ground" in (joint.parent.body, joint.child.body) and joint.kind not in (
+            "free",
+            "prismatic",
+            "slot",
+        ):
+            yield (
+                f'<path transform="translate({x:.1f} {y:.1f})" d="{_STAND}" fill="none"'
+                ' stroke="currentColor"/>'
+            )
         radius = 3.5 if joint.kind == "spherical" else 4.5
-        yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="#fff" stroke="#222" stroke-width="1.4"/>'
-        at = next((other for other in names if abs(other[0] - x) + abs(other[1] - y) < _NEAR), (x, y))
+        yield (
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="#fff" stroke="#222"'
+            ' stroke-width="1.4"/>'
+        )
+        at = next(
+            (other for other in names if abs(other[0] - x) + abs(other[1] - y) < _NEAR), (x, y)
+        )
         names[at] = f"{names[at]}, {joint.name}" if at in names else joint.name
     for (x, y), name in names.items():
         left, anchor = (x + 8, "start") if x < 0.75 * _WIDE else (x - 8, "end")
@@ -93,7 +118,9 @@ def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
         yield f'<text x="{left:.1f}" y="{y - 7:.1f}" {font}>{escape(name)}</text>'
 
 
-def _line(points: Array, colour: str, width: float, *, closed: bool = False, dashed: bool = False) -> str:
+def _line(
+    points: Array, colour: str, width: float, *, closed: bool = False, dashed: bool = False
+) -> str:
     path = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points) + ("Z" if closed else "")
     fill = f'fill="{colour}" fill-opacity="0.25"' if closed else 'fill="none"'
     dashes = ' stroke-dasharray="2 4"' if dashed else ""

@@ -1,4 +1,6 @@
-"""What notebooks show of a sweep: what was swept, what became of its designs, and what its columns are at their ends."""
+"""What notebooks show of a sweep: what was swept, what became of its designs, and what its columns
+are at their ends.
+"""
 
 from __future__ import annotations
 
@@ -15,24 +17,51 @@ _ROWS = 12
 
 
 def summary(sweep: Sweep) -> str:
-    """A table of the smallest and the largest value of each column with one value for each design: as HTML."""
-    counts = [(sweep.statuses[status][1] if status else "", count) for status, count in sweep.counts().items() if count]
-    told = "; ".join(f"{count} without: {words}" if words else f"{count} with a result" for words, count in counts)
-    head = f"<p><b>{escape(sweep.case)}</b>: {counted(sweep.size)} over {escape(', '.join(sweep.parameters))}: {escape(told)}</p>"
-    names = [name for name, column in sweep.columns.items() if not column.axes and name.startswith(("peak:", "mean:", "rms:"))]
+    """A table of the smallest and the largest value of each column with one value for each design:
+    as HTML.
+    """
+    counts = [
+        (sweep.statuses[status][1] if status else "", count)
+        for status, count in sweep.counts().items()
+        if count
+    ]
+    told = "; ".join(
+        f"{count} without: {words}" if words else f"{count} with a result"
+        for words, count in counts
+    )
+    head = (
+        f"<p><b>{escape(sweep.case)}</b>: {counted(sweep.size)} over"
+        f" {escape(', '.join(sweep.parameters))}: {escape(told)}</p>"
+    )
+    names = [
+        name
+        for name, column in sweep.columns.items()
+        if not column.axes and name.startswith(("peak:", "mean:", "rms:"))
+    ]
     shown = [*sweep.parameters, *names[:_ROWS]]
     ends = dict.fromkeys(shown, (np.inf, -np.inf))
     for _, values in sweep.blocks([*shown, STATUS]):
         for name in shown:
             finite = values[name][np.isfinite(values[name])]
             low, high = ends[name]
-            ends[name] = min(low, finite.min(initial=np.inf)), max(high, finite.max(initial=-np.inf))
+            ends[name] = (
+                min(low, finite.min(initial=np.inf)),
+                max(high, finite.max(initial=-np.inf)),
+            )
     rows = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in (name, *_told(ends[name]), sweep.unit(name))) + "</tr>"
+        "<tr>"
+        + "".join(
+            f"<td>{escape(cell)}</td>" for cell in (name, *_told(ends[name]), sweep.unit(name))
+        )
+        + "</tr>"
         for name in shown
     )
     heads = "".join(f"<th>{word}</th>" for word in ("column", "smallest", "largest", "unit"))
-    more = f"<p>and {len(names) - _ROWS} more; report(PATH) shows all</p>" if len(names) > _ROWS else ""
+    more = (
+        f"<p>and {len(names) - _ROWS} more; report(PATH) shows all</p>"
+        if len(names) > _ROWS
+        else ""
+    )
     return f"{head}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 

@@ -1,1 +1,3 @@
-"""How outputs change with parameters: exact derivatives of series, section forces, peaks and means."""
+"""How outputs change with parameters: exact derivatives of series, section
+forces, peaks and means.
+"""

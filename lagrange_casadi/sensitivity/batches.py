@@ -11,8 +11,15 @@ from .. import codegen
 from ..base.arrays import Array
 
 
-def at_points(function: Any, library: codegen.BatchLibrary | None, n: int, given: Mapping[str, tuple[Array, int]]) -> Array:
-    """A function of one output at n points, (n, result): of each argument its rows, and how many points one is for, 0 for all."""
+def at_points(
+    function: Any,
+    library: codegen.BatchLibrary | None,
+    n: int,
+    given: Mapping[str, tuple[Array, int]],
+) -> Array:
+    """A function of one output at n points, (n, result): of each argument its rows, and how many
+    points one is for, 0 for all.
+    """
     into = np.full((n, function.numel_out(0)), np.nan)
     if library is not None:
         library.evaluate(n, given, into)

@@ -1,8 +1,10 @@
-"""Second derivatives of quantities at single points, along ways in time, in xi/l and in the parameters: one CasADi function.
+"""Second derivatives of quantities at single points, along ways in time, in xi/l and in the
+parameters: one CasADi function.
 
-The first derivatives of :mod:`.points` are differentiated forward. Of iterated loops those hold the step -Phi_z^-1 Phi of Newton's
-method, whose derivatives are those of the solution where Phi = 0; along the solution Phi stays 0, so that what is differentiated
-once more, with the iterated coordinates going along as the implicit function theorem says, is exact too.
+The first derivatives of :mod:`.points` are differentiated forward. Of iterated loops those hold the
+step -Phi_z^-1 Phi of Newton's method, whose derivatives are those of the solution where Phi = 0;
+along the solution Phi stays 0, so that what is differentiated once more, with the iterated
+coordinates going along as the implicit function theorem says, is exact too.
 """
 
 from __future__ import annotations
@@ -27,8 +29,8 @@ from .slopes import Numbers, Slopes
 
 
 class Bends(NamedTuple):
-    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it changes along w ways,
-    (n, w, 2 + parameters)."""
+    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it
+    changes along w ways, (n, w, 2 + parameters)."""
 
     gradient: Array
     changes: Array
@@ -36,7 +38,9 @@ class Bends(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Curvatures:
-    """What ``slopes`` are of, and its second derivatives at points: by ``library``, or by the virtual machine."""
+    """What ``slopes`` are of, and its second derivatives at points: by ``library``, or by the
+    virtual machine.
+    """
 
     slopes: Slopes
     function: Any
@@ -44,19 +48,26 @@ class Curvatures:
 
     @classmethod
     def of(cls, slopes: Slopes, rung: Rung) -> Curvatures:
-        """Derive and compile those of what ``slopes`` are of, by the compiler of a rung; always in doubles.
+        """Derive and compile those of what ``slopes`` are of, by the compiler of a rung; always in
+        doubles.
 
         Raises :class:`.DeclarationError` for a motion by samples that does not tell its knots.
         """
-        function, extra = second_function(slopes.graph, slopes.points), tuple(shlex.split(rung.flags))
+        function, extra = (
+            second_function(slopes.graph, slopes.points),
+            tuple(shlex.split(rung.flags)),
+        )
         made = compiled(rung, lambda compiler: codegen.load_batch(function, compiler, extra))
         return cls(slopes, function, None if made is None else made[1])
 
-    def at(self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array, ways: Array) -> Bends:
-        """Those of what is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, along each of ``ways`` (w, 2 + parameters).
+    def at(
+        self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array, ways: Array
+    ) -> Bends:
+        """Those of what is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, along each of
+        ``ways`` (w, 2 + parameters).
 
-        Places along a link move as those of :meth:`.Slopes.at` do with ``value``, unless that is NaN. ``z`` (n, z) are the iterated
-        coordinates there; they must close the loops.
+        Places along a link move as those of :meth:`.Slopes.at` do with ``value``, unless that is
+        NaN. ``z`` (n, z) are the iterated coordinates there; they must close the loops.
         """
         n, w = t.size, len(ways)
         ones = np.zeros((n, self.function.size1_in("chosen")))
@@ -77,8 +88,9 @@ class Curvatures:
 
 @symbolic
 def second_function(graph: Program, points: PointFunction) -> Any:
-    """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
-    and all parameters, and how it changes along a ``way`` of these."""
+    """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what
+    :class:`.PointFunction` has the gradient by time, xi/l and all parameters, and how it changes
+    along a ``way`` of these."""
     inner, laws = points.at_drives, graph.laws
     given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
     t, z, p, xi = (given[name] for name in ("t", "z", "p", "xi"))
@@ -96,7 +108,14 @@ def second_function(graph: Program, points: PointFunction) -> Any:
     change = ca.jtimes(gradient, ca.vertcat(*of), ca.vertcat(*along))
     names = ["t", "z", "p", "xi", "value", "moving", "chosen"]
     every = [*(given[name] for name in names), way]
-    return ca.Function("at_once", every, [ca.densify(ca.vertcat(gradient, change))], [*names, "way"], ["found"], {"cse": True})
+    return ca.Function(
+        "at_once",
+        every,
+        [ca.densify(ca.vertcat(gradient, change))],
+        [*names, "way"],
+        ["found"],
+        {"cse": True},
+    )
 
 
 def unit_ways(numbers: Sequence[int], parameters: int) -> Array:

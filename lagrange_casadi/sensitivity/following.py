@@ -10,8 +10,12 @@ from ..equations.program import Program
 from ..instants.backends import begun, follow
 
 
-def iterated(graph: Program, following: codegen.Library | None, t: Array, p: Array, places: Array) -> Array:
-    """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed; by compiled code, if any."""
+def iterated(
+    graph: Program, following: codegen.Library | None, t: Array, p: Array, places: Array
+) -> Array:
+    """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are
+    followed; by compiled code, if any.
+    """
     if graph.newton is None:
         return np.zeros((places.size, 0))
     count = graph.instant.size1_in("z")

@@ -1,7 +1,8 @@
 """What is at peaks, taken a step of Newton's method further.
 
-A search by values knows the place of a smooth peak to the root of its rounding only. What the place is off by, times how the
-derivatives change along time and along the link, is added to them: all from differences.
+A search by values knows the place of a smooth peak to the root of its rounding only. What the place
+is off by, times how the derivatives change along time and along the link, is added to them: all
+from differences.
 """
 
 from __future__ import annotations
@@ -15,13 +16,17 @@ from ..base.arrays import Array
 from .slopes import AtPoints, Numbers, Slopes
 
 _NUDGE_T, _NUDGE_XI = 1e-3, 1e-3
-"""By how much a place is moved for differences: of a step between instants, and as a ratio to the length."""
+"""By how much a place is moved for differences: of a step between instants, and as a ratio to the
+length.
+"""
 
 _NEAR_T, _NEAR_XI = 1e-2, 1e-5
 """How far a smooth peak is from where it was found at most, likewise."""
 
 _ASIDE, _NEARER = 1e-9, 0.5
-"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on its own side at most."""
+"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on
+its own side at most.
+"""
 
 _REACHES = (1.0, 8.0, 64.0, 512.0)
 """So far from a jump its sides are looked for: of what a peak may be beside it."""
@@ -36,12 +41,18 @@ def at_peaks(
     step: float,
     stay: npt.NDArray[np.bool_],
 ) -> tuple[AtPoints, Array, Array]:
-    """What is at peaks (value, t, xi), what its slopes lack to those at the smooth peaks, and the iterated coordinates there.
+    """What is at peaks (value, t, xi), what its slopes lack to those at the smooth peaks, and the
+    iterated coordinates there.
 
-    The peaks are in the span of the ``instants``, a ``step`` apart. What is known to ``stay`` (q,) where it is lacks nothing.
+    The peaks are in the span of the ``instants``, a ``step`` apart. What is known to ``stay`` (q,)
+    where it is lacks nothing.
     """
     value, t, xi = peaks
-    q, inner, moving = t.size, ((xi > _NUDGE_XI) & (xi < 1.0 - _NUDGE_XI)).nonzero()[0], (~stay).nonzero()[0]
+    q, inner, moving = (
+        t.size,
+        ((xi > _NUDGE_XI) & (xi < 1.0 - _NUDGE_XI)).nonzero()[0],
+        (~stay).nonzero()[0],
+    )
     nudge = _NUDGE_T * step
     later = np.where(t + nudge <= instants[-1], nudge, -nudge)
     times = np.concatenate([t, (t + later)[moving]])
@@ -53,7 +64,8 @@ def at_peaks(
     found = slopes.at(times[where], z[where], p, chosen[of], places, value[of])
     ends = np.cumsum([0, q, moving.size, inner.size, inner.size]).tolist()
     here, after, further, nearer = (
-        AtPoints(found.value[a:b], found.rate[a:b], found.slopes[a:b]) for a, b in itertools.pairwise(ends)
+        AtPoints(found.value[a:b], found.rate[a:b], found.slopes[a:b])
+        for a, b in itertools.pairwise(ends)
     )
     lacking = np.zeros_like(here.slopes)
     if not step > 0.0:
@@ -62,11 +74,17 @@ def at_peaks(
     with np.errstate(all="ignore"):
         tt[moving] = (after.rate - here.rate[moving]) / later[moving]
         by_t = -here.rate / tt
-        by_xi = _along(here, further, nearer, inner, tt, by_t, np.sign(value)) if inner.size else None
+        by_xi = (
+            _along(here, further, nearer, inner, tt, by_t, np.sign(value)) if inner.size else None
+        )
         lacking[moving] = (after.slopes - here.slopes[moving]) * (by_t / later)[moving, None]
         if by_xi is not None:
-            lacking[inner] += (further.slopes - nearer.slopes) * (by_xi / (2.0 * _NUDGE_XI))[:, None]
-        sound = (value * tt < 0.0) & (np.abs(by_t) <= _NEAR_T * step) & np.isfinite(lacking.sum(axis=1))
+            lacking[inner] += (further.slopes - nearer.slopes) * (by_xi / (2.0 * _NUDGE_XI))[
+                :, None
+            ]
+        sound = (
+            (value * tt < 0.0) & (np.abs(by_t) <= _NEAR_T * step) & np.isfinite(lacking.sum(axis=1))
+        )
     lacking[~sound] = 0.0
     return here, lacking, z[:q]
 
@@ -80,10 +98,12 @@ def on_their_side(
     found: Array,
     near: float,
 ) -> Array:
-    """The times (q,) at which derivatives of peaks (value, t, xi) are those of their side of a jump.
+    """The times (q,) at which derivatives of peaks (value, t, xi) are those of their side of a
+    jump.
 
-    A peak that is at a jump is so ``near`` to it that rounding tells on which side its time is: what is ``found`` (q,) there may
-    be of the other one. It is as large as the peak a little before or after.
+    A peak that is at a jump is so ``near`` to it that rounding tells on which side its time is:
+    what is ``found`` (q,) there may be of the other one. It is as large as the peak a little before
+    or after.
     """
     value, t, xi = peaks
     times: Array = t.copy()
@@ -92,7 +112,9 @@ def on_their_side(
     for reach in _REACHES:
         if not left.size:
             break
-        beside = np.clip(t[left] + reach * near * np.array([[-1.0], [1.0]]), instants[0], instants[-1]).ravel()
+        beside = np.clip(
+            t[left] + reach * near * np.array([[-1.0], [1.0]]), instants[0], instants[-1]
+        ).ravel()
         twice = np.concatenate([left, left])
         z = slopes.iterated(instants, p, beside)
         there = slopes.at(beside, z, p, chosen[twice], xi[twice], value[twice])
@@ -106,12 +128,23 @@ def on_their_side(
 
 
 def _along(
-    here: AtPoints, further: AtPoints, nearer: AtPoints, inner: npt.NDArray[np.intp], tt: Array, by_t: Array, sign: Array
+    here: AtPoints,
+    further: AtPoints,
+    nearer: AtPoints,
+    inner: npt.NDArray[np.intp],
+    tt: Array,
+    by_t: Array,
+    sign: Array,
 ) -> Array:
-    """How far the ``inner`` peaks are from the smooth ones along the link; and in time, ``by_t``, of those that turn there."""
+    """How far the ``inner`` peaks are from the smooth ones along the link; and in time, ``by_t``,
+    of those that turn there.
+    """
     rate, bend = here.rate[inner], tt[inner]
     xx = (further.value - 2.0 * here.value[inner] + nearer.value) / _NUDGE_XI**2
-    x, tx = (further.value - nearer.value) / (2.0 * _NUDGE_XI), (further.rate - nearer.rate) / (2.0 * _NUDGE_XI)
+    x, tx = (
+        (further.value - nearer.value) / (2.0 * _NUDGE_XI),
+        (further.rate - nearer.rate) / (2.0 * _NUDGE_XI),
+    )
     det = bend * xx - tx * tx
     by_xi = (tx * rate - bend * x) / det
     turns = (sign[inner] * xx < 0.0) & (det > 0.0) & (np.abs(by_xi) <= _NEAR_XI)

@@ -1,8 +1,8 @@
 """How peaks change with parameters.
 
-A smooth peak moves as a parameter changes. To first order its value changes as that of the quantity does where the peak is: the
-envelope theorem. A peak at the first or the last instant goes with that instant. A peak at a kink or a jump goes with the time of
-what switches there.
+A smooth peak moves as a parameter changes. To first order its value changes as that of the quantity
+does where the peak is: the envelope theorem. A peak at the first or the last instant goes with that
+instant. A peak at a kink or a jump goes with the time of what switches there.
 """
 
 from __future__ import annotations
@@ -46,8 +46,9 @@ _SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 class PeakSlopes:
     """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,).
 
-    ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch, ``switch`` (q,) is the number of that
-    switch, or -1. ``t`` (q,) are the times at which they were taken: on the peaks' side of a jump.
+    ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch,
+    ``switch`` (q,) is the number of that switch, or -1. ``t`` (q,) are the times at which they were
+    taken: on the peaks' side of a jump.
     """
 
     slopes: Array
@@ -68,16 +69,30 @@ def peak_slopes(
 ) -> PeakSlopes:
     """Those of peaks, (value, t, xi), (q,) each, of what is ``chosen``.
 
-    They are peaks over the time of the ``instants``, which are in equal steps; ``ends`` (2, parameters) says how the first and the
-    last move. ``nothing`` (q,) tells which peaks are zero but for rounding: with them nothing moves.
+    They are peaks over the time of the ``instants``, which are in equal steps; ``ends`` (2,
+    parameters) says how the first and the last move. ``nothing`` (q,) tells which peaks are zero
+    but for rounding: with them nothing moves.
     """
     value, t, xi = peaks
     sound = np.isfinite(value) & np.isfinite(t)
     if not sound.all():
         found, kinds = np.full((t.size, p.size), np.nan), np.full(t.size, _UNTOLD, np.int8)
         moved, switch, times = np.zeros((t.size, p.size)), np.full(t.size, -1, np.intc), t.copy()
-        inner = peak_slopes(slopes, instants, p, chosen[sound], (value[sound], t[sound], xi[sound]), ends, nothing[sound])
-        found[sound], kinds[sound], moved[sound], switch[sound] = inner.slopes, inner.kinds, inner.moved, inner.switch
+        inner = peak_slopes(
+            slopes,
+            instants,
+            p,
+            chosen[sound],
+            (value[sound], t[sound], xi[sound]),
+            ends,
+            nothing[sound],
+        )
+        found[sound], kinds[sound], moved[sound], switch[sound] = (
+            inner.slopes,
+            inner.kinds,
+            inner.moved,
+            inner.switch,
+        )
         times[sound] = inner.t
         return PeakSlopes(found, kinds, moved, switch, times)
     first, last = instants[0], instants[-1]
@@ -88,9 +103,13 @@ def peak_slopes(
     here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step, going | nothing)
     times = on_their_side(slopes, instants, p, chosen, peaks, here.value, near)
     if (times != t).any():
-        here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, times, xi), step, going | nothing)
+        here, lacking, z = at_peaks(
+            slopes, instants, p, chosen, (value, times, xi), step, going | nothing
+        )
     steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
-    kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(np.int8)
+    kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(
+        np.int8
+    )
     kinds[going] = _END
     moved, switch = np.zeros_like(here.slopes), np.full(t.size, -1, np.intc)
     moved[at_last], moved[at_first] = ends[1], ends[0]
@@ -98,7 +117,13 @@ def peak_slopes(
         moved[steep], switch[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
         kinds[steep] = np.where(np.isnan(moved[steep]).any(axis=1), _UNTOLD, _SWITCH)
         going |= steep
-    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds, moved, switch, times)
+    return PeakSlopes(
+        here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking),
+        kinds,
+        moved,
+        switch,
+        times,
+    )
 
 
 def _near(step: float, instants: Array) -> float:
@@ -107,8 +132,9 @@ def _near(step: float, instants: Array) -> float:
 
 
 def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tuple[Array, Numbers]:
-    """The derivatives by all parameters of the times (n,) at which something switches, (n, parameters), NaN where nothing does; and
-    the number of the switch, -1 where a motion's knot or nothing does."""
+    """The derivatives by all parameters of the times (n,) at which something switches, (n,
+    parameters), NaN where nothing does; and the number of the switch, -1 where a motion's knot or
+    nothing does."""
     switches, first = slopes.points.switches, len(slopes.points.quantities)
     times, at, back = np.unique(t, return_index=True, return_inverse=True)
     knots = np.array([knot for knots in slopes.graph.laws.knots for knot in knots])
@@ -116,7 +142,9 @@ def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tup
     if switches:
         many = len(switches)
         chosen = np.tile(np.arange(first, first + many, dtype=np.intc), times.size)
-        there = slopes.at(np.repeat(times, many), np.repeat(z[at], many, axis=0), p, chosen, np.zeros(chosen.size))
+        there = slopes.at(
+            np.repeat(times, many), np.repeat(z[at], many, axis=0), p, chosen, np.zeros(chosen.size)
+        )
         value, rate = there.value.reshape(-1, many), there.rate.reshape(-1, many)
         gaps = np.stack([_gap(watch, value[:, k]) for k, watch in enumerate(switches)], axis=1)
         with np.errstate(all="ignore"):

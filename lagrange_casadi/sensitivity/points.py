@@ -1,12 +1,14 @@
-"""Quantities at single points, a time and a ratio xi/l each, and their derivatives by all parameters: one CasADi function.
+"""Quantities at single points, a time and a ratio xi/l each, and their derivatives by all
+parameters: one CasADi function.
 
-The derivative is the total one, at a time that stands still. Driven coordinates change with the parameters of their laws, closed
-forms are differentiated as they stand, and iterated coordinates change by the implicit function theorem: where Phi(z, t, d, p) = 0
-the step -Phi_z^-1 Phi of Newton's method has the derivative of z by t, d and p for its own at fixed z. Nothing is differentiated
-through iterations.
+The derivative is the total one, at a time that stands still. Driven coordinates change with the
+parameters of their laws, closed forms are differentiated as they stand, and iterated coordinates
+change by the implicit function theorem: where Phi(z, t, d, p) = 0 the step -Phi_z^-1 Phi of
+Newton's method has the derivative of z by t, d and p for its own at fixed z. Nothing is
+differentiated through iterations.
 
-It is done backwards, from one quantity to all parameters, so it costs as much for many parameters as for one. The time derivative
-comes with it; so does what a place that moves along a link adds.
+It is done backwards, from one quantity to all parameters, so it costs as much for many parameters
+as for one. The time derivative comes with it; so does what a place that moves along a link adds.
 """
 
 from __future__ import annotations
@@ -37,13 +39,16 @@ _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
 @dataclass(frozen=True, eq=False)
 class PointFunction(Graphs):
-    """``function(t, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities of a graph.
+    """``function(t, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities
+    of a graph.
 
-    ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the ``quantities`` it may be one of the
-    ``switches``: see :class:`.Watch`. ``xi`` is the ratio at which a section force is meant; with ``moving`` it moves with the
-    station that is there, on the side on which the force is nearer to ``value``. ``rate`` is the derivative by time [1/s],
-    ``slopes`` (parameters,) are those by the parameters at that time. ``at_drives`` is the same function of the drives'
-    coordinates, rates, accelerations and the rates of these, which are given too.
+    ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the
+    ``quantities`` it may be one of the ``switches``: see :class:`.Watch`. ``xi`` is the ratio at
+    which a section force is meant; with ``moving`` it moves with the station that is there, on the
+    side on which the force is nearer to ``value``. ``rate`` is the derivative by time [1/s],
+    ``slopes`` (parameters,) are those by the parameters at that time. ``at_drives`` is the same
+    function of the drives' coordinates, rates, accelerations and the rates of these, which are
+    given too.
     """
 
     quantities: tuple[Output, ...]
@@ -53,30 +58,44 @@ class PointFunction(Graphs):
 
     @classmethod
     @symbolic
-    def of(cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps.
+    def of(
+        cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
+    ) -> PointFunction:
+        """That of some quantities: columns of a graph, resultants of such, section forces; and what
+        makes kinks and jumps.
 
         Without a ``sharpness`` there is nothing of the latter.
         """
         watches = () if sharpness is None else sharpness.watches
         sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
-        inner = _at_drives(graph, quantities, None if sharpness is None else sharpness.watched, sharp)
+        inner = _at_drives(
+            graph, quantities, None if sharpness is None else sharpness.watched, sharp
+        )
         given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
         t, p = (given[name] for name in ("t", "p"))
-        given |= dict(zip(_DRIVES, [*graph.motion.call([t, p]), graph.laws.jerk()(t, p)], strict=True))
+        given |= dict(
+            zip(_DRIVES, [*graph.motion.call([t, p]), graph.laws.jerk()(t, p)], strict=True)
+        )
         found = inner.call([given[inner.name_in(k)] for k in range(inner.n_in())])
         names = ["t", "z", "p", "xi", "value", "moving", "chosen"]
         every = [given[name] for name in names]
-        made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
+        made = ca.Function(
+            "at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True}
+        )
         return cls(tuple(quantities), tuple(watches[k] for k in sharp), made, inner)
 
 
-def _at_drives(graph: Program, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
-    """The same function where the drives' coordinates, rates, accelerations and their rates are given."""
+def _at_drives(
+    graph: Program, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]
+) -> Any:
+    """The same function where the drives' coordinates, rates, accelerations and their rates are
+    given.
+    """
     instant = differentiable(graph.instant)
     t, d, rate, acceleration, z, p = inputs = instant.sx_in()
     xi, value, moving, jerk = (
-        ca.SX.sym(name, size) for name, size in (("xi", 1), ("value", 1), ("moving", 1), ("jerk", d.numel()))
+        ca.SX.sym(name, size)
+        for name, size in (("xi", 1), ("value", 1), ("moving", 1), ("jerk", d.numel()))
     )
     chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
     out = instant(*inputs)
@@ -94,7 +113,9 @@ def _at_drives(graph: Program, quantities: Sequence[Output], watched: Any, sharp
         more = ca.jtimes(step, ca.vertcat(t, d, p), by_z, True)
         more_t, more_d, more_p = ca.vertsplit(more, _ends([t, d, p]))
         by_t, by_d, by_p = by_t + more_t, by_d + more_d, by_p + more_p
-    in_time = by_t + ca.dot(by_d, rate) + ca.dot(by_rate, acceleration) + ca.dot(by_acceleration, jerk)
+    in_time = (
+        by_t + ca.dot(by_d, rate) + ca.dot(by_rate, acceleration) + ca.dot(by_acceleration, jerk)
+    )
     driven = ca.vertcat(*graph.laws.motion(t, p))
     by_p = by_p + ca.jtimes(driven, p, ca.vertcat(by_d, by_rate, by_acceleration), True)
     found = [ca.dot(held, rows), in_time, by_p]
@@ -113,7 +134,14 @@ def _ends(parts: Sequence[Any]) -> list[int]:
 
 
 def _rows(
-    data: ModelData, p: Any, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
+    data: ModelData,
+    p: Any,
+    columns: dict[Column, Any],
+    quantities: Sequence[Output],
+    xi: Any,
+    value: Any,
+    moving: Any,
+    chosen: Any,
 ) -> tuple[list[Any], list[Any]]:
     """Rows of which a sum is the quantity that is meant, and their weights in it."""
     table = table_of(data.space)
@@ -122,22 +150,36 @@ def _rows(
     links: dict[str, Section] = {}
 
     def add(parts: Sequence[Any], weight: Any) -> None:
-        """A quantity, or several of which it is the size: the slope of a size is that of what goes along it."""
+        """A quantity, or several of which it is the size: the slope of a size is that of what goes
+        along it.
+        """
         size = ca.sqrt(sum(part * part for part in parts)) if len(parts) > 1 else 1.0
         rows.extend(parts)
-        weights.extend([weight * part / ca.if_else(size > 0.0, size, 1.0) for part in parts] if len(parts) > 1 else [weight])
+        weights.extend(
+            [weight * part / ca.if_else(size > 0.0, size, 1.0) for part in parts]
+            if len(parts) > 1
+            else [weight]
+        )
 
     for k, quantity in enumerate(quantities):
         if quantity.group != "section":
-            add([columns[part] for part in quantity.components(table) if part in columns], chosen[k])
+            add(
+                [columns[part] for part in quantity.components(table) if part in columns], chosen[k]
+            )
             continue
         link = links.setdefault(quantity.part, data.section(quantity.part, columns, p))
         names, left = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
-        here = {id(place): [link.at(name, place, END["double"]) for name in names] for place in marks}
+        here = {
+            id(place): [link.at(name, place, END["double"]) for name in names] for place in marks
+        }
         sizes = {key: resultant(parts) for key, parts in here.items()}
         for place in marks:
-            twins = [other for other in marks if other.station == place.station and other is not place and place.station]
+            twins = [
+                other
+                for other in marks
+                if other.station == place.station and other is not place and place.station
+            ]
             nearer = ca.SX(1.0)
             for twin in twins:
                 own, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))

@@ -1,4 +1,6 @@
-"""Derivatives of all that a solution has by parameters: of series over time, of section forces over time and xi/l."""
+"""Derivatives of all that a solution has by parameters: of series over time, of section forces over
+time and xi/l.
+"""
 
 from __future__ import annotations
 
@@ -29,40 +31,60 @@ _BLOCK = 1 << 20
 """Numbers of one argument that are made ready at once."""
 
 
-def series_slopes(graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung) -> dict[str, dict[Output, Array]]:
-    """The derivatives by each of some parameters of all that equilibrium determines of a solution of a graph, by output.
+def series_slopes(
+    graph: Program, solution: Solution, p: Array, by: Sequence[str], rung: Rung
+) -> dict[str, dict[Output, Array]]:
+    """The derivatives by each of some parameters of all that equilibrium determines of a solution
+    of a graph, by output.
 
-    Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made in doubles, by the compiler of a
-    rung, at loops that are closed. Where a quantity is NaN, so are they. Raises :class:`.SizeError` where they do not fit into
-    memory.
+    Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made
+    in doubles, by the compiler of a rung, at loops that are closed. Where a quantity is NaN, so are
+    they. Raises :class:`.SizeError` where they do not fit into memory.
     """
     series = [o for o in solution.quantities() if o.group != "section" and solution.determined(o)]
     rows = [o for o in solution.outputs if (o in series or o.along) and o in graph.outputs]
     sections = len(solution.table.forces) * len(solution.links_with_sections)
-    require("the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size))
+    require(
+        "the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size)
+    )
     numbers = [list(graph.data.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
-    for output, column in zip(rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
+    for output, column in zip(
+        rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True
+    ):
         found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
     changes = {output: found[output][:, 1:] for output in series}
     for link in solution.links_with_sections:
         changes |= dict(_along(graph, solution, link, found, p, numbers, rung))
-    return {name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()} for k, name in enumerate(by)}
+    return {
+        name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()}
+        for k, name in enumerate(by)
+    }
 
 
 @symbolic
-def at_instants(graph: Program, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
+def at_instants(
+    graph: Program, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung
+) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
     inner = total(graph, [graph.outputs[output] for output in rows], by)
     time, *driven, z, values = inner.sx_in()
-    own = differentiable(graph.instant)(time, *driven, z, values)[[graph.outputs[output] for output in rows]]
+    own = differentiable(graph.instant)(time, *driven, z, values)[
+        [graph.outputs[output] for output in rows]
+    ]
     inner = ca.Function("both", inner.sx_in(), [ca.vertcat(own.T, inner(time, *driven, z, values))])
     slopes = inner(time, *graph.motion.call([time, values]), z, values)
-    function = ca.Function("at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True})
+    function = ca.Function(
+        "at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True}
+    )
     extra = tuple(shlex.split(rung.flags))
 
     def build(compiler: codegen.Compiler) -> tuple[codegen.BatchLibrary, codegen.Library | None]:
-        followed = None if graph.newton is None else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
+        followed = (
+            None
+            if graph.newton is None
+            else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
+        )
         return codegen.load_batch(function, compiler, extra), followed
 
     made = compiled(rung, build)
@@ -73,13 +95,22 @@ def at_instants(graph: Program, rows: Sequence[Output], t: Array, p: Array, by: 
 
 
 def _along(
-    graph: Program, solution: Solution, link: str, found: Mapping[Output, Array], p: Array, by: Sequence[int], rung: Rung
+    graph: Program,
+    solution: Solution,
+    link: str,
+    found: Mapping[Output, Array],
+    p: Array,
+    by: Sequence[int],
+    rung: Rung,
 ) -> Iterator[tuple[Output, Array]]:
     """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
     function = section_slopes(graph.data, link, columns, by)
-    made = compiled(rung, lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))))
+    made = compiled(
+        rung,
+        lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))),
+    )
     library, xi, forces = None if made is None else made[1], solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
     unknown = np.full((solution.t.size, 1 + len(by)), np.nan)
@@ -95,7 +126,9 @@ def _along(
             "xi": (np.tile(xi, many)[:, None], 1),
             "p": (p[None], 0),
         }
-        grids[some] = at_points(function, library, many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
+        grids[some] = at_points(function, library, many * xi.size, given).reshape(
+            many, xi.size, len(forces), len(by)
+        )
     for k, force in enumerate(forces):
         if not made_of(left_open, link, force, table):
             yield Output("section", link, force), grids[:, :, k]

@@ -1,4 +1,6 @@
-"""Derivatives of a scene's quantities at points, for values of its parameters: by compiled code, or by CasADi's virtual machine."""
+"""Derivatives of a scene's quantities at points, for values of its parameters: by compiled code, or
+by CasADi's virtual machine.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ Numbers = npt.NDArray[np.intc]
 
 
 class AtPoints(NamedTuple):
-    """Of n points the value (n,), its derivative by time (n,), and those by all parameters (n, parameters)."""
+    """Of n points the value (n,), its derivative by time (n,), and those by all parameters (n,
+    parameters).
+    """
 
     value: Array
     rate: Array
@@ -36,7 +40,9 @@ class AtPoints(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Quantities of a scene and their derivatives by all parameters, at points: by ``library``, or by the virtual machine."""
+    """Quantities of a scene and their derivatives by all parameters, at points: by ``library``, or
+    by the virtual machine.
+    """
 
     graph: Program
     points: PointFunction
@@ -44,12 +50,25 @@ class Slopes:
     following: codegen.Library | None
 
     @classmethod
-    def of(cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness, rung: Rung) -> Slopes:
-        """Derive and compile those of some quantities, by the compiler of a rung; always in doubles."""
-        points, extra = PointFunction.of(graph, quantities, sharpness), tuple(shlex.split(rung.flags))
+    def of(
+        cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness, rung: Rung
+    ) -> Slopes:
+        """Derive and compile those of some quantities, by the compiler of a rung; always in
+        doubles.
+        """
+        points, extra = (
+            PointFunction.of(graph, quantities, sharpness),
+            tuple(shlex.split(rung.flags)),
+        )
 
-        def build(compiler: codegen.Compiler) -> tuple[codegen.PointsLibrary, codegen.Library | None]:
-            followed = None if graph.newton is None else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
+        def build(
+            compiler: codegen.Compiler,
+        ) -> tuple[codegen.PointsLibrary, codegen.Library | None]:
+            followed = (
+                None
+                if graph.newton is None
+                else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
+            )
             return codegen.load_points(points.function, compiler, extra), followed
 
         found = compiled(rung, build)
@@ -60,11 +79,15 @@ class Slopes:
         """The number of each quantity."""
         return {quantity: k for k, quantity in enumerate(self.points.quantities)}
 
-    def at(self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None = None) -> AtPoints:
-        """What is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, with iterated coordinates ``z`` (n, z) there.
+    def at(
+        self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None = None
+    ) -> AtPoints:
+        """What is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, with iterated coordinates
+        ``z`` (n, z) there.
 
-        With ``value`` (n,) a place along a link moves with the station that is there, on the side on which the force is nearer to
-        that; else it stands still. A ratio of what is not along a link may be NaN.
+        With ``value`` (n,) a place along a link moves with the station that is there, on the side
+        on which the force is nearer to that; else it stands still. A ratio of what is not along a
+        link may be NaN.
         """
         n = t.size
         found = AtPoints(np.empty(n), np.empty(n), np.empty((n, p.size)))
@@ -82,12 +105,16 @@ class Slopes:
         given = {name: np.ascontiguousarray(array, float) for name, array in given.items()}
         if self.library is not None:
             numbers = {"chosen": np.ascontiguousarray(chosen, np.intc)}
-            self.library.evaluate(given | numbers, {"found": found.value, "rate": found.rate, "slopes": found.slopes})
+            self.library.evaluate(
+                given | numbers, {"found": found.value, "rate": found.rate, "slopes": found.slopes}
+            )
         else:
             _interpreted(self.points, given, chosen, found, np.arange(n))
-        # A sum over all quantities, of which one has a weight, is no number where any of them is none:
-        # as where friction rests that the chosen one has nothing to do with.
-        broken = ~np.isfinite(np.column_stack(found)).all(axis=1) & (chosen < len(self.points.quantities))
+        # A sum over all quantities, of which one has a weight, is no number where any of them is
+        # none: as where friction rests that the chosen one has nothing to do with.
+        broken = ~np.isfinite(np.column_stack(found)).all(axis=1) & (
+            chosen < len(self.points.quantities)
+        )
         for k in np.unique(chosen[broken]):
             here = np.flatnonzero(broken & (chosen == k))
             _interpreted(self._alone(int(k)), given, np.zeros(here.size, np.intc), found, here)
@@ -96,7 +123,9 @@ class Slopes:
     def _alone(self, number: int) -> PointFunction:
         """The function of one quantity alone, which nothing else has a part in."""
         if number not in self._single:
-            self._single[number] = PointFunction.of(self.graph, self.points.quantities[number : number + 1])
+            self._single[number] = PointFunction.of(
+                self.graph, self.points.quantities[number : number + 1]
+            )
         return self._single[number]
 
     @symbolic_property
@@ -105,7 +134,9 @@ class Slopes:
         return {}
 
     def iterated(self, t: Array, p: Array, places: Array) -> Array:
-        """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed."""
+        """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``,
+        from which they are followed.
+        """
         return iterated(self.graph, self.following, t, p, places)
 
 

@@ -1,7 +1,8 @@
-"""Whether another peak of a quantity is as large as the one that is told, and changes otherwise with parameters.
+"""Whether another peak of a quantity is as large as the one that is told, and changes otherwise
+with parameters.
 
-The largest of both then has a kink at these parameters, and no derivative. What is as large and changes alike, as the same peak in
-the next turn, is no tie.
+The largest of both then has a kink at these parameters, and no derivative. What is as large and
+changes alike, as the same peak in the next turn, is no tie.
 """
 
 from __future__ import annotations
@@ -34,22 +35,37 @@ def ties(
     ends: Array,
     others: Array,
 ) -> npt.NDArray[np.bool_]:
-    """Which of the peaks (q,) of what is ``chosen`` tie with another one: see :func:`.peak_slopes`, which gave ``own``.
+    """Which of the peaks (q,) of what is ``chosen`` tie with another one: see :func:`.peak_slopes`,
+    which gave ``own``.
 
     ``others`` (q, n, 4) are the local peaks that are as large, as :class:`.Peaks` has them.
     """
     found = np.zeros(value.size, bool)
-    there = ~np.isnan(others[..., 0]) & (np.isfinite(value) & np.isfinite(own.slopes).all(axis=1))[:, None]
+    there = (
+        ~np.isnan(others[..., 0])
+        & (np.isfinite(value) & np.isfinite(own.slopes).all(axis=1))[:, None]
+    )
     # Of one there is no other.
     there &= np.count_nonzero(there, axis=1)[:, None] > 1
     if not there.any() or not p.size:
         return found
     numbers, (_, t, xi, values) = np.nonzero(there)[0], others[there].T
-    changed = peak_slopes(slopes, instants, p, chosen[numbers], (values, t, xi), ends, np.zeros(numbers.size, bool)).slopes
-    sized, told = np.sign(values)[:, None] * changed, np.sign(value[numbers])[:, None] * own.slopes[numbers]
-    # What rounding leaves of a slope that is nothing is no difference.
-    noise = _NOISE * np.nanmax(np.abs(own.slopes), axis=0) + _FAINT * np.abs(value[numbers, None]) / np.where(
-        p == 0.0, 1.0, np.abs(p)
+    changed = peak_slopes(
+        slopes, instants, p, chosen[numbers], (values, t, xi), ends, np.zeros(numbers.size, bool)
+    ).slopes
+    sized, told = (
+        np.sign(values)[:, None] * changed,
+        np.sign(value[numbers])[:, None] * own.slopes[numbers],
     )
-    found[numbers[(np.abs(sized - told) > _OTHERWISE * np.maximum(np.abs(sized), np.abs(told)) + noise).any(axis=1)]] = True
+    # What rounding leaves of a slope that is nothing is no difference.
+    noise = _NOISE * np.nanmax(np.abs(own.slopes), axis=0) + _FAINT * np.abs(
+        value[numbers, None]
+    ) / np.where(p == 0.0, 1.0, np.abs(p))
+    found[
+        numbers[
+            (
+                np.abs(sized - told) > _OTHERWISE * np.maximum(np.abs(sized), np.abs(told)) + noise
+            ).any(axis=1)
+        ]
+    ] = True
     return found

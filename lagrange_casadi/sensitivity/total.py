@@ -1,7 +1,8 @@
-"""Total derivatives of a graph's columns by parameters at an instant, all at once: one CasADi function.
+"""Total derivatives of a graph's columns by parameters at an instant, all at once: one CasADi
+function.
 
-They are those at a time that stands still. Driven coordinates change with the parameters of their laws, iterated ones by the
-implicit function theorem, as in :mod:`.points`.
+They are those at a time that stands still. Driven coordinates change with the parameters of their
+laws, iterated ones by the implicit function theorem, as in :mod:`.points`.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from ..equations.reciprocals import differentiable
 
 
 def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
-    """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some parameters, by their numbers.
+    """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some
+    parameters, by their numbers.
 
-    ``slopes`` is (parameters, rows), dense. It is made forward, a sweep a parameter, unless there are fewer rows: then backwards, a
-    sweep a row.
+    ``slopes`` is (parameters, rows), dense. It is made forward, a sweep a parameter, unless there
+    are fewer rows: then backwards, a sweep a row.
     """
     instant = differentiable(graph.instant)
     t, d, rate, acceleration, z, p = inputs = instant.sx_in()
@@ -30,7 +32,11 @@ def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
         moved[3] = ca.jtimes(step, ca.vertcat(d, p), ca.vertcat(moved[0], moved[4]))
     of, along = ca.vertcat(d, rate, acceleration, z, p), ca.vertcat(*moved)
     forward = len(by) <= len(rows)
-    slopes = ca.jtimes(out, of, along).T if forward else along.T @ ca.jtimes(out, of, ca.SX.eye(len(rows)), True)
+    slopes = (
+        ca.jtimes(out, of, along).T
+        if forward
+        else along.T @ ca.jtimes(out, of, ca.SX.eye(len(rows)), True)
+    )
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     return ca.Function("total", inputs, [ca.densify(slopes)], names, ["slopes"], {"cse": True})
 

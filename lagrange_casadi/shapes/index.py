@@ -1,4 +1,6 @@
-"""A page that shows all figures of a folder, for whoever has a browser and a folder of fifty pictures."""
+"""A page that shows all figures of a folder, for whoever has a browser and a folder of fifty
+pictures.
+"""
 
 from __future__ import annotations
 
@@ -19,26 +21,36 @@ MANIFEST = Manifest(
 
 _STYLE = """
 :root { color-scheme: light dark; }
-body { margin: 0 auto; max-width: 1700px; padding: 16px clamp(12px, 2vw, 32px); font: 15px/1.45 system-ui, sans-serif; }
+body { margin: 0 auto; max-width: 1700px; padding: 16px clamp(12px, 2vw, 32px);
+  font: 15px/1.45 system-ui, sans-serif; }
 h1 { font-size: 24px; margin: 0 0 4px; overflow-wrap: anywhere; }
 nav { columns: 16em; margin: 10px 0 18px; font-size: 13.5px; }
 nav a { display: block; overflow-wrap: anywhere; }
-main { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); gap: 16px; align-items: start; }
-figure { margin: 0; background: #fff; color: #222; border: 1px solid #8886; border-radius: 10px; padding: 8px; }
+main { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr));
+  gap: 16px; align-items: start; }
+figure { margin: 0; background: #fff; color: #222; border: 1px solid #8886; border-radius: 10px;
+  padding: 8px; }
 figure:target { outline: 3px solid #3b82f6; }
 figure img { display: block; width: 100%; height: auto; }
 figcaption { font-size: 13px; overflow-wrap: anywhere; }
-@media print { nav { display: none; } main { grid-template-columns: 1fr 1fr; gap: 8px; } figure { break-inside: avoid; } }
+@media print {
+  nav { display: none; }
+  main { grid-template-columns: 1fr 1fr; gap: 8px; }
+  figure { break-inside: avoid; }
+}
 """
 
 
 def write_index(title: str, names: Sequence[str], folder: Path) -> None:
-    """Write ``index.html`` beside the pictures of these names, in their order: a list of them, and all of them."""
+    """Write ``index.html`` beside the pictures of these names, in their order: a list of them, and
+    all of them.
+    """
     told = [html.escape(name) for name in names]
     links = "".join(f'<a href="#{name}">{name.replace("_", " ")}</a>\n' for name in told)
     figures = "".join(
-        f'<figure id="{name}"><a href="{name}.png"><img src="{name}.png" alt="{name.replace("_", " ")}" loading="lazy"></a>'
-        f"<figcaption>{name}.png</figcaption></figure>\n"
+        f'<figure id="{name}"><a href="{name}.png"><img src="{name}.png"'
+        f' alt="{name.replace("_", " ")}"'
+        f' loading="lazy"></a><figcaption>{name}.png</figcaption></figure>\n'
         for name in told
     )
     text = (

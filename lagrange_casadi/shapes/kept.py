@@ -18,15 +18,22 @@ def dump_specs(specs: Sequence[Spec]) -> str:
 
 
 def parse_specs(text: str) -> tuple[Spec, ...]:
-    """Specs from a file's text; none from an empty one. Raises :class:`StoreError` for what are none."""
+    """Specs from a file's text; none from an empty one.
+
+    Raises :class:`StoreError` for what are none.
+    """
     try:
-        return tuple(_parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures"))
+        return tuple(
+            _parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures")
+        )
     except (ValueError, TypeError, KeyError, RecursionError, DeclarationError) as error:
         raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
 
 
 def _parse(entry: dict[str, Any]) -> Spec:
     fields: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items() if key != "kind"
+        key: tuple(value) if isinstance(value, list) else value
+        for key, value in entry.items()
+        if key != "kind"
     }
     return KINDS[entry["kind"]](**fields)

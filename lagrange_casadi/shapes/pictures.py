@@ -16,7 +16,9 @@ PICTURES: dict[str, dict[str, None]] = {
     ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
     ".svg": {"Creator": None, "Date": None},
 }
-"""What names of pictures end in, and what these must not hold, so that a figure always gives the same bytes: programs, clocks."""
+"""What names of pictures end in, and what these must not hold, so that a figure always gives the
+same bytes: programs, clocks.
+"""
 
 
 _drawing = threading.RLock()
@@ -24,15 +26,21 @@ _drawing = threading.RLock()
 
 @contextmanager
 def one_at_a_time(settings: Any = None) -> Iterator[None]:
-    """Draw, by ``settings`` of matplotlib beside those that hold: a thread at a time, for they are those of the whole process."""
+    """Draw, by ``settings`` of matplotlib beside those that hold: a thread at a time, for they are
+    those of the whole process.
+    """
     from matplotlib import rc_context
 
     with _drawing, rc_context(settings):
         yield
 
 
-def save(figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = ".png", dpi: int = 150) -> None:
-    """Write a figure into a file, of the kind that one of :data:`PICTURES` tells, in ``dpi`` pixels an inch."""
+def save(
+    figure: Figure, file: BinaryIO | str | os.PathLike[str], ending: str = ".png", dpi: int = 150
+) -> None:
+    """Write a figure into a file, of the kind that one of :data:`PICTURES` tells, in ``dpi`` pixels
+    an inch.
+    """
     # Names within an SVG are drawn at random where nothing is given.
     with one_at_a_time({"svg.hashsalt": "lagrange_casadi"}):
         figure.savefig(file, format=ending.removeprefix("."), dpi=dpi, metadata=PICTURES[ending])

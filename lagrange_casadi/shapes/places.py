@@ -1,4 +1,6 @@
-"""Where the places of a picture are, over the instants of a solution, which must have its motion."""
+"""Where the places of a picture are, over the instants of a solution,
+which must have its motion.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,11 @@ from .shapes import Spot, joint_shapes, path_spots, shapes
 def drawn_spots(description: Description) -> Iterator[Spot]:
     """All between which something is drawn."""
     for shape in shapes(description):
-        own = [*shape.axis, *(at for arm in shape.arms for at in arm), *(at for plate in shape.plates for at in plate)]
+        own = [
+            *shape.axis,
+            *(at for arm in shape.arms for at in arm),
+            *(at for plate in shape.plates for at in plate),
+        ]
         yield from (Spot(shape.name, at) for at in own or [shape.centre or (0.0, 0.0, 0.0)])
     for joint in joint_shapes(description):
         yield from (joint.parent, joint.child)
@@ -47,10 +53,19 @@ def placed(solution: Solution, spot: Spot) -> Array:
 
 
 def require_poses(solution: Solution, what: str = "a report") -> None:
-    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would show it."""
-    lacking = [body for body in solution.description["bodies"] if Output("pose", body, "x") not in solution.outputs]
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would
+    show it.
+    """
+    lacking = [
+        body
+        for body in solution.description["bodies"]
+        if Output("pose", body, "x") not in solution.outputs
+    ]
     if lacking:
-        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (f" and {len(lacking) - 3} more" if len(lacking) > 3 else "")
+        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (
+            f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
+        )
         raise DeclarationError(
-            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
+            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of"
+            f" {told_of}; want motion too"
         )

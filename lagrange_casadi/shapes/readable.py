@@ -1,11 +1,21 @@
-"""Units that a person reads, chosen by how large values are: kN for 5000 N, mm for 0.02 m. The data of a figure stay in SI."""
+"""Units that a person reads, chosen by how large values are: kN for 5000 N, mm for 0.02 m.
+
+The data of a figure stay in SI.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
-STEPS = ((1e9, "G", 1e-9), (1e6, "M", 1e-6), (1e3, "k", 1e-3), (0.1, "", 1.0), (1e-4, "m", 1e3), (0.0, "µ", 1e6))
+STEPS = (
+    (1e9, "G", 1e-9),
+    (1e6, "M", 1e-6),
+    (1e3, "k", 1e-3),
+    (0.1, "", 1.0),
+    (1e-4, "m", 1e3),
+    (0.0, "µ", 1e6),
+)
 PREFIXED = ("N", "N m", "Pa", "W", "J", "N/m", "N s/m")
 
 
@@ -21,7 +31,9 @@ class Scale:
         return f"{self.factor * value:.{digits}g} {self.unit}"
 
     def put(self, axis: Any) -> None:
-        """Have the numbers of an axis, or of a colour bar, be in this unit; what is drawn stays as it is."""
+        """Have the numbers of an axis, or of a colour bar, be in this unit; what is drawn stays as
+        it is.
+        """
         if self.factor != 1.0:
             axis.set_major_formatter(self.tell)
 
@@ -31,11 +43,19 @@ class Scale:
 
 
 def scale_for(unit: str, size: float, si: bool = False) -> Scale:
-    """How values of a unit are read, of which the largest has a ``size``; as they are where ``si`` is asked for."""
+    """How values of a unit are read, of which the largest has a ``size``; as they are where ``si``
+    is asked for.
+    """
     if si or not size > 0.0:
         return Scale(1.0, unit)
     if unit == "m":
-        return Scale(1.0, "m") if size >= 1.0 else Scale(1e3, "mm") if size >= 1e-3 else Scale(1e6, "µm")
+        return (
+            Scale(1.0, "m")
+            if size >= 1.0
+            else Scale(1e3, "mm")
+            if size >= 1e-3
+            else Scale(1e6, "µm")
+        )
     if unit in PREFIXED:
         prefix, factor = next((prefix, factor) for least, prefix, factor in STEPS if size >= least)
         return Scale(factor, prefix + unit)

@@ -1,6 +1,8 @@
-"""What of a mechanism is drawn, from its description: bodies with their axes, arms and plates, joints, springs, points.
+"""What of a mechanism is drawn, from its description: bodies with their axes, arms and plates,
+joints, springs, points.
 
-Places and directions are three numbers, in a body's axes [m]; in the plane z is 0. How bodies move is not said here.
+Places and directions are three numbers, in a body's axes [m]; in the plane z is 0. How bodies move
+is not said here.
 """
 
 from __future__ import annotations
@@ -32,8 +34,9 @@ class Spot:
 class Shape:
     """How a body is drawn: lines between places, and plates, each a polygon.
 
-    ``kind`` is "link" where it has an axis that is drawn, "rigid" where only its centre is known, "point" for a point mass. Of a
-    rigid body that is held at its centre alone, as a gear or a rotor, there is a ``disc``, whose radius is the link's length.
+    ``kind`` is "link" where it has an axis that is drawn, "rigid" where only its centre is known,
+    "point" for a point mass. Of a rigid body that is held at its centre alone, as a gear or a
+    rotor, there is a ``disc``, whose radius is the link's length.
     """
 
     name: str
@@ -56,10 +59,12 @@ class Shape:
 
 @dataclass(frozen=True)
 class JointShape:
-    """How a joint is drawn: its kind, the places that it joins, and its axes as directions that its parent carries.
+    """How a joint is drawn: its kind, the places that it joins, and its axes as directions that its
+    parent carries.
 
-    ``second`` is the second axis of a universal joint, which its child carries. ``coordinates`` are the full names of its
-    coordinates, with their kinds, one for each axis; of a planar slot, of which the turn is no coordinate, there is one.
+    ``second`` is the second axis of a universal joint, which its child carries. ``coordinates`` are
+    the full names of its coordinates, with their kinds, one for each axis; of a planar slot, of
+    which the turn is no coordinate, there is one.
     """
 
     name: str
@@ -91,16 +96,42 @@ def shapes(description: Description) -> Iterator[Shape]:
         elif "centre" in body:
             centre = _place(body["centre"])
             outline = description.get("outlines", {}).get(name, ())
-            plates = (tuple((float(x), float(y), 0.0) for x, y in outline),) if outline else _plates(own)
-            # Two joints hold a bar between them; arms from the centre hold any others that lie in no plane.
-            ends = [(own[0], own[1])] if len(own) == 2 else [(centre, at) for at in own if at != centre]
+            plates = (
+                (tuple((float(x), float(y), 0.0) for x, y in outline),) if outline else _plates(own)
+            )
+            # Two joints hold a bar between them; arms from the centre hold any others that lie in
+            # no plane.
+            ends = (
+                [(own[0], own[1])]
+                if len(own) == 2
+                else [(centre, at) for at in own if at != centre]
+            )
             arms = () if plates else tuple(ends)
-            yield Shape(name, "rigid", length, mass, (), arms, plates, centre, 0.0 if arms or plates else max(length, 0.0))
+            yield Shape(
+                name,
+                "rigid",
+                length,
+                mass,
+                (),
+                arms,
+                plates,
+                centre,
+                0.0 if arms or plates else max(length, 0.0),
+            )
         else:
             axis = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
-            beside = [at for at in own if np.hypot(at[1], at[2]) > _FLAT * (abs(length) or 1.0) or not 0.0 <= at[0] <= length]
+            beside = [
+                at
+                for at in own
+                if np.hypot(at[1], at[2]) > _FLAT * (abs(length) or 1.0)
+                or not 0.0 <= at[0] <= length
+            ]
             plates = _plates([*axis, *beside]) if beside else ()
-            arms = () if plates else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
+            arms = (
+                ()
+                if plates
+                else tuple(((min(max(at[0], 0.0), length), 0.0, 0.0), at) for at in beside)
+            )
             yield Shape(name, "link", length, mass, axis, arms, plates, None, 0.0)
 
 
@@ -113,7 +144,9 @@ def joint_shapes(description: Description) -> Iterator[JointShape]:
             axes = tuple(_vector(axis) for axis in joint["axes"])
             # The child carries the second axis of a universal joint.
             second = (
-                _vector(np.array(joint["turned"]) @ joint["axes"][1]) if joint["kind"] == "universal" and len(axes) > 1 else None
+                _vector(np.array(joint["turned"]) @ joint["axes"][1])
+                if joint["kind"] == "universal" and len(axes) > 1
+                else None
             )
             coordinates = tuple(joint["coordinates"].items())
         else:
@@ -159,7 +192,9 @@ def _vector(components: Any) -> Place:
 
 
 def _plates(places: Sequence[Place]) -> tuple[tuple[Place, ...], ...]:
-    """The convex polygon of three places or more that lie in one plane and not in a line; else nothing."""
+    """The convex polygon of three places or more that lie in one plane and not in a line; else
+    nothing.
+    """
     if len(places) < 3:
         return ()
     points = np.array(places)
@@ -172,13 +207,17 @@ def _plates(places: Sequence[Place]) -> tuple[tuple[Place, ...], ...]:
 
 
 def _hull(points: Array) -> list[int]:
-    """The corners of a convex polygon around points (n, 2), in sequence (Andrew's monotone chain)."""
+    """The corners of a convex polygon around points (n, 2), in
+    sequence (Andrew's monotone chain).
+    """
     order = sorted(range(len(points)), key=lambda k: (points[k][0], points[k][1]))
 
     def chain(numbers: Sequence[int]) -> list[int]:
         found: list[int] = []
         for k in numbers:
-            while len(found) > 1 and _turn(points[found[-2]], points[found[-1]], points[k]) <= _FLAT:
+            while (
+                len(found) > 1 and _turn(points[found[-2]], points[found[-1]], points[k]) <= _FLAT
+            ):
                 found.pop()
             found.append(k)
         return found[:-1]

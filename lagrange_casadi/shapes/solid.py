@@ -1,4 +1,6 @@
-"""What of a mechanism in space is drawn at an instant: lines and marks, from a solution's poses and its description."""
+"""What of a mechanism in space is drawn at an instant: lines and marks, from a solution's poses and
+its description.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ _AXIS = 0.045
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A polyline (n, 3) in ground axes [m]; ``body`` is that of which it is a part, where it is one's."""
+    """A polyline (n, 3) in ground axes [m]; ``body`` is that of which it is a part, where it is
+    one's.
+    """
 
     points: Array
     colour: str
@@ -53,7 +57,9 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A mark at a place (3,) in ground axes [m]; ``body`` is that whose place it shows, where it shows one's."""
+    """A mark at a place (3,) in ground axes [m]; ``body`` is that whose place it shows, where it
+    shows one's.
+    """
 
     place: Array
     shape: str
@@ -85,15 +91,21 @@ def direction_of(solution: Solution, body: str, local: Any) -> Array:
 def _on_ground_axes(axes: Array | None, local: Any) -> Array:
     """Components on a body's axes, in ground axes; what it has no axes for is not asked of it."""
     assert axes is not None
-    found: Array = np.sum([component * axes[:, k] for k, component in enumerate(local) if component], axis=0)
+    found: Array = np.sum(
+        [component * axes[:, k] for k, component in enumerate(local) if component], axis=0
+    )
     return found
 
 
 def paths_of(solution: Solution) -> dict[str, Array]:
     """The ways of the joints' points, and of declared points, over all instants: (t, 3) by name."""
     description = solution.description
-    found = {name: place_of(solution, joint["child"]) for name, joint in description["joints"].items()}
-    return found | {name: place_of(solution, point) for name, point in description.get("paths", {}).items()}
+    found = {
+        name: place_of(solution, joint["child"]) for name, joint in description["joints"].items()
+    }
+    return found | {
+        name: place_of(solution, point) for name, point in description.get("paths", {}).items()
+    }
 
 
 def cloud_of(solution: Solution) -> Array:
@@ -119,7 +131,9 @@ def lines_of(solution: Solution) -> Iterator[Line]:
 
 
 def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator[Line]:
-    """Short lines along the axes about which joints turn, and the lines on which they slide as far as they ever do."""
+    """Short lines along the axes about which joints turn, and the lines on which they slide as far
+    as they ever do.
+    """
     for joint in solution.description["joints"].values():
         kinds, directions = list(joint["coordinates"].values()), joint["axes"]
         if joint["kind"] in ("spherical", "free", "planar"):
@@ -127,30 +141,54 @@ def axes_of(solution: Solution, all_instants: Solution, size: float) -> Iterator
         parent, child = joint["parent"], joint["child"]
         if kinds and kinds[0] == "slide":
             ways = (
-                np.einsum("tk,tk->t", place_of(s, child) - place_of(s, parent), direction_of(s, parent["body"], directions[0]))
+                np.einsum(
+                    "tk,tk->t",
+                    place_of(s, child) - place_of(s, parent),
+                    direction_of(s, parent["body"], directions[0]),
+                )
                 for s in (all_instants, solution)
             )
             reach = np.concatenate([*ways, [0.0]])
             ends = np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])
             along = direction_of(solution, parent["body"], directions[0])[0]
-            yield Line(place_of(solution, parent)[0] + ends[:, None] * along, "0.5", 0.9, (0, (6, 4)), order=1)
+            yield Line(
+                place_of(solution, parent)[0] + ends[:, None] * along,
+                "0.5",
+                0.9,
+                (0, (6, 4)),
+                order=1,
+            )
             continue
         for number, direction in enumerate(directions):
             # The second axis of a universal joint is carried by the child.
-            carrier, local = (child, np.array(joint["turned"]) @ direction) if number else (parent, direction)
+            carrier, local = (
+                (child, np.array(joint["turned"]) @ direction) if number else (parent, direction)
+            )
             along = _AXIS * size * direction_of(solution, carrier["body"], local)[0]
-            yield Line(place_of(solution, child)[0] + np.outer([-1.0, 1.0], along), "black", 1.2, order=4)
+            yield Line(
+                place_of(solution, child)[0] + np.outer([-1.0, 1.0], along), "black", 1.2, order=4
+            )
 
 
 def marks_of(solution: Solution) -> Iterator[Mark]:
-    """Joints, point masses, centres of rigid bodies and declared points at a solution's first instant."""
+    """Joints, point masses, centres of rigid bodies and declared points at a solution's first
+    instant.
+    """
     description = solution.description
     for name, body in description["bodies"].items():
         at = {"body": name} | (body.get("centre") or {"x": 0.0, "y": 0.0, "z": 0.0})
         colour = colour_of(solution, name)
         if body["length"] is None or "centre" in body:
             armed = any(segment[0] == name for segment in _segments(solution))
-            yield Mark(place_of(solution, at)[0], "s", colour, 4.0 if armed else BLOCK, colour, name, order=4)
+            yield Mark(
+                place_of(solution, at)[0],
+                "s",
+                colour,
+                4.0 if armed else BLOCK,
+                colour,
+                name,
+                order=4,
+            )
     for joint in description["joints"].values():
         shape, fill, width = MARKS[joint["kind"]]
         yield Mark(place_of(solution, joint["child"])[0], shape, fill, width)
@@ -172,14 +210,21 @@ def colour_of(solution: Solution, body: str) -> str:
 
 
 def plates_of(solution: Solution) -> Iterator[tuple[str, Array]]:
-    """The plates of bodies at a solution's first instant: the body, and the corners (n, 3) in ground axes [m]."""
+    """The plates of bodies at a solution's first instant: the body, and the corners (n, 3) in
+    ground axes [m].
+    """
     for shape in shapes(solution.description):
         for plate in shape.plates:
-            yield shape.name, np.array([place_of(solution, _point(shape.name, corner))[0] for corner in plate])
+            yield (
+                shape.name,
+                np.array([place_of(solution, _point(shape.name, corner))[0] for corner in plate]),
+            )
 
 
 def _segments(solution: Solution) -> Iterator[tuple[str, Any, Any]]:
-    """The lines of all bodies as the described points that they join, and of springs: axes, arms, and edges of plates."""
+    """The lines of all bodies as the described points that they join, and of springs: axes, arms,
+    and edges of plates.
+    """
     for shape in shapes(solution.description):
         if shape.axis:
             start, stop = (_point(shape.name, place) for place in shape.axis)

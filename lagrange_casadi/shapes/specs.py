@@ -1,6 +1,7 @@
 """What is drawn of a solution, declared as frozen specs, which a case may give and a file keeps.
 
-Specs are known wherever cases are. How each is drawn is known in :mod:`.figures.figures`, imported when something is drawn.
+Specs are known wherever cases are. How each is drawn is known in :mod:`.figures.figures`, imported
+when something is drawn.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ class _Drawn:
 
     @public
     def draw(self, solution: Solution, si: bool = False) -> Figure:
-        """The figure; axes have the units that people read, or with ``si`` those of SI, without prefixes."""
+        """The figure; axes have the units that people read, or with ``si`` those of SI, without
+        prefixes.
+        """
         found: Figure = method("Spec.draw")(self, solution, si)
         return found
 
@@ -32,9 +35,11 @@ class _Drawn:
 @public
 @dataclass(frozen=True)
 class TimePlot(_Drawn):
-    """Quantities over time, those of each unit on axes of their own; of a section force, one curve for each ratio in ``xi``.
+    """Quantities over time, those of each unit on axes of their own; of a section force, one curve
+    for each ratio in ``xi``.
 
-    ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which ``note`` then names.
+    ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which
+    ``note`` then names.
     """
 
     kind: ClassVar[str] = "time"
@@ -71,7 +76,8 @@ class SpanPlot(_Drawn):
 @public
 @dataclass(frozen=True)
 class SectionMaps(_Drawn):
-    """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned.
+    """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than
+    the picture is thinned.
 
     In space there are six, and the resultants of shear and bending.
     """
@@ -88,11 +94,13 @@ class SectionMaps(_Drawn):
 @public
 @dataclass(frozen=True)
 class MechanismDrawing(_Drawn):
-    """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself; postures that are the same once.
+    """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself;
+    postures that are the same once.
 
-    With ``overlay`` they are in one picture, the first strong and the others faint. One in space is always drawn so: from above,
-    from the front, from the right, and from ``azimuth`` and ``elevation`` [deg], the angle about the upward axis, and that above
-    the level, of the direction from which it is looked at. The upward axis is the ground's axis that is most against gravity.
+    With ``overlay`` they are in one picture, the first strong and the others faint. One in space is
+    always drawn so: from above, from the front, from the right, and from ``azimuth`` and
+    ``elevation`` [deg], the angle about the upward axis, and that above the level, of the direction
+    from which it is looked at. The upward axis is the ground's axis that is most against gravity.
     """
 
     kind: ClassVar[str] = "drawing"
@@ -110,7 +118,9 @@ class MechanismDrawing(_Drawn):
 @public
 @dataclass(frozen=True)
 class StrengthPlot(_Drawn):
-    """Von Mises' stress of a link that has a beam, over time and along it, and its swings in Goodman's diagram."""
+    """Von Mises' stress of a link that has a beam, over time and along it, and its swings in
+    Goodman's diagram.
+    """
 
     kind: ClassVar[str] = "strength"
     name: str
@@ -124,7 +134,9 @@ class StrengthPlot(_Drawn):
 @public
 @dataclass(frozen=True)
 class UtilisationPlot(_Drawn):
-    """How far links that have a beam are used, and joints that have pins or bearings, against each way to fail."""
+    """How far links that have a beam are used, and joints that have pins or bearings, against each
+    way to fail.
+    """
 
     kind: ClassVar[str] = "utilisation"
     name: str
@@ -133,14 +145,23 @@ class UtilisationPlot(_Drawn):
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws."""
-        reactions = [str(Output("reaction", joint, member)) for joint in self.joints for member in ("fx", "fy")]
-        return (*(name for link in self.links for name in SectionMaps(self.name, link).needs()), *reactions)
+        reactions = [
+            str(Output("reaction", joint, member))
+            for joint in self.joints
+            for member in ("fx", "fy")
+        ]
+        return (
+            *(name for link in self.links for name in SectionMaps(self.name, link).needs()),
+            *reactions,
+        )
 
 
 @public
 @dataclass(frozen=True)
 class DeflectionPlot(_Drawn):
-    """The deflection of a link that has a beam, over time and along it, and the harmonics of its bending."""
+    """The deflection of a link that has a beam, over time and along it, and the harmonics of its
+    bending.
+    """
 
     kind: ClassVar[str] = "deflection"
     name: str
@@ -151,8 +172,25 @@ class DeflectionPlot(_Drawn):
         return SectionMaps(self.name, self.link).needs()
 
 
-Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot | DeflectionPlot
+Spec = (
+    TimePlot
+    | SpanPlot
+    | SectionMaps
+    | MechanismDrawing
+    | StrengthPlot
+    | UtilisationPlot
+    | DeflectionPlot
+)
 KINDS: dict[str, type[Spec]] = {
-    spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot, DeflectionPlot)
+    spec.kind: spec
+    for spec in (
+        TimePlot,
+        SpanPlot,
+        SectionMaps,
+        MechanismDrawing,
+        StrengthPlot,
+        UtilisationPlot,
+        DeflectionPlot,
+    )
 }
 """By the word for it in files."""

@@ -1,4 +1,6 @@
-"""From where a mechanism in space is looked at: orthographic views by azimuth and elevation, and how four of them share a page."""
+"""From where a mechanism in space is looked at: orthographic views by azimuth and elevation, and
+how four of them share a page.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,11 @@ _BELOW, _ABOVE = 0.6, 0.35
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """An orthographic view: the directions in ground axes that are to the right and up on the page, and its title.
+    """An orthographic view: the directions in ground axes that are to the right and up on the page,
+    and its title.
 
-    Of a view along an axis the page shows two coordinates, ``across`` and ``upward``; one may run backward.
+    Of a view along an axis the page shows two coordinates, ``across`` and ``upward``; one may run
+    backward.
     """
 
     title: str
@@ -37,13 +41,17 @@ class View:
 
     @property
     def coordinates(self) -> tuple[str, str] | None:
-        """The coordinates to the right and up with their signs, as "x" or "-z"; None where the view is along no axis."""
+        """The coordinates to the right and up with their signs, as "x" or "-z"; None where the view
+        is along no axis.
+        """
         named = [_named(direction) for direction in (self.right, self.up)]
         return (named[0], named[1]) if all(named) else None
 
 
 def upright(gravity: Sequence[float]) -> Array:
-    """The ground's axes as rows: to the right, away and up on the page; up is the axis that is most against gravity."""
+    """The ground's axes as rows: to the right, away and up on the page; up is the axis that is most
+    against gravity.
+    """
     g = np.array(gravity, float)
     k = 2 if not g.any() else int(np.argmax(np.abs(g) * [1.0, 1.0, 1.0 + 1e-9]))
     up = np.zeros(3)
@@ -53,7 +61,8 @@ def upright(gravity: Sequence[float]) -> Array:
 
 
 def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View:
-    """The view from a direction [deg]: ``azimuth`` about the upward axis, from that to the right; ``elevation`` above the level.
+    """The view from a direction [deg]: ``azimuth`` about the upward axis, from that to the right;
+    ``elevation`` above the level.
 
     ``axes`` are those of :func:`upright`.
     """
@@ -63,8 +72,12 @@ def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View
     return View(title or told, right, up)
 
 
-def views(gravity: Sequence[float], azimuth: float, elevation: float) -> tuple[View, View, View, View]:
-    """From above, a view of one's own, from the front, from the right: as rows of a page in third-angle projection."""
+def views(
+    gravity: Sequence[float], azimuth: float, elevation: float
+) -> tuple[View, View, View, View]:
+    """From above, a view of one's own, from the front, from the right: as rows of a page in
+    third-angle projection.
+    """
     axes = upright(gravity)
     right, away, up = (_named(axis) for axis in axes)
     front = away.removeprefix("-") if away.startswith("-") else f"-{away}"
@@ -78,9 +91,11 @@ def views(gravity: Sequence[float], azimuth: float, elevation: float) -> tuple[V
 
 @dataclass(frozen=True)
 class Page:
-    """A page of four views, in two rows: its size [inch], their one scale [inch/m], and of each its place on it and what it shows.
+    """A page of four views, in two rows: its size [inch], their one scale [inch/m], and of each its
+    place on it and what it shows.
 
-    ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top [m].
+    ``places`` are left, bottom, width and height [inch], ``boxes`` are left, right, bottom and top
+    [m].
     """
 
     size: tuple[float, float]
@@ -89,10 +104,17 @@ class Page:
     boxes: tuple[tuple[float, float, float, float], ...]
 
 
-def page(four: Sequence[View], points: Array, margins: Sequence[float], head: float, foot: float) -> Page:
-    """A page on which points (n, 3) fit, with a margin [m] around those of each view, a ``head`` and a ``foot`` [inch]."""
+def page(
+    four: Sequence[View], points: Array, margins: Sequence[float], head: float, foot: float
+) -> Page:
+    """A page on which points (n, 3) fit, with a margin [m] around those of each view, a ``head``
+    and a ``foot`` [inch].
+    """
     flat = [one.on_page(points) for one in four]
-    ends = [(p.min(axis=0) - margin, p.max(axis=0) + margin) for p, margin in zip(flat, margins, strict=True)]
+    ends = [
+        (p.min(axis=0) - margin, p.max(axis=0) + margin)
+        for p, margin in zip(flat, margins, strict=True)
+    ]
     spans = [high - low for low, high in ends]
     columns = [max(spans[0][0], spans[2][0]), max(spans[1][0], spans[3][0])]
     rows = [max(spans[0][1], spans[1][1]), max(spans[2][1], spans[3][1])]
@@ -104,7 +126,9 @@ def page(four: Sequence[View], points: Array, margins: Sequence[float], head: fl
         row, column = divmod(k, 2)
         half = np.array([columns[column], rows[row]]) / 2
         middle = (low + high) / 2
-        boxes.append((*(middle[0] + half[0] * np.array([-1, 1])), *(middle[1] + half[1] * np.array([-1, 1]))))
+        boxes.append(
+            (*(middle[0] + half[0] * np.array([-1, 1])), *(middle[1] + half[1] * np.array([-1, 1])))
+        )
         places.append((lefts[column], bottoms[row], scale * columns[column], scale * rows[row]))
     size = (lefts[1] + scale * columns[1] + _RIGHT, bottoms[0] + scale * rows[0] + _ABOVE + head)
     return Page(size, scale, tuple(places), tuple(boxes))
@@ -119,7 +143,9 @@ def _cosine_and_sine(degrees: float) -> tuple[float, float]:
 
 
 def _named(direction: Array) -> str:
-    """The ground's axis that a direction is, with its sign where it is backward; nothing where it is none."""
+    """The ground's axis that a direction is, with its sign where it is backward; nothing where it
+    is none.
+    """
     along = np.flatnonzero(direction)
     if along.size != 1:
         return ""

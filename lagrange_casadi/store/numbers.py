@@ -15,16 +15,28 @@ from .untrusted import check_chunks, check_dataset, shown
 
 
 def drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
-    """The coordinate by which instants were asked for. Raises ``ValueError`` for that of a joint which is not driven."""
-    values, joint, unit = numbers(dataset, shape), shown(dataset.attrs["joint"]), shown(dataset.attrs["units"])
+    """The coordinate by which instants were asked for.
+
+    Raises ``ValueError`` for that of a joint which is not driven.
+    """
+    values, joint, unit = (
+        numbers(dataset, shape),
+        shown(dataset.attrs["joint"]),
+        shown(dataset.attrs["units"]),
+    )
     kind = motions_of(description).get(joint)
     if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
-        raise ValueError(f"the instants are over '{joint}' in {unit}, which is no drive's coordinate")
+        raise ValueError(
+            f"the instants are over '{joint}' in {unit}, which is no drive's coordinate"
+        )
     return DriveAxis(joint, unit, values)
 
 
 def numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
-    """The numbers of a dataset, of a shape if one is given. Raises ``ValueError`` for what has others."""
+    """The numbers of a dataset, of a shape if one is given.
+
+    Raises ``ValueError`` for what has others.
+    """
     check_numbers(dataset, shape)
     return np.asarray(dataset[()], np.float64)
 

@@ -1,4 +1,6 @@
-"""A file of this program is opened to read: held to its seal, its schema and its version looked at, before anything is believed."""
+"""A file of this program is opened to read: held to its seal, its schema and its version looked at,
+before anything is believed.
+"""
 
 from __future__ import annotations
 
@@ -24,13 +26,20 @@ _KNOWN = {
 
 @contextmanager
 def opened_file(
-    path: str | os.PathLike[str], schema: str, versions: range, kind: str, of: str = "", seen: Seen | None = None
+    path: str | os.PathLike[str],
+    schema: str,
+    versions: range,
+    kind: str,
+    of: str = "",
+    seen: Seen | None = None,
 ) -> Iterator[h5py.File]:
-    """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its versions those ``of`` it.
+    """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its
+    versions those ``of`` it.
 
-    All of it is held to its seal, unless it is still the one that was ``seen``. Raises :class:`PathError` for none,
-    :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
-    reading it raises becomes a :class:`StoreError`.
+    All of it is held to its seal, unless it is still the one that was ``seen``. Raises
+    :class:`PathError` for none, :class:`StoreError` for another file, another version, and one that
+    was not finished or is not as it was written; whatever reading it raises becomes a
+    :class:`StoreError`.
     """
     if not seen or not seen.is_at(path):
         _refuse_other(path, kind_of(path) or schema, schema, kind)
@@ -48,7 +57,10 @@ def opened_file(
             if not isinstance(written, np.integer) or written not in versions:
                 told = written if isinstance(written, np.integer) else repr(written)
                 valid = f"{versions[0]} to {versions[-1]}"
-                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions {valid}: run it again")
+                raise StoreError(
+                    f"{path}: schema version {told}{of}, this program reads versions {valid}: run"
+                    " it again"
+                )
             if not file.attrs.get("complete", False):
                 raise StoreError(f"{path}: was not written to its end")
             yield file
@@ -57,5 +69,9 @@ def opened_file(
 def _refuse_other(path: str | os.PathLike[str], found: Any, schema: str, kind: str) -> None:
     """Raise :class:`StoreError` for a file of another schema."""
     if not isinstance(found, str) or found != schema:
-        what = f"but {_KNOWN[found]}" if isinstance(found, str) and found in _KNOWN else f"its attribute 'schema' is {found!r}"
+        what = (
+            f"but {_KNOWN[found]}"
+            if isinstance(found, str) and found in _KNOWN
+            else f"its attribute 'schema' is {found!r}"
+        )
         raise StoreError(f"{path}: not {kind}, {what}")

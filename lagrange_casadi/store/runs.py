@@ -1,8 +1,8 @@
 """A solution in an HDF5 file, and back: the schema is written down in ``docs/schema.md``.
 
-A file is written under a temporary name beside its place, flushed, sealed, and renamed: a reader finds the file of before, or the
-whole new one. What is read is held to its seal before HDF5 sees it (:mod:`.seal`), and looked at before it is believed
-(:mod:`.untrusted`).
+A file is written under a temporary name beside its place, flushed, sealed, and renamed: a reader
+finds the file of before, or the whole new one. What is read is held to its seal before HDF5 sees it
+(:mod:`.seal`), and looked at before it is believed (:mod:`.untrusted`).
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ from .untrusted import check_links, parsed, shown
 from .words import conventions, say, unlike, unlike_conventions
 
 SCHEMA_VERSION = 7
-"""Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
-those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses, derivatives by
-parameters or ranges of holding efforts, and nothing that elasticity tells; all from 2 on are still written."""
+"""Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3
+of planar mechanisms alone, those of 4 have no loads along links, those of 5 no rotary inertia of
+slices, those of 6 no friction, stresses, derivatives by parameters or ranges of holding efforts,
+and nothing that elasticity tells; all from 2 on are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
 _READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)
@@ -54,14 +55,19 @@ _LATEST = ("friction", "stress", "utilisation", "deflection")
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
-_AXES = {"t": ("s", {"long_name": "time"}), "xi": ("1", {"long_name": "place along a link, ratio xi/l"})}
+_AXES = {
+    "t": ("s", {"long_name": "time"}),
+    "xi": ("1", {"long_name": "place along a link, ratio xi/l"}),
+}
 _OVER = "over"
 _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 """Attributes that a dataset may have beside those of what it holds."""
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
-"""Of the largest coordinate: how far a motion's may be from that by which its instants were asked for."""
+"""Of the largest coordinate: how far a motion's may be from that by which its instants were asked
+for.
+"""
 
 _KIND = "the file of a run"
 _TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".json", ".mat", ".parquet")
@@ -76,16 +82,22 @@ _OTHERS = {
 def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
     """Write a solution, replacing the file at ``path`` whole or not at all.
 
-    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
-    the file cannot be written.
+    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn.
+    Raises :class:`StoreError` where the file cannot be written.
     """
     if "\0" in figures or not figures.isascii():
-        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}")
+        raise DeclarationError(
+            f"save: figures: expected JSON of letters that every file can hold, got {figures!r:.60}"
+        )
     target = Path(path)
     check_target(target)
     _require_room(solution, target)
     with replacing(target, hdf5=True) as draft:
-        with uninterrupted() as breathe, PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+        with (
+            uninterrupted() as breathe,
+            PatientFile(draft, "x+") as bytes_,
+            h5py.File(bytes_, "w", track_order=True) as file,
+        ):
             try:
                 _write(file, solution, figures, breathe)
             except RuntimeError as error:  # of HDF5
@@ -96,7 +108,8 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
 
 
 def check_target(target: Path, own: str = SCHEMA) -> None:
-    """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and nothing else that holds anything.
+    """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and
+    nothing else that holds anything.
 
     Nor may its name end as that of a table, which it is not.
 
@@ -105,8 +118,8 @@ def check_target(target: Path, own: str = SCHEMA) -> None:
     if target.suffix.lower() in _TABLES:
         name = target.with_suffix(".h5").name
         raise PathError(
-            f"cannot write {target}: a run is kept as HDF5, under a name such as {name}; a table is "
-            "what solution.to_pandas().to_csv(...) writes"
+            f"cannot write {target}: a run is kept as HDF5, under a name such as {name}; a table is"
+            " what solution.to_pandas().to_csv(...) writes"
         )
     check_writable(target, hdf5=True)
     place = settled(target)
@@ -114,7 +127,11 @@ def check_target(target: Path, own: str = SCHEMA) -> None:
         return
     schema = kind_of(place)
     if schema != own:
-        unsealed = "an HDF5 file of something else, or without its seal" if is_hdf5(place) else "no file of HDF5"
+        unsealed = (
+            "an HDF5 file of something else, or without its seal"
+            if is_hdf5(place)
+            else "no file of HDF5"
+        )
         kind = (_OTHERS | {None: unsealed}).get(schema, "an HDF5 file of something else")
         raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
@@ -124,25 +141,40 @@ def _require_room(solution: Solution, target: Path) -> None:
     size = (
         8
         * solution.t.size
-        * (len(solution.series) + len(solution.table.forces) * solution.xi.size * len(solution.links_with_sections))
-    ) + sum(values.nbytes for found in solution.sensitivities.by.values() for values in found.values())
+        * (
+            len(solution.series)
+            + len(solution.table.forces) * solution.xi.size * len(solution.links_with_sections)
+        )
+    ) + sum(
+        values.nbytes for found in solution.sensitivities.by.values() for values in found.values()
+    )
     try:
         free = shutil.disk_usage(target.parent).free
     except OSError:
         return
     if size > free:
-        raise StoreError(f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has {free / 1e9:.3g} GB left")
+        raise StoreError(
+            f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has"
+            f" {free / 1e9:.3g} GB left"
+        )
 
 
 @public
 def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
+    """Read a solution.
+
+    Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for
+    none.
+    """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return _read(file)
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
-    """How the case wants to be drawn, as it was given to :func:`save`. Raises what :func:`load` does."""
+    """How the case wants to be drawn, as it was given to :func:`save`.
+
+    Raises what :func:`load` does.
+    """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return shown(file.attrs.get("figures", ""))
 
@@ -151,27 +183,34 @@ def figure_specs(path: str | os.PathLike[str]) -> str:
 def check(path: str | os.PathLike[str]) -> list[str]:
     """What is wrong with a file, one line each; nothing where it is whole and consistent.
 
-    Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
-    be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak. Raises what :func:`load` does.
+    Every dataset is read, so its checksum is verified; every value must be finite, every axis have
+    its scale, every unit and sign be the schema's; and the section grids must be what the laws
+    give, to 1e-12 of their peak. Raises what :func:`load` does.
     """
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
-        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate])
+        outputs = dict.fromkeys(
+            [*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate]
+        )
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
             found += unlike_conventions(file, solution.table)
             found += _check_axes(file, solution)
             found += _check_drive_axis(solution)
-            found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
+            found += [
+                finding for output in outputs for finding in _check_dataset(file, solution, output)
+            ]
             found += check_slopes(file, solution)
             found += _check_certificate(file, solution)
     return found
 
 
 def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """The stored residuals and what is said of them, and the same computed anew from what is stored."""
+    """The stored residuals and what is said of them, and the same computed anew from what is
+    stored.
+    """
     worse = f"is worse than the tolerance {solution.tolerance:.3g}"
     for name, value in solution.failed.items():
         yield f"certificate/{name}: {value:.3g} {worse}"
@@ -179,14 +218,19 @@ def _check_certificate(file: h5py.File, solution: Solution) -> Iterator[str]:
     if solution.certificate and blur(solution) < LOOSE:
         for name, value in replace(solution, certificate=certify(solution)).failed.items():
             yield f"{name}: {value:.3g}, computed anew, {worse}"
-    if not TOLERANCE <= solution.tolerance <= LOOSE or bool(file.attrs["certified"]) != solution.certified:
+    if (
+        not TOLERANCE <= solution.tolerance <= LOOSE
+        or bool(file.attrs["certified"]) != solution.certified
+    ):
         yield "certificate: the verdict or its tolerance is not what follows from the residuals"
 
 
 def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
     place, quantity, name = _place(output), output.meant(solution.table), output
     dataset = file[place]
-    check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
+    check_numbers(
+        dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes]
+    )
     gap, finite = _read_through(dataset, solution, name)
     if solution.determined(name):
         if not finite:
@@ -208,19 +252,26 @@ def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
             yield f"{axis}: holds values that are not finite"
         yield from unlike(file[axis], *_AXES[axis])
     told = values_of(solution.description)
-    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or solution.case != solution.description["name"]:
+    if (
+        parsed(file.attrs["parameters"], {str: float}, "parameters") != told
+        or solution.case != solution.description["name"]
+    ):
         yield "case or parameters: differ from those of the mechanism"
 
 
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
-    """The coordinate by which instants were asked for: finite, in equal steps, and that of the motion, where this is there."""
+    """The coordinate by which instants were asked for: finite, in equal steps, and that of the
+    motion, where this is there.
+    """
     if solution.over is None:
         return
     values = solution.over.values
     if not np.isfinite(values).all() or not are_even(values):
         yield f"{_OVER}: is not in equal steps"
     joint = solution.over.joint
-    motion, rate = (solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate"))
+    motion, rate = (
+        solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate")
+    )
     allowed = _OVER_TOLERANCE.get(solution.provenance.precision, 0.0) * float(np.abs(values).max())
     if rate is not None:
         # Times are doubles, and a fast drive far from zero moves on between two of them.
@@ -241,7 +292,14 @@ def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> 
         stored = dataset[block]
         finite = finite and bool((np.isfinite(stored) | (rests & np.isnan(stored))).all())
         if law and basis:
-            gap = float(np.fmax(gap, np.fmax.reduce(np.abs(stored - law.during(block).on_grid(output.member, basis)), axis=None)))
+            gap = float(
+                np.fmax(
+                    gap,
+                    np.fmax.reduce(
+                        np.abs(stored - law.during(block).on_grid(output.member, basis)), axis=None
+                    ),
+                )
+            )
     return gap, finite
 
 
@@ -282,10 +340,14 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["outputs"] = json.dumps(list(solution.series))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     if solution.elasticity != Elasticity():
-        file.attrs["by_elasticity"] = json.dumps([str(output) for output in solution.elasticity.told])
+        file.attrs["by_elasticity"] = json.dumps(
+            [str(output) for output in solution.elasticity.told]
+        )
         file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
     if solution.held:
-        file.attrs["holding"] = json.dumps({name: held.untold for name, held in solution.held.items()})
+        file.attrs["holding"] = json.dumps(
+            {name: held.untold for name, held in solution.held.items()}
+        )
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
@@ -303,19 +365,31 @@ def _version(solution: Solution) -> int:
     return _AT_POINTS if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
-def _add(file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array) -> None:
+def _add(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array
+) -> None:
     _create(file, scales, solution, output, values.shape)[...] = values
 
 
 def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
-    """The coordinate by which instants were asked for, beside their times: an auxiliary coordinate, as CF calls it."""
-    dataset = file.create_dataset(_OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE)
-    dataset.attrs["units"], dataset.attrs["long_name"], dataset.attrs["joint"] = over.unit, over.long_name, over.joint
+    """The coordinate by which instants were asked for, beside their times: an auxiliary coordinate,
+    as CF calls it.
+    """
+    dataset = file.create_dataset(
+        _OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE
+    )
+    dataset.attrs["units"], dataset.attrs["long_name"], dataset.attrs["joint"] = (
+        over.unit,
+        over.long_name,
+        over.joint,
+    )
     scales.attach(dataset, ("t",))
     file.attrs["coordinates"] = _OVER
 
 
-def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]) -> None:
+def _add_grid(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]
+) -> None:
     """A grid block by block: it need not fit into memory."""
     law, xi = solution.section(output.part).law, solution.xi
     dataset = _create(file, scales, solution, output, (solution.t.size, xi.size))
@@ -326,16 +400,22 @@ def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Outpu
         for start in range(0, solution.t.size, height):
             breathe()
             block = law.during(slice(start, start + height))
-            dataset[start : start + height, left : left + width] = block.on_grid(output.member, basis)
+            dataset[start : start + height, left : left + width] = block.on_grid(
+                output.member, basis
+            )
 
 
 def _empty(file: h5py.File, place: str, shape: tuple[int, ...]) -> h5py.Dataset:
     width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
     chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
-    return file.create_dataset(place, shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
+    return file.create_dataset(
+        place, shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan
+    )
 
 
-def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
+def _create(
+    file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]
+) -> h5py.Dataset:
     quantity, name = output.meant(solution.table), str(output)
     dataset = _empty(file, _place(output), shape)
     say(dataset, solution.unit(output), quantity.attributes)
@@ -356,7 +436,11 @@ def _read(file: h5py.File) -> Solution:
     errors: dict[str, float] = {}
 
     def visit(place: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset) and place not in (*_AXES, _OVER) and not place.startswith(f"{SENSITIVITY}/"):
+        if (
+            isinstance(item, h5py.Dataset)
+            and place not in (*_AXES, _OVER)
+            and not place.startswith(f"{SENSITIVITY}/")
+        ):
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
@@ -365,29 +449,57 @@ def _read(file: h5py.File) -> Solution:
 
     file.visititems(visit)
     words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
-    provenance = Provenance(**words, versions=parsed(file.attrs["versions"], {str: str}, "versions"))
+    provenance = Provenance(
+        **words, versions=parsed(file.attrs["versions"], {str: str}, "versions")
+    )
     left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
-    told, reasons = (parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because"))
+    told, reasons = (
+        parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because")
+    )
     elastic = Elasticity(tuple(map(Output.of, told)), tuple(reasons))
-    certificate = {name: numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
+    certificate = {
+        name: numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())
+    }
     case = shown(file.attrs["case"])
     ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
     over = drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
-    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over, elastic)
+    solution = Solution(
+        case,
+        t,
+        xi,
+        ordered,
+        description,
+        provenance,
+        left_open,
+        certificate,
+        errors,
+        limit,
+        over,
+        elastic,
+    )
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
+        whole = set(law.coefficients) == set(solution.table.law) and all(
+            spread.sound for spread in law.spreads
+        )
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
-    return replace(solution, sensitivities=slopes_of(file, solution, numbers), held=_held(file, solution))
+    return replace(
+        solution, sensitivities=slopes_of(file, solution, numbers), held=_held(file, solution)
+    )
 
 
 def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
-    """The ranges of the efforts that joints at rest leave open. Raises ``ValueError`` for those of what is no drive."""
+    """The ranges of the efforts that joints at rest leave open.
+
+    Raises ``ValueError`` for those of what is no drive.
+    """
     found = {}
     for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
         if Output("effort", name) not in solution.outputs:
             raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
-        least, largest = (numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS)
+        least, largest = (
+            numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS
+        )
         found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
     return found

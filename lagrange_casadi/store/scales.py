@@ -1,7 +1,9 @@
-"""Dimension scales: which axis of a dataset runs along which, told as HDF5's own library tells it, but each list written once.
+"""Dimension scales: which axis of a dataset runs along which, told as HDF5's own library tells it,
+but each list written once.
 
-``H5DSattach_scale`` writes the list of all that a scale belongs to anew with each that joins: a file grows with the square of its
-datasets, and from some 4000 on the list does not fit into where that library puts it.
+``H5DSattach_scale`` writes the list of all that a scale belongs to anew with each that joins: a
+file grows with the square of its datasets, and from some 4000 on the list does not fit into where
+that library puts it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""The derivatives of a solution in a file: under /sensitivity/PARAMETER the same places that what they are of has under /."""
+"""The derivatives of a solution in a file: under /sensitivity/PARAMETER the same places that what
+they are of has under /.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,12 @@ from ..instants.solution import Solution
 from .scales import Scales
 
 
-def add_slopes(file: h5py.File, scales: Scales, solution: Solution, create: Callable[[str, tuple[int, ...]], h5py.Dataset]) -> None:
+def add_slopes(
+    file: h5py.File,
+    scales: Scales,
+    solution: Solution,
+    create: Callable[[str, tuple[int, ...]], h5py.Dataset],
+) -> None:
     """Write all; ``create`` makes an empty dataset at a place, of a shape."""
     for found in derivatives(solution):
         dataset = create(_place(found.name), found.values.shape)
@@ -26,15 +33,22 @@ def add_slopes(file: h5py.File, scales: Scales, solution: Solution, create: Call
         scales.attach(dataset, found.output.quantity.axes)
 
 
-def slopes_of(file: h5py.File, solution: Solution, numbers: Callable[[h5py.Dataset, tuple[int, ...]], Array]) -> Derivatives:
-    """What is there; ``numbers`` reads a dataset of a shape. Raises ``ValueError`` where it is not whole."""
+def slopes_of(
+    file: h5py.File, solution: Solution, numbers: Callable[[h5py.Dataset, tuple[int, ...]], Array]
+) -> Derivatives:
+    """What is there; ``numbers`` reads a dataset of a shape.
+
+    Raises ``ValueError`` where it is not whole.
+    """
     group = file.get(SENSITIVITY, {})
     lengths = {"t": solution.t.size, "xi": solution.xi.size}
     expected = [output for output in solution.quantities() if solution.determined(output)]
     found: dict[str, dict[Output, Array]] = {}
     places: list[str] = []
     if group:
-        group.visititems(lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None)
+        group.visititems(
+            lambda place, item: places.append(place) if isinstance(item, h5py.Dataset) else None
+        )
     if set(group) - solution.description["parameters"].keys():
         raise ValueError("there are sensitivities by what is no parameter")
     told = {f"{name}/{str(o).replace(':', '/')}": (name, o) for name in group for o in expected}
@@ -43,13 +57,20 @@ def slopes_of(file: h5py.File, solution: Solution, numbers: Callable[[h5py.Datas
     for place, (name, output) in told.items():
         shape = tuple(lengths[axis] for axis in output.quantity.axes)
         found.setdefault(name, {})[output] = numbers(group[place], shape)
-    return Derivatives({name: found[name] for name in solution.description["parameters"] if name in found})
+    return Derivatives(
+        {name: found[name] for name in solution.description["parameters"] if name in found}
+    )
 
 
 def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """What is wrong with them: they are finite where what they are of is, in their units, on their axes."""
+    """What is wrong with them: they are finite where what they are of is, in their units, on their
+    axes.
+    """
     for found in derivatives(solution):
-        place, rests = _place(found.name), solution.resting.reshape(-1, *[1] * (found.values.ndim - 1))
+        place, rests = (
+            _place(found.name),
+            solution.resting.reshape(-1, *[1] * (found.values.ndim - 1)),
+        )
         if not (np.isfinite(found.values) | (rests & np.isnan(found.values))).all():
             yield f"{place}: holds values that are not finite"
         for key, value in ({"units": found.unit} | found.attributes).items():

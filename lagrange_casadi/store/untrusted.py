@@ -1,6 +1,8 @@
-"""What a file says is looked at before it is believed: the shape of its JSON, where its links lead, and what its datasets are.
+"""What a file says is looked at before it is believed: the shape of its JSON, where its links lead,
+and what its datasets are.
 
-HDF5 allows far more than this package writes, and JSON too. What is otherwise is told as damage, in one line that names the file.
+HDF5 allows far more than this package writes, and JSON too. What is otherwise is told as damage, in
+one line that names the file.
 """
 
 from __future__ import annotations
@@ -18,14 +20,17 @@ import h5py
 from ..errors import LagrangeCasadiError, StoreError, one_line
 
 Shape = Any
-"""``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will do; ``[shape]`` for a list, and
-``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a mapping of any names, ``{"name": shape, ...}`` for one that has
-these, at least; or a function that tells the shape by the value."""
+"""``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will
+do; ``[shape]`` for a list, and ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a
+mapping of any names, ``{"name": shape, ...}`` for one that has these, at least; or a function that
+tells the shape by the value."""
 
 
 @contextmanager
 def told_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
-    """Raise :class:`StoreError`, one line with the file and ``what`` it is, for whatever is raised and is no error of ours."""
+    """Raise :class:`StoreError`, one line with the file and ``what`` it is, for whatever is raised
+    and is no error of ours.
+    """
     try:
         yield
     except (LagrangeCasadiError, MemoryError):
@@ -35,7 +40,10 @@ def told_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:
-    """JSON of a shape. Raises ``ValueError`` or ``TypeError`` for what is not JSON, and as :func:`check_shape` does."""
+    """JSON of a shape.
+
+    Raises ``ValueError`` or ``TypeError`` for what is not JSON, and as :func:`check_shape` does.
+    """
     found = json.loads(text)
     check_shape(found, shape, what)
     return found
@@ -56,10 +64,16 @@ def shown(value: Any) -> str:
 
 
 def check_links(file: h5py.File) -> None:
-    """Raise ``ValueError`` for a link to anywhere but the file itself, and for a name that cannot be shown."""
+    """Raise ``ValueError`` for a link to anywhere but the file itself, and for a name that cannot
+    be shown.
+    """
 
     def astray(place: bytes, link: Any) -> bytes | None:
-        return None if link.type == h5py.h5l.TYPE_HARD and _is_shown(place.decode(errors="surrogateescape")) else place
+        return (
+            None
+            if link.type == h5py.h5l.TYPE_HARD and _is_shown(place.decode(errors="surrogateescape"))
+            else place
+        )
 
     place = file.id.links.visit(astray, info=True)
     if place is not None:
@@ -67,9 +81,15 @@ def check_links(file: h5py.File) -> None:
 
 
 def check_dataset(dataset: Any, shape: Sequence[int] | None = None) -> None:
-    """Raise ``ValueError`` for what is no dataset of numbers that the file itself holds, or has another shape."""
+    """Raise ``ValueError`` for what is no dataset of numbers that the file itself holds, or has
+    another shape.
+    """
     name = getattr(dataset, "name", "a dataset")
-    if not isinstance(dataset, h5py.Dataset) or dataset.shape is None or dataset.dtype.kind not in "fi":
+    if (
+        not isinstance(dataset, h5py.Dataset)
+        or dataset.shape is None
+        or dataset.dtype.kind not in "fi"
+    ):
         raise ValueError(f"{name} is no dataset of numbers")
     if dataset.is_virtual or dataset.external:
         raise ValueError(f"{name} is kept in another file")
@@ -78,12 +98,16 @@ def check_dataset(dataset: Any, shape: Sequence[int] | None = None) -> None:
 
 
 def check_chunks(dataset: h5py.Dataset) -> None:
-    """Raise ``ValueError`` where chunks of a dataset are missing, for which HDF5 would make numbers up."""
+    """Raise ``ValueError`` where chunks of a dataset are missing, for which HDF5 would make numbers
+    up.
+    """
     stored = dataset.id.get_storage_size()
     if dataset.compression is None and stored < dataset.nbytes:
         raise ValueError(f"{dataset.name} has {stored} bytes of {dataset.nbytes}")
     if dataset.chunks is not None:
-        expected = math.prod(-(-length // chunk) for length, chunk in zip(dataset.shape, dataset.chunks, strict=True))
+        expected = math.prod(
+            -(-length // chunk) for length, chunk in zip(dataset.shape, dataset.chunks, strict=True)
+        )
         if (count := dataset.id.get_num_chunks()) != expected:
             raise ValueError(f"{dataset.name} has {count} chunks of {expected}")
 
@@ -98,7 +122,16 @@ def _misfit(value: Any, shape: Shape, place: str) -> str:
         if not isinstance(value, list) or len(shape) not in (1, len(value)):
             return place
         each = shape if len(shape) > 1 else shape * len(value)
-        return next(filter(None, (_misfit(*pair, f"{place}[{k}]") for k, pair in enumerate(zip(value, each, strict=True)))), "")
+        return next(
+            filter(
+                None,
+                (
+                    _misfit(*pair, f"{place}[{k}]")
+                    for k, pair in enumerate(zip(value, each, strict=True))
+                ),
+            ),
+            "",
+        )
     if isinstance(shape, Mapping):
         if not isinstance(value, dict):
             return place
@@ -106,7 +139,12 @@ def _misfit(value: Any, shape: Shape, place: str) -> str:
             return f"{place}.{strange!r}"
         asked = dict.fromkeys(value, shape[str]) if str in shape else shape
         missing = next((f"{place}.{name}" for name in asked if name not in value), "")
-        return missing or next(filter(None, (_misfit(value[name], one, f"{place}.{name}") for name, one in asked.items())), "")
+        return missing or next(
+            filter(
+                None, (_misfit(value[name], one, f"{place}.{name}") for name, one in asked.items())
+            ),
+            "",
+        )
     if shape is None:
         return "" if value is None else place
     if shape is float:

@@ -1,4 +1,6 @@
-"""What files say of their datasets and of themselves, beside numbers: units, meanings, signs and conventions."""
+"""What files say of their datasets and of themselves, beside numbers: units, meanings, signs and
+conventions.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +27,17 @@ def unlike(dataset: Any, unit: str, words: Mapping[str, str]) -> Iterator[str]:
     place = dataset.name.removeprefix("/")
     if dataset.attrs.get("units") != unit:
         yield f"{place}: units {dataset.attrs.get('units')!r}, expected {unit!r}"
-    yield from (f"{place}: {key} is not the schema's" for key, text in words.items() if dataset.attrs.get(key) != text)
+    yield from (
+        f"{place}: {key} is not the schema's"
+        for key, text in words.items()
+        if dataset.attrs.get(key) != text
+    )
 
 
 def unlike_conventions(file: Any, table: Table) -> Iterator[str]:
     """Yield what a file says otherwise of all that it holds, a line each."""
-    yield from (f"{key}: not the schema's" for key, text in conventions(table).items() if file.attrs.get(key) != text)
+    yield from (
+        f"{key}: not the schema's"
+        for key, text in conventions(table).items()
+        if file.attrs.get(key) != text
+    )

@@ -1,4 +1,6 @@
-"""Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
+"""Strength of links: stresses, factors of safety against yielding, buckling
+and fatigue, and lives.
+"""
 
 from ..declare.held import effective_lengths
 from ..equations.buckling import Column, critical_stress

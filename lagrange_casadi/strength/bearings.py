@@ -1,10 +1,12 @@
-"""Pins and bearings: shear, bending and pressure of a pin, pressure and heating of a plain bearing, life of a rolling one.
+"""Pins and bearings: shear, bending and pressure of a pin, pressure and heating of a plain bearing,
+life of a rolling one.
 
-A pin that fits loosely in its eye and its fork is a beam: the eye's load is even over its width, and each cheek bears in the middle
-of its own (Wittel, Jannasch, Voßiek and Spura, *Roloff/Matek Maschinenelemente*, chapter 9, case 1). Shear stress is largest in
-the middle of its cross-section, 4/3 of the mean (Shigley, *Mechanical Engineering Design*, 9th edition, table 3-2). Rolling
-bearings are those of ISO 281: P = X F_r + Y F_a, L_10 = (C/P)^p million turns, with the mean of P^p over the turns where load and
-speed change.
+A pin that fits loosely in its eye and its fork is a beam: the eye's load is even over its width,
+and each cheek bears in the middle of its own (Wittel, Jannasch, Voßiek and Spura, *Roloff/Matek
+Maschinenelemente*, chapter 9, case 1). Shear stress is largest in the middle of its cross-section,
+4/3 of the mean (Shigley, *Mechanical Engineering Design*, 9th edition, table 3-2). Rolling bearings
+are those of ISO 281: P = X F_r + Y F_a, L_10 = (C/P)^p million turns, with the mean of P^p over the
+turns where load and speed change.
 """
 
 from __future__ import annotations
@@ -33,11 +35,22 @@ def bending_of_pin(force: Numeric, eye: Numeric, cheek: Numeric, gap: Numeric = 
 
 
 @public
-def equivalent_load(load: Array | Sequence[float], turned: Array | Sequence[float], exponent: Positive = 3.0) -> float:
-    """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything else, ``turned`` (n,)."""
+def equivalent_load(
+    load: Array | Sequence[float], turned: Array | Sequence[float], exponent: Positive = 3.0
+) -> float:
+    """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything
+    else, ``turned`` (n,).
+    """
     loads, shares = np.asarray(load, float), np.asarray(turned, float)
-    if loads.ndim != 1 or loads.shape != shares.shape or not np.isfinite([loads, shares]).all() or min(0.0, *loads, *shares) < 0.0:
-        raise DeclarationError("equivalent_load: expected two rows of one length, finite and not negative")
+    if (
+        loads.ndim != 1
+        or loads.shape != shares.shape
+        or not np.isfinite([loads, shares]).all()
+        or min(0.0, *loads, *shares) < 0.0
+    ):
+        raise DeclarationError(
+            "equivalent_load: expected two rows of one length, finite and not negative"
+        )
     total, most = float(shares.sum()), float(np.max(loads, initial=0.0))
     if total == 0.0 or most == 0.0:
         return 0.0
@@ -46,7 +59,9 @@ def equivalent_load(load: Array | Sequence[float], turned: Array | Sequence[floa
 
 
 @public
-def rated_hours(dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent: Positive = 3.0) -> float:
+def rated_hours(
+    dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent: Positive = 3.0
+) -> float:
     """The hours that nine of ten bearings run: (C/P)^p million turns."""
     if load == 0.0 or rpm == 0.0:
         return math.inf
@@ -58,24 +73,34 @@ def rated_hours(dynamic: Positive, load: NotNegative, rpm: NotNegative, exponent
 
 @public
 def joint_safety(solution: Solution, joint: str) -> Safety:
-    """The factors of safety of what is fitted to a joint, over all instants: by how much its reaction may grow.
+    """The factors of safety of what is fitted to a joint, over all instants: by how much its
+    reaction may grow.
 
-    Of speed and heating it is by how much these may. ``is_open`` says what could not be looked at. Raises
-    :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted, equilibrium leaves it open, or a number that
-    depends on parameters is not positive.
+    Of speed and heating it is by how much these may. ``is_open`` says what could not be looked at.
+    Raises :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted,
+    equilibrium leaves it open, or a number that depends on parameters is not positive.
     """
     told = solution.description["joints"].get(joint, {}).get("fitted", {})
     if not told:
         having = ", ".join(fitted_of(solution.description))
-        raise DeclarationError(f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing: {having or 'none'}")
+        raise DeclarationError(
+            f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing:"
+            f" {having or 'none'}"
+        )
     members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
     if not members:
-        raise DeclarationError(f"the reaction of joint '{joint}' was not wanted; want reaction:{joint} too")
+        raise DeclarationError(
+            f"the reaction of joint '{joint}' was not wanted; want reaction:{joint} too"
+        )
     if any(not solution.determined(member) for member in members):
-        raise DeclarationError(f"equilibrium leaves the reaction of joint '{joint}' open, so its strength is open")
+        raise DeclarationError(
+            f"equilibrium leaves the reaction of joint '{joint}' open, so its strength is open"
+        )
     across, along = _forces(solution, joint)
     if not (counts := counted(np.stack([across, along]))).any():
-        raise DeclarationError(f"joint '{joint}': friction is at rest at all instants, so its strength is open")
+        raise DeclarationError(
+            f"joint '{joint}': friction is at rest at all instants, so its strength is open"
+        )
     # What does not count is no load: it is below every peak, and loads a bearing over no way.
     across, along = (np.where(counts, force, 0.0) for force in (across, along))
     rate = solution.outputs.get(Output("motion", _coordinate(solution, joint), "rate"))
@@ -90,7 +115,9 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
             verdicts += found
             left += missing
         elif rate is None:
-            left.append(f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not told")
+            left.append(
+                f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not told"
+            )
         else:
             verdicts += _rolling(part, across, along, rate, solution.t)
     return Safety(joint, tuple(verdicts), tuple(left))
@@ -99,7 +126,9 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
 def _check(joint: str, kind: str, part: Fitted) -> None:
     for name, value in vars(part).items():
         if isinstance(value, float) and not positive(name, value):
-            raise DeclarationError(f"joint '{joint}': {kind}: {name} must be positive, got {value:g}")
+            raise DeclarationError(
+                f"joint '{joint}': {kind}: {name} must be positive, got {value:g}"
+            )
 
 
 def _coordinate(solution: Solution, joint: str) -> str:
@@ -114,16 +143,25 @@ def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
     if "coordinates" not in solution.description["joints"][joint]:
         found = solution.reaction(joint)
         return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
-    # In space reactions are told on the joint's own axes too, of which the first is the one it turns about.
+    # In space reactions are told on the joint's own axes too, of which the first is the one it
+    # turns about.
     nothing = np.zeros_like(solution.t)
-    u, v, w = (solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw")
+    u, v, w = (
+        solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw"
+    )
     return np.hypot(v, w), np.abs(u)
 
 
-def _verdict(against: str, bears: float, size: Array, t: Array, told: str, unit: str, scale: float = 1.0) -> Verdict:
+def _verdict(
+    against: str, bears: float, size: Array, t: Array, told: str, unit: str, scale: float = 1.0
+) -> Verdict:
     k = int(np.argmax(size))
     most = float(size[k])
-    return Verdict(against, bears / most if most else math.inf, f"{told} {most / scale:.4g} {unit} at t = {t[k]:.5g} s")
+    return Verdict(
+        against,
+        bears / most if most else math.inf,
+        f"{told} {most / scale:.4g} {unit} at t = {t[k]:.5g} s",
+    )
 
 
 def _pin(pin: Pin, force: Array, t: Array) -> Iterator[Verdict]:
@@ -135,10 +173,14 @@ def _pin(pin: Pin, force: Array, t: Array) -> Iterator[Verdict]:
     yield _verdict("shear of pin", strength / math.sqrt(3.0), shear, t, "shear stress", "MPa", 1e6)
     if pin.pressure is not None:
         for name, width in (("eye", float(pin.eye)), ("fork", 2 * float(pin.cheek))):
-            yield _verdict(f"pressure in {name}", pin.pressure, force / (d * width), t, "pressure", "MPa", 1e6)
+            yield _verdict(
+                f"pressure in {name}", pin.pressure, force / (d * width), t, "pressure", "MPa", 1e6
+            )
 
 
-def _plain(bearing: Plain, force: Array, rate: Array | None, t: Array) -> tuple[list[Verdict], list[str]]:
+def _plain(
+    bearing: Plain, force: Array, rate: Array | None, t: Array
+) -> tuple[list[Verdict], list[str]]:
     d = float(bearing.bore)
     pressure = force / (d * float(bearing.width))
     found: list[Verdict] = []
@@ -159,7 +201,9 @@ def _plain(bearing: Plain, force: Array, rate: Array | None, t: Array) -> tuple[
     return found, []
 
 
-def _rolling(bearing: Rolling, across: Array, along: Array, rate: Array, t: Array) -> Iterator[Verdict]:
+def _rolling(
+    bearing: Rolling, across: Array, along: Array, rate: Array, t: Array
+) -> Iterator[Verdict]:
     load = bearing.radial * across + bearing.axial * along
     weights = _weights(t)
     shares = np.abs(rate) * weights

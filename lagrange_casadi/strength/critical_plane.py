@@ -1,10 +1,13 @@
-"""The critical plane: fatigue where normal and shear stress are not in phase, by Findley's criterion.
+"""The critical plane: fatigue where normal and shear stress are not in phase, by Findley's
+criterion.
 
-Of all planes through a place the one is critical on which shear amplitude + k times the largest normal stress is largest; it must
-not exceed what it is at the endurance limit of a bar that is bent to and fro, S_e (k + sqrt(1 + k^2))/2 (Findley, *A theory for the
-effect of mean stress on fatigue of metals under combined torsion and axial load or bending*, J. Eng. Ind. 81 (1959) 301-306; Socie
-and Marquis, *Multiaxial Fatigue*, SAE 2000, chapter 5). k is about 0.3 for ductile steels. The shear amplitude on a plane is half
-of the widest extent of the stress that goes round in it. A largest normal stress in compression counts as none.
+Of all planes through a place the one is critical on which shear amplitude + k times the largest
+normal stress is largest; it must not exceed what it is at the endurance limit of a bar that is bent
+to and fro, S_e (k + sqrt(1 + k^2))/2 (Findley, *A theory for the effect of mean stress on fatigue
+of metals under combined torsion and axial load or bending*, J. Eng. Ind. 81 (1959) 301-306; Socie
+and Marquis, *Multiaxial Fatigue*, SAE 2000, chapter 5). k is about 0.3 for ductile steels. The
+shear amplitude on a plane is half of the widest extent of the stress that goes round in it. A
+largest normal stress in compression counts as none.
 """
 
 from __future__ import annotations
@@ -33,14 +36,16 @@ _SPACE = (9, 24, 12)
 """How many angles are looked at first: where there is one shear stress, and where there are two."""
 
 _ROUNDS, _BESIDE, _NEARER = 8, 2, 2.5
-"""How often the worst plane is looked at again, how many planes on each side, and how much nearer they come."""
+"""How often the worst plane is looked at again, how many planes on each side, and how much nearer
+they come.
+"""
 
 
 @public
 @dataclass(frozen=True)
 class Plane:
-    """The plane on which a history is worst: shear ``amplitude``, largest ``normal`` stress [Pa], none in compression, and the
-    plane's ``angle`` to the link's cross-section [rad].
+    """The plane on which a history is worst: shear ``amplitude``, largest ``normal`` stress [Pa],
+    none in compression, and the plane's ``angle`` to the link's cross-section [rad].
     """
 
     amplitude: float
@@ -54,17 +59,22 @@ class Plane:
 
 @public
 def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
-    """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and along z [Pa].
+    """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and
+    along z [Pa].
 
     ``share`` is Findley's k.
     """
     if values.ndim != 2 or len(values) != 3 or not values.size or not np.isfinite(values).all():
-        raise DeclarationError(f"critical_plane: expected finite stresses (3, t), got {shown(values)}")
+        raise DeclarationError(
+            f"critical_plane: expected finite stresses (3, t), got {shown(values)}"
+        )
     sheared = [bool(row.any()) for row in values[1:]]
     if not all(sheared):
         # All planes that count go through the direction without stress.
         shear = values[2] if sheared[1] else values[1]
-        return _best(np.stack([values[0], shear, np.zeros_like(shear)]), share, _turned, [math.pi], _FLAT)
+        return _best(
+            np.stack([values[0], shear, np.zeros_like(shear)]), share, _turned, [math.pi], _FLAT
+        )
     return _best(values, share, _around, [math.pi / 2, 2 * math.pi, math.pi], _SPACE)
 
 
@@ -80,7 +90,9 @@ def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE)
 
 
 def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, str]:
-    """The worst critical plane along a link and over its fibres, the place, and the fibre's name."""
+    """The worst critical plane along a link and over its fibres, the
+    place, and the fibre's name.
+    """
     found = [(Plane(-1.0, 0.0, 0.0), Place(0.0, "tip", None), "")]
 
     def look(places: Iterable[Place]) -> Place:
@@ -99,15 +111,24 @@ def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, s
 
 
 def _bounds(values: Array, share: float) -> Array:
-    """What is not exceeded on any plane, of fibres with histories (3, fibres, t): by the largest shear and principal stresses."""
+    """What is not exceeded on any plane, of fibres with histories (3, fibres, t): by the largest
+    shear and principal stresses.
+    """
     wide = np.ptp(values, axis=2)
     shear = np.sum(values[1:] ** 2, axis=0)
     principal = values[0] / 2 + np.sqrt((values[0] / 2) ** 2 + shear)
-    return np.asarray(np.sqrt(wide[0] ** 2 + 4.0 * (wide[1] ** 2 + wide[2] ** 2)) / 4 + share * principal.max(axis=1))
+    return np.asarray(
+        np.sqrt(wide[0] ** 2 + 4.0 * (wide[1] ** 2 + wide[2] ** 2)) / 4
+        + share * principal.max(axis=1)
+    )
 
 
 def _best(
-    values: Array, share: float, planes: Callable[[Array], tuple[Array, Array]], spans: Sequence[float], counts: Sequence[int]
+    values: Array,
+    share: float,
+    planes: Callable[[Array], tuple[Array, Array]],
+    spans: Sequence[float],
+    counts: Sequence[int],
 ) -> Plane:
     """The worst of planes that angles tell: of many evenly, then nearer and nearer to the worst."""
     grids = [(np.arange(n) + 0.5) * span / n for span, n in zip(spans, counts, strict=True)]
@@ -119,7 +140,9 @@ def _best(
         across = np.maximum((_told(normal, normal) @ values).max(axis=1), 0.0)
         amplitude = np.ptp(_told(normal, way) @ values, axis=1) / 2
         k = int(np.argmax(amplitude + share * across))
-        found = Plane(float(amplitude[k]), float(across[k]), math.acos(min(1.0, abs(float(normal[k, 0])))))
+        found = Plane(
+            float(amplitude[k]), float(across[k]), math.acos(min(1.0, abs(float(normal[k, 0]))))
+        )
         if found.value(share) > best.value(share):
             best, middle = found, angles[k]
         beside = [np.arange(-_BESIDE, _BESIDE + 1) / _BESIDE * step for step in steps]
@@ -144,6 +167,8 @@ def _around(angles: Array) -> tuple[Array, Array]:
 
 
 def _told(n: Array, m: Array) -> Array:
-    """What the stress on planes ``n`` in directions ``m`` takes of the three stresses in a beam: (planes, 3)."""
+    """What the stress on planes ``n`` in directions ``m`` takes of the three stresses in a beam:
+    (planes, 3).
+    """
     shears = [n[:, 0] * m[:, k] + n[:, k] * m[:, 0] for k in (1, 2)]
     return np.stack([n[:, 0] * m[:, 0], *shears], 1)

@@ -1,9 +1,12 @@
-"""Fatigue: how a mean stress lowers what amplitude is borne, lives by S-N lines, and damage by Miner's sum.
+"""Fatigue: how a mean stress lowers what amplitude is borne, lives by S-N lines, and damage by
+Miner's sum.
 
-Stresses of several components count by von Mises: of a swing between two instants the amplitude is half that of the differences of
-the components (ASME Boiler and Pressure Vessel Code VIII-2, 5.5.3), so stresses out of phase are counted as they are. The mean is
-that of the components half-way, where a normal stress in compression counts as none (Shigley, *Mechanical Engineering Design*, 9th
-edition, sections 6-12 and 6-14). Which swings there are is counted along the direction of the largest difference.
+Stresses of several components count by von Mises: of a swing between two instants the amplitude is
+half that of the differences of the components (ASME Boiler and Pressure Vessel Code VIII-2, 5.5.3),
+so stresses out of phase are counted as they are. The mean is that of the components half-way, where
+a normal stress in compression counts as none (Shigley, *Mechanical Engineering Design*, 9th
+edition, sections 6-12 and 6-14). Which swings there are is counted along the direction of the
+largest difference.
 """
 
 from __future__ import annotations
@@ -33,7 +36,9 @@ _ROUNDED = 1.0 + 1e-12
 
 @dataclass(frozen=True)
 class Criterion:
-    """How a mean stress counts: ``strength`` is the material's number that bears it alone; ``square`` where it counts squared."""
+    """How a mean stress counts: ``strength`` is the material's number that bears it alone;
+    ``square`` where it counts squared.
+    """
 
     strength: str
     square: bool = False
@@ -60,43 +65,61 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
     Raises :class:`.DeclarationError` for numbers that the material has not.
     """
     endurance, strength = material.needs(f"fatigue by {criterion}", *_needed(material, criterion))
-    by_ultimate = criterion_of(criterion).strength == "fatigue_strength" and material.fatigue_strength is None
+    by_ultimate = (
+        criterion_of(criterion).strength == "fatigue_strength" and material.fatigue_strength is None
+    )
     return endurance, strength + 345e6 if by_ultimate else strength
 
 
 def _needed(material: Material, criterion: str) -> tuple[str, str]:
     name = criterion_of(criterion).strength
-    return "endurance", "ultimate" if name == "fatigue_strength" and material.fatigue_strength is None else name
+    return (
+        "endurance",
+        "ultimate" if name == "fatigue_strength" and material.fatigue_strength is None else name,
+    )
 
 
 @public
-def factor(amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman") -> Any:
-    """By how much amplitude and mean may grow together until the part no longer lasts for ever; of numbers or arrays.
+def factor(
+    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+) -> Any:
+    """By how much amplitude and mean may grow together until the part no longer lasts for ever; of
+    numbers or arrays.
 
-    Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq. 6-45 to 6-48; Dowling for
-    Morrow). A mean in compression counts as none.
+    Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq.
+    6-45 to 6-48; Dowling for Morrow). A mean in compression counts as none.
     """
     with np.errstate(divide="ignore"):
         return 1.0 / used(np.asarray(amplitude), np.asarray(mean), material, criterion)
 
 
 def used(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
-    """How far a material is used by amplitude and mean, one over :func:`factor`; of numbers, arrays or expressions."""
+    """How far a material is used by amplitude and mean, one over :func:`factor`; of numbers, arrays
+    or expressions.
+    """
     endurance, strength = strengths(material, criterion)
     a, m = amplitude / endurance, larger(mean, 0.0) / strength
     return (a + (a * a + 4.0 * m * m) ** 0.5) / 2 if criterion_of(criterion).square else a + m
 
 
 def lacking(material: Material, criterion: str = "goodman") -> str:
-    """Say why fatigue of a material is open by a criterion, or on Findley's planes: which numbers it has not; empty if none."""
+    """Say why fatigue of a material is open by a criterion, or on Findley's planes: which numbers
+    it has not; empty if none.
+    """
     needed = _needed(material, criterion) if criterion in CRITERIA else ("endurance",)
     missing = [name for name in needed if getattr(material, name) is None]
-    return f"fatigue: material '{material.name}' has no {' and no '.join(missing)}" if missing else ""
+    return (
+        f"fatigue: material '{material.name}' has no {' and no '.join(missing)}" if missing else ""
+    )
 
 
 @public
-def reversed_amplitude(amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman") -> Any:
-    """The amplitude without a mean that does the same damage; infinite where the mean alone is too much."""
+def reversed_amplitude(
+    amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
+) -> Any:
+    """The amplitude without a mean that does the same damage; infinite where the mean alone is too
+    much.
+    """
     _, strength = strengths(material, criterion)
     m = np.maximum(mean, 0.0) / strength
     left = 1.0 - (m * m if criterion_of(criterion).square else m)
@@ -104,20 +127,27 @@ def reversed_amplitude(amplitude: Numeric, mean: Numeric, material: Material, cr
 
 
 def line(material: Material) -> tuple[float, float, float]:
-    """The endurance limit, the amplitude that is borne a thousand times [Pa], and the exponent of a material's S-N line.
+    """The endurance limit, the amplitude that is borne a thousand times [Pa], and the exponent of a
+    material's S-N line.
 
     Raises :class:`.DeclarationError` for numbers that the material has not.
     """
     endurance, ultimate = material.needs("a life", "endurance", "ultimate")
     start = material.fatigue_share * ultimate
-    return endurance, start, math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
+    return (
+        endurance,
+        start,
+        math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start),
+    )
 
 
 @public
 def cycles(amplitude: Numeric, material: Material) -> Any:
-    """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly below its endurance limit.
+    """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly
+    below its endurance limit.
 
-    Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of infinite amplitudes it is none.
+    Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of
+    infinite amplitudes it is none.
     """
     endurance, start, slope = line(material)
     size = np.abs(amplitude)
@@ -127,7 +157,9 @@ def cycles(amplitude: Numeric, material: Material) -> Any:
 
 
 class Loaded(NamedTuple):
-    """The swings at a place and fibre: amplitudes and means [Pa], how often each comes in a cycle, and between which instants."""
+    """The swings at a place and fibre: amplitudes and means [Pa], how often each comes in a cycle,
+    and between which instants.
+    """
 
     amplitude: Array
     mean: Array
@@ -136,7 +168,9 @@ class Loaded(NamedTuple):
 
 
 def loaded(values: Array) -> Loaded:
-    """The swings of a history of stresses (3, t), normal and shear along y and z, which repeats for ever."""
+    """The swings of a history of stresses (3, t), normal and shear along y and z, which repeats for
+    ever.
+    """
     vector = values * np.array([1.0, math.sqrt(3.0), math.sqrt(3.0)])[:, None]
     first, last = _farthest(vector)
     along = vector[:, last] - vector[:, first]
@@ -152,7 +186,8 @@ def loaded(values: Array) -> Loaded:
 
 
 def swing_squares(first: Any, last: Any) -> tuple[Any, Any]:
-    """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and z, to others.
+    """The squares of amplitude and mean of a swing from some stresses, normal and shear along y and
+    z, to others.
 
     They are numbers, arrays or expressions.
     """
@@ -163,7 +198,9 @@ def swing_squares(first: Any, last: Any) -> tuple[Any, Any]:
 
 
 def _farthest(points: Array) -> tuple[int, int]:
-    """Two points (3, t) farthest from each other: those that are outermost in many directions, and from there on uphill."""
+    """Two points (3, t) farthest from each other: those that are outermost in many directions, and
+    from there on uphill.
+    """
     if not points[1:].any():
         return int(np.argmin(points[0])), int(np.argmax(points[0]))
     levels = _DIRECTIONS @ points
@@ -172,19 +209,30 @@ def _farthest(points: Array) -> tuple[int, int]:
     first, last, best = int(low[k]), int(high[k]), -1.0
     while (size := float(np.linalg.norm(points[:, last] - points[:, first]))) > best:
         best = size
-        first, last = last, int(np.argmax(np.linalg.norm(points - points[:, last : last + 1], axis=0)))
+        first, last = (
+            last,
+            int(np.argmax(np.linalg.norm(points - points[:, last : last + 1], axis=0))),
+        )
     return first, last
 
 
 def _directions() -> Array:
-    """Half of all directions: in the planes of normal stress and one shear stress, and all around."""
+    """Half of all directions: in the planes of normal stress and one
+    shear stress, and all around.
+    """
     angles = np.arange(32) * math.pi / 32
     zero, c, s = np.zeros(32), np.cos(angles), np.sin(angles)
     # The even spirals of Saff and Kuijlaars.
     z = (np.arange(64) + 0.5) / 64
     turn = math.pi * (1.0 + math.sqrt(5.0)) * np.arange(64)
     r = np.sqrt(1.0 - z * z)
-    return np.vstack([np.stack([c, s, zero], 1), np.stack([c, zero, s], 1), np.stack([z, r * np.cos(turn), r * np.sin(turn)], 1)])
+    return np.vstack(
+        [
+            np.stack([c, s, zero], 1),
+            np.stack([c, zero, s], 1),
+            np.stack([z, r * np.cos(turn), r * np.sin(turn)], 1),
+        ]
+    )
 
 
 _DIRECTIONS = _directions()
@@ -192,9 +240,11 @@ _DIRECTIONS = _directions()
 
 @dataclass(frozen=True, eq=False)
 class Histories:
-    """Stresses over time of n designs: ``normal`` (n, places, t), and of places that are ``sheared`` the ``shears``.
+    """Stresses over time of n designs: ``normal`` (n, places, t), and of places that are
+    ``sheared`` the ``shears``.
 
-    These are (n, axes, sheared, t), along one of ``axes`` after the other (0 is y, 1 is z), for in a plane there are none along z.
+    These are (n, axes, sheared, t), along one of ``axes`` after the other (0 is y, 1 is z), for in
+    a plane there are none along z.
     """
 
     normal: Array
@@ -226,9 +276,11 @@ class Histories:
         return np.sqrt(amplitude) / 2, np.sqrt(mean)
 
     def bounds(self, material: Material) -> tuple[Array, Array]:
-        """Bounds on utilisation by Goodman's rule, and what is known of it at least, each (n, places).
+        """Bounds on utilisation by Goodman's rule, and what is known of it at least, each (n,
+        places).
 
-        Of a history of normal stress alone the swing from its smallest to its largest value is the worst.
+        Of a history of normal stress alone the swing from its smallest to its largest value is the
+        worst.
         """
         endurance, strength = strengths(material, "goodman")
         high, low = self.normal.max(axis=2), self.normal.min(axis=2)
@@ -240,9 +292,13 @@ class Histories:
             high, low = high[:, sheared], low[:, sheared]
             swing, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
             whole = np.sqrt(swing + square) / (2 * endurance) + np.sqrt(middle**2 + size) / strength
-            # A smaller swing has a larger mean. Where shear is most of it, or means count for much, no more is known than this.
+            # A smaller swing has a larger mean. Where shear is most of it, or means count for much,
+            # no more is known than this.
             wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else swing + square
-            other = np.sqrt(wide) / (2 * endurance) + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
+            other = (
+                np.sqrt(wide) / (2 * endurance)
+                + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
+            )
             bound[:, sheared] = np.maximum(whole, other)
         return bound, known
 
@@ -256,13 +312,19 @@ class Histories:
                     break
                 if k in self.sheared:
                     swings = loaded(self.at(i, k))
-                    best[i] = max(best[i], float(np.max(used(swings.amplitude, swings.mean, material))))
+                    best[i] = max(
+                        best[i], float(np.max(used(swings.amplitude, swings.mean, material)))
+                    )
         return np.asarray(best)
 
-    def worst(self, score: Score, least: tuple[float, ...] | None = None) -> tuple[tuple[float, ...], int, Loaded] | None:
-        """Where a score of the first design is smallest: its value, the place, and the swings there; of equals the first place.
+    def worst(
+        self, score: Score, least: tuple[float, ...] | None = None
+    ) -> tuple[tuple[float, ...], int, Loaded] | None:
+        """Where a score of the first design is smallest: its value, the place, and the swings
+        there; of equals the first place.
 
-        None where it is nowhere below ``least``. What cannot be below what was found is not counted.
+        None where it is nowhere below ``least``. What cannot be below what was found is not
+        counted.
         """
         bound = score.bound(self)
         found: tuple[tuple[float, ...], int, Loaded] | None = None
@@ -272,13 +334,21 @@ class Histories:
                 break
             swings = loaded(self.at(0, k))
             value = score.of(swings)
-            if best is None or value < best or (found is not None and value == best and k < found[1]):
+            if (
+                best is None
+                or value < best
+                or (found is not None and value == best and k < found[1])
+            ):
                 found = value, k, swings
         return found
 
     def _sheared(self) -> tuple[Array, Array]:
-        """Of sheared places three times the squares of how far shear stress goes, and of how large it is, each (n, sheared)."""
-        return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(np.sum(self.shears**2, axis=1), axis=2)
+        """Of sheared places three times the squares of how far shear stress goes, and of how large
+        it is, each (n, sheared).
+        """
+        return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(
+            np.sum(self.shears**2, axis=1), axis=2
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,15 +368,25 @@ def factor_score(material: Material, criterion: str) -> Score:
 
     def bound(histories: Histories) -> Array:
         goodman = criterion == "goodman"
-        (most, *_) = histories.bounds(material)[0] if goodman else used(*histories.widest(), material, criterion)
+        (most, *_) = (
+            histories.bounds(material)[0]
+            if goodman
+            else used(*histories.widest(), material, criterion)
+        )
         with np.errstate(divide="ignore"):
             return np.asarray(1.0 / (most * _ROUNDED))[:, None]
 
-    return Score(lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),), bound)
+    return Score(
+        lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),),
+        bound,
+    )
 
 
 def damage_score(material: Material, criterion: str) -> Score:
-    """The damage by Miner's sum, and where there is none the largest amplitude; times -1. Raises what :func:`strengths` does."""
+    """The damage by Miner's sum, and where there is none the largest amplitude; times -1.
+
+    Raises what :func:`strengths` does.
+    """
     strengths(material, criterion)
 
     def of(swings: Loaded) -> tuple[float, float]:
@@ -327,4 +407,6 @@ def damage_score(material: Material, criterion: str) -> Score:
 def felt(notch: Notch) -> Notch:
     """What fatigue feels of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
     q = notch.sensitivity
-    return Notch(notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear)))
+    return Notch(
+        notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))
+    )

@@ -1,4 +1,6 @@
-"""The stresses of a link's fibres at fixed places, of many designs at once: a matrix times what its section law is made of."""
+"""The stresses of a link's fibres at fixed places, of many designs at once: a matrix times what its
+section law is made of.
+"""
 
 from __future__ import annotations
 
@@ -32,9 +34,9 @@ _EVENLY = 33
 class FibreStresses:
     """The stresses of a link's fibres as a function of what its law is made of.
 
-    ``rows(members, p)`` is their matrix: the normal stresses of all places and fibres, then the shear stresses of those that are
-    ``sheared``, along one of ``axes`` after the other (0 is y, 1 is z), for in a plane there are none along z; ``still`` are the
-    members that it depends on.
+    ``rows(members, p)`` is their matrix: the normal stresses of all places and fibres, then the
+    shear stresses of those that are ``sheared``, along one of ``axes`` after the other (0 is y, 1
+    is z), for in a plane there are none along z; ``still`` are the members that it depends on.
     """
 
     members: tuple[Output, ...]
@@ -53,12 +55,19 @@ class FibreStresses:
         body = Loaded(data.space, link, columns)
         normal, shears = list[Any](), list[tuple[Any, ...]]()
         for cell, u, side, notch in _places(body, link):
-            forces = [body.force_at(force, u, side) * concentration(notch, force) for force in body.cross.forces]
-            stresses = body.cross.stresses(body.cross.properties(cell, u), body.cross.alone[cell], forces)
+            forces = [
+                body.force_at(force, u, side) * concentration(notch, force)
+                for force in body.cross.forces
+            ]
+            stresses = body.cross.stresses(
+                body.cross.properties(cell, u), body.cross.alone[cell], forces
+            )
             own, *across = (ca.vertsplit(one) for one in stresses)
             normal += own
             shears += zip(*across, strict=True)
-        sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
+        sheared = [
+            k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())
+        ]
         axes = tuple(axis for axis in (0, 1) if not all(shears[k][axis].is_zero() for k in sheared))
         every = ca.vertcat(*normal, *(shears[k][axis] for axis in axes for k in sheared))
         # Stresses are linear in forces, not in where these act.
@@ -68,10 +77,14 @@ class FibreStresses:
         still = [k for k in range(len(members)) if ca.depends_on(slopes, symbols[k])]
         # Rows of the matrix one after another, as numbers lie in memory.
         found = ca.Function("rows", [symbols, p], [ca.vec(ca.densify(slopes.T))], {"cse": True})
-        return cls(tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp), axes)
+        return cls(
+            tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp), axes
+        )
 
     def stands(self, members: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs, whose members are (n, members, t), the matrix is the same at all instants."""
+        """Of which designs, whose members are (n, members, t), the matrix is the same at all
+        instants.
+        """
         return np.asarray((np.ptp(members[:, self.still], axis=2) <= _NEAR).all(axis=1))
 
     def histories(self, members: Array, p: Array) -> Histories:
@@ -89,9 +102,14 @@ class FibreStresses:
         return int(self.rows.numel_out(0) // len(self.members) - len(self.axes) * self.sheared.size)
 
     def _matrices(self, members: Array, p: Array) -> Array:
-        """The numbers of ``rows`` for designs (n, ...), through memory that CasADi itself reads and writes: by far the fastest."""
+        """The numbers of ``rows`` for designs (n, ...), through memory that CasADi itself reads and
+        writes: by far the fastest.
+        """
         buffer, evaluate = self.rows.buffer()
-        given, found = [np.zeros(members.shape[1]), np.zeros(p.shape[1])], np.empty((len(p), self.rows.nnz_out(0)))
+        given, found = (
+            [np.zeros(members.shape[1]), np.zeros(p.shape[1])],
+            np.empty((len(p), self.rows.nnz_out(0))),
+        )
         row = np.empty(found.shape[1])
         for number, values in enumerate(given):
             buffer.set_arg(number, values.data)
@@ -109,7 +127,9 @@ def _is_place(member: Output) -> bool:
 
 
 def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Side, Notch | None]]:
-    """Cells of the cross-section, ratios and the sides of them that are meant, and notches: those of :mod:`..strength.fatigue`."""
+    """Cells of the cross-section, ratios and the sides of them that are meant, and notches: those
+    of :mod:`..strength.fatigue`.
+    """
     breaks = body.course.breaks
 
     def cell_of(u: float, side: Side) -> int:

@@ -22,7 +22,9 @@ from ..instants.statistics import counted
 from ..summits.polynomials import interpolation
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
-"""How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a link too short to cut."""
+"""How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a
+link too short to cut.
+"""
 
 _TWIST = 1e-9
 
@@ -43,10 +45,14 @@ class Cell:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names of its fibres."""
-        return tuple(fibre.name for fibre in self.member.cross.properties(self.index, np.zeros(1)).fibres)
+        return tuple(
+            fibre.name for fibre in self.member.cross.properties(self.index, np.zeros(1)).fibres
+        )
 
     def factors(self, u: Array) -> Array:
-        """What stresses, normal and along y and along z, take of each force at ratios ``u``: (3, fibres, forces, u...)."""
+        """What stresses, normal and along y and along z, take of each force at ratios ``u``: (3,
+        fibres, forces, u...).
+        """
         return self.member.cross.factors(self.index, u)
 
 
@@ -63,21 +69,29 @@ class Member:
 
     @classmethod
     def of(cls, solution: Solution, link: str, *, spun: bool = False) -> Member:
-        """A link of a solution; ``spun`` if what is asked of it is the same however a bar is turned about its line.
+        """A link of a solution; ``spun`` if what is asked of it is the same however a bar is turned
+        about its line.
 
-        Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, equilibrium leaves its forces
-        open, its cross-section bears torsion of which its stiffness is not known, or it is a bar whose cross-section is not round
-        and has no declared direction.
+        Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted,
+        equilibrium leaves its forces open, its cross-section bears torsion of which its stiffness
+        is not known, or it is a bar whose cross-section is not round and has no declared direction.
         """
         check_kind("strength", solution, "a Solution", Solution)
         law, body = solution.section(link).law, solution.description["bodies"][link]
         if "beam" not in body:
             having = ", ".join(beams_of(solution.description))
-            raise DeclarationError(f"link '{link}' has no beam, which says what it is made of; links with one: {having or 'none'}")
+            raise DeclarationError(
+                f"link '{link}' has no beam, which says what it is made of; links with one:"
+                f" {having or 'none'}"
+            )
         space = in_space(solution.description)
-        if open_ := [force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")]:
+        if open_ := [
+            force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")
+        ]:
             names = " and ".join(open_)
-            raise DeclarationError(f"link '{link}': equilibrium does not determine {names}, so its strength is open")
+            raise DeclarationError(
+                f"link '{link}': equilibrium does not determine {names}, so its strength is open"
+            )
         member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
         bars, aimed = solution.description.get("bars", ()), solution.description.get("beside", ())
@@ -87,12 +101,17 @@ class Member:
 
     @cached_property
     def counted(self) -> Member:
-        """The same at the instants that count: see :func:`.counted`. Raises :class:`.DeclarationError` where none does."""
+        """The same at the instants that count: see :func:`.counted`.
+
+        Raises :class:`.DeclarationError` where none does.
+        """
         counts = counted(np.moveaxis(self.at(np.tile([0.0, 1.0], (self.t.size, 1))), 1, 2))
         if counts.all():
             return self
         if not counts.any():
-            raise DeclarationError(f"link '{self.link}': friction is at rest at all instants, so its strength is open")
+            raise DeclarationError(
+                f"link '{self.link}': friction is at rest at all instants, so its strength is open"
+            )
         return self.during(np.flatnonzero(counts))
 
     @cached_property
@@ -112,13 +131,17 @@ class Member:
 
     def during(self, instants: Any) -> Member:
         """The same at some of the instants, a slice or their numbers."""
-        return Member(self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space)
+        return Member(
+            self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space
+        )
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
         """Its parts, in order along the link."""
         breaks = self.beam.course.breaks
-        return tuple(c for k, (a, b) in enumerate(itertools.pairwise(breaks)) for c in self._cells(k, a, b))
+        return tuple(
+            c for k, (a, b) in enumerate(itertools.pairwise(breaks)) for c in self._cells(k, a, b)
+        )
 
     @property
     def degree(self) -> int:
@@ -128,10 +151,17 @@ class Member:
 
     @property
     def marks(self) -> list[Array]:
-        """Ratios (t,) between which section forces are polynomials: stations, ends of loads, and breaks of the density."""
+        """Ratios (t,) between which section forces are polynomials: stations, ends of loads, and
+        breaks of the density.
+        """
         still = np.zeros_like(self.t)
-        found = [load.station for load in self.law.loads] + [mark for spread in self.law.spreads for mark in spread.marks]
-        return [np.clip(mark, 0.0, 1.0) for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))]
+        found = [load.station for load in self.law.loads] + [
+            mark for spread in self.law.spreads for mark in spread.marks
+        ]
+        return [
+            np.clip(mark, 0.0, 1.0)
+            for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))
+        ]
 
     def cell_at(self, u: float, side: Side) -> Cell:
         """The part in which a ratio is; at a border that on one of its sides."""
@@ -144,11 +174,15 @@ class Member:
         for degree in _DEGREES if first is not last else _DEGREES[:1]:
             nodes, weights = interpolation(degree)
             finer = np.linspace(-1.0, 1.0, 2 * degree + 3)
-            here, there = (self.cross.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer))
+            here, there = (
+                self.cross.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer)
+            )
             told = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
             # Of each force its own unit.
             size = np.abs(there).max(axis=(0, 1, 3), keepdims=True)
-            if np.all(np.abs(told - there) <= _EXACT * size) or (high - low < _NARROW and degree == _DEGREES[-1]):
+            if np.all(np.abs(told - there) <= _EXACT * size) or (
+                high - low < _NARROW and degree == _DEGREES[-1]
+            ):
                 yield Cell(low, high, self, index, degree)
                 return
         middle = (low + high) / 2
@@ -159,8 +193,14 @@ class Member:
         if not self.space or self.cross.properties(0, 0.0).torsion is not None:
             return
         ends = np.zeros((self.t.size, 1)) + np.linspace(0.0, 1.0, 9)
-        twist, bending = (float(np.fmax.reduce(np.abs(self.law.at(force, ends)), axis=None)) for force in ("torsion", "bending"))
+        twist, bending = (
+            float(np.fmax.reduce(np.abs(self.law.at(force, ends)), axis=None))
+            for force in ("torsion", "bending")
+        )
         if twist > _TWIST * (twist + bending):
             kind = self.beam.course.cells[0][0].kind
             how = "give its properties by beams.given, with its torsion, or by beams.analysed"
-            raise DeclarationError(f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula; {how}")
+            raise DeclarationError(
+                f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula;"
+                f" {how}"
+            )

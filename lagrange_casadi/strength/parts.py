@@ -18,7 +18,9 @@ NEEDED = ("yield_strength", "elasticity")
 
 @public
 def safeties(solution: Solution) -> Iterator[Safety]:
-    """The factors of safety of links that have a beam, and of joints that have pins or bearings; not of those that are open."""
+    """The factors of safety of links that have a beam, and of joints that have pins or bearings;
+    not of those that are open.
+    """
     return (found for found in looked(solution) if found.verdicts)
 
 
@@ -33,21 +35,36 @@ def looked(solution: Solution) -> Iterator[Safety]:
 
 
 def untold(solution: Solution) -> dict[str, str]:
-    """Links that have a beam and joints that have pins or bearings of which no factor of safety is told, and why."""
+    """Links that have a beam and joints that have pins or bearings of which no factor of safety is
+    told, and why.
+    """
     links, joints = _parts(solution)
-    reasons = {link: _reason(lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link) for link in links}
-    reasons |= {joint: _reason(lambda name: joint_safety(solution, name), joint) for joint in joints}
+    reasons = {
+        link: _reason(
+            lambda name: Member.of(solution, name).beam.material.needs("safety", *NEEDED), link
+        )
+        for link in links
+    }
+    reasons |= {
+        joint: _reason(lambda name: joint_safety(solution, name), joint) for joint in joints
+    }
     return {part: reason for part, reason in reasons.items() if reason}
 
 
 def _parts(solution: Solution) -> tuple[list[str], list[str]]:
     """The links that have a beam and sections, and the joints that have something fitted."""
     beams = beams_of(solution.description)
-    return [link for link in solution.links_with_sections if link in beams], fitted_of(solution.description)
+    return [link for link in solution.links_with_sections if link in beams], fitted_of(
+        solution.description
+    )
 
 
-def part_safety(solution: Solution, part: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
-    """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and :func:`.joint_safety`."""
+def part_safety(
+    solution: Solution, part: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+) -> Safety:
+    """The factors of safety of a link, or of what is fitted to a joint: see :func:`.safety` and
+    :func:`.joint_safety`.
+    """
     if part in solution.description["joints"]:
         return joint_safety(solution, part)
     return safety(solution, part, criterion=criterion, yielding=yielding)
@@ -56,7 +73,10 @@ def part_safety(solution: Solution, part: str, *, criterion: str = "goodman", yi
 def fitted_in(solution: Solution) -> tuple[str, ...]:
     """The joints that have pins or bearings whose reactions are told."""
     fitted = fitted_of(solution.description)
-    forces = {name: [o for o in solution.outputs if o.group == "reaction" and o.part == name] for name in fitted}
+    forces = {
+        name: [o for o in solution.outputs if o.group == "reaction" and o.part == name]
+        for name in fitted
+    }
     return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
 
 
@@ -64,12 +84,18 @@ def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
     """The links whose stresses are told, and whose material has some numbers."""
     bodies = solution.description["bodies"]
     known = (link for link in solution.links_with_sections if not _reason(solution.stress, link))
-    return tuple(link for link in known if all(bodies[link]["beam"]["material"][name] is not None for name in numbers))
+    return tuple(
+        link
+        for link in known
+        if all(bodies[link]["beam"]["material"][name] is not None for name in numbers)
+    )
 
 
 def bending_of(solution: Solution) -> tuple[str, ...]:
     """The links whose deflections are told."""
-    return tuple(link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link))
+    return tuple(
+        link for link in strong_of(solution, "elasticity") if not _reason(solution.deflection, link)
+    )
 
 
 def _reason(asked: Callable[[str], object], part: str) -> str:

@@ -14,7 +14,9 @@ from ..errors import DeclarationError
 
 
 class Swing(NamedTuple):
-    """A swing between two values of a history, at the indices ``first`` and ``last``; it comes 1 or 1/2 ``times``."""
+    """A swing between two values of a history, at the indices ``first`` and ``last``; it comes 1 or
+    1/2 ``times``.
+    """
 
     size: float
     mean: float
@@ -36,9 +38,11 @@ def reversals(history: Array) -> Array:
 
 @public
 def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> list[Swing]:
-    """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which each counts whole.
+    """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which
+    each counts whole.
 
-    One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no finite numbers.
+    One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no
+    finite numbers.
     """
     values = np.asarray(history, float)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all():
@@ -59,7 +63,10 @@ def rainflow(history: Array | Sequence[float], *, repeating: bool = False) -> li
     for index in turns.tolist():
         stack.append(index)
         while len(stack) > 2:
-            newest, before = abs(level[stack[-1]] - level[stack[-2]]), abs(level[stack[-2]] - level[stack[-3]])
+            newest, before = (
+                abs(level[stack[-1]] - level[stack[-2]]),
+                abs(level[stack[-2]] - level[stack[-3]]),
+            )
             if newest < before:
                 break
             if len(stack) == 3 and not repeating:

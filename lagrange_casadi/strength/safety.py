@@ -1,4 +1,6 @@
-"""Is a link strong enough: factors of safety against yielding, buckling and fatigue, what governs, and how long it lasts."""
+"""Is a link strong enough: factors of safety against yielding, buckling and fatigue, what governs,
+and how long it lasts.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ from .worst import worst
 
 @dataclass(frozen=True)
 class Verdict:
-    """A factor of safety against a way to fail: by how much all loads may grow; and where it is decided, in words."""
+    """A factor of safety against a way to fail: by how much all loads may grow; and where it is
+    decided, in words.
+    """
 
     against: str
     factor: float
@@ -34,7 +38,9 @@ class Verdict:
 @public
 @dataclass(frozen=True)
 class Safety:
-    """The factors of safety of a link; what ``is_open`` could not be looked at, each with its reason."""
+    """The factors of safety of a link; what ``is_open`` could not be looked at, each with its
+    reason.
+    """
 
     link: str
     verdicts: tuple[Verdict, ...]
@@ -56,14 +62,19 @@ class Safety:
         return 1.0 / self.factor if self.factor > 0.0 else math.inf
 
     def against(self, what: str) -> float:
-        """The factor of safety against ``yield``, ``buckling`` or ``fatigue``; NaN where it is open."""
-        return next((verdict.factor for verdict in self.verdicts if verdict.against == what), math.nan)
+        """The factor of safety against ``yield``, ``buckling`` or ``fatigue``; NaN where it is
+        open.
+        """
+        return next(
+            (verdict.factor for verdict in self.verdicts if verdict.against == what), math.nan
+        )
 
 
 @dataclass(frozen=True)
 class Life:
-    """How long a link lasts, its span of time repeated: ``damage`` by Miner's sum of one span, ``cycles`` and ``hours`` until it is
-    1, infinite where no swing is above the endurance limit; and where, by ratio xi/l and fibre.
+    """How long a link lasts, its span of time repeated: ``damage`` by Miner's sum of one span,
+    ``cycles`` and ``hours`` until it is 1, infinite where no swing is above the endurance limit;
+    and where, by ratio xi/l and fibre.
 
     A life below a thousand cycles is told by a line that begins there, and is a guess.
     """
@@ -78,27 +89,44 @@ class Life:
 
 @public
 def stress(solution: Solution, link: str) -> Stress:
-    """The stresses in a link. Raises :class:`.DeclarationError` where it has no beam, or no sections."""
+    """The stresses in a link.
+
+    Raises :class:`.DeclarationError` where it has no beam, or no sections.
+    """
     return Stress(Member.of(solution, link))
 
 
 @public
-def safety(solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
+def safety(
+    solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+) -> Safety:
     """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
 
-    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches, and counts swings by a ``criterion`` of
-    :data:`.CRITERIA`, or looks for the critical plane by ``findley``. It is open where the material has no endurance limit,
-    or lacks the strength that the criterion needs.
+    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches, and
+    counts swings by a ``criterion`` of :data:`.CRITERIA`, or looks for the critical plane by
+    ``findley``. It is open where the material has no endurance limit, or lacks the strength that
+    the criterion needs.
 
-    Raises :class:`.DeclarationError` where the material lacks any other number that is needed, and :class:`.UnknownNameError` for a
-    ``criterion`` or a kind of stress that is none.
+    Raises :class:`.DeclarationError` where the material lacks any other number that is needed, and
+    :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
     """
     member = Member.of(solution, link)
-    return judged(member, as_column(solution.description, member), criterion=criterion, yielding=yielding)
+    return judged(
+        member, as_column(solution.description, member), criterion=criterion, yielding=yielding
+    )
 
 
-def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: str = "von_mises", enough: float = 0.0) -> Safety:
-    """The same of a link in numbers; what comes after a factor that is not ``enough`` is left out."""
+def judged(
+    member: Member,
+    of: Column,
+    *,
+    criterion: str = "goodman",
+    yielding: str = "von_mises",
+    enough: float = 0.0,
+) -> Safety:
+    """The same of a link in numbers; what comes after a factor that is
+    not ``enough`` is left out.
+    """
     if criterion not in (known := (*CRITERIA, FINDLEY)):
         raise UnknownNameError("fatigue criterion", criterion, known)
     member, link = member.counted, member.link
@@ -122,14 +150,21 @@ def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
         plane, place, fibre = worst_plane(stress)
         value = plane_factor(plane, material)
         told = (
-            f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on a plane at "
-            f"{math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
+            f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on"
+            f" a plane at {math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
         )
     else:
         (value, *_), place, fibre, swings = worst(stress, factor_score(material, criterion))
         k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
-        told = f"mean {swings.mean[k] / 1e6:.4g} MPa, amplitude {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
-    return Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}")
+        told = (
+            f"mean {swings.mean[k] / 1e6:.4g} MPa, amplitude {swings.amplitude[k] / 1e6:.4g} MPa by"
+            f" {criterion}"
+        )
+    return Verdict(
+        "fatigue",
+        value,
+        f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}",
+    )
 
 
 def as_column(description: Description, member: Member) -> Column:
@@ -141,12 +176,17 @@ def as_column(description: Description, member: Member) -> Column:
 def yielded(member: Member, peak: StressPeak) -> Verdict:
     """The factor of safety of a link against yielding, by the peak of a stress."""
     (strength,) = member.beam.material.needs("safety against yielding", "yield_strength")
-    where = f"{peak.kind} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
+    where = (
+        f"{peak.kind} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f},"
+        f" {peak.fibre}"
+    )
     return Verdict("yield", strength / abs(peak.value) if peak.value else math.inf, where)
 
 
 def buckling(member: Member, of: Column) -> Verdict:
-    """The factor of safety of a link against buckling, with the largest moment along it at every instant."""
+    """The factor of safety of a link against buckling, with the largest moment along it at every
+    instant.
+    """
     law = member.law
     compression = -law.reached("axial")[1][0]
     names = ("bending_z", "bending_y") if member.space else ("bending",)
@@ -157,19 +197,25 @@ def buckling(member: Member, of: Column) -> Verdict:
     if not used[k]:
         return Verdict("buckling", math.inf, "nothing is compressed")
     axis = int(np.argmin(of.critical))
-    way = ("along y", "along z")[axis] if member.space else ("in the plane", "out of the plane")[axis]
+    way = (
+        ("along y", "along z")[axis] if member.space else ("in the plane", "out of the plane")[axis]
+    )
     kind = "Euler" if of.critical[axis] >= of.euler[axis] * (1.0 - 1e-12) else "Johnson"
     load = f"{kind}'s {of.critical[axis]:.4g} N {way}, slenderness {of.slenderness[axis]:.3g}"
     return Verdict(
-        "buckling", 1.0 / float(used[k]), f"{load}; {compression[k]:.4g} N and {moments[0][k]:.4g} N m at t = {member.t[k]:.5g} s"
+        "buckling",
+        1.0 / float(used[k]),
+        f"{load}; {compression[k]:.4g} N and {moments[0][k]:.4g} N m at t = {member.t[k]:.5g} s",
     )
 
 
 @public
 def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
-    """How long a link lasts, its span of time repeated for ever: rainflow counting, the mean by a criterion, Miner's sum.
+    """How long a link lasts, its span of time repeated for ever: rainflow counting, the mean by a
+    criterion, Miner's sum.
 
-    Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no endurance limit.
+    Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no
+    endurance limit.
     """
     member = Member.of(solution, link).counted
     material = member.beam.material

@@ -1,11 +1,13 @@
 """Stresses in a link of a solution, over time, along it, and at the fibres of its cross-section.
 
-They are linear in section forces (:mod:`..equations.stress`), so between two marks they are polynomials of xi, or products of these
-with smooth functions of the cross-section, which are replaced by polynomials that agree to 1e-13.
+They are linear in section forces (:mod:`..equations.stress`), so between two marks they are
+polynomials of xi, or products of these with smooth functions of the cross-section, which are
+replaced by polynomials that agree to 1e-13.
 
-The largest of sqrt(s^2 + k t^2) along a link is sought among all summits of its square. How far a square may rise
-between the places at which it is looked at is bounded by Ehlich and Zeller, *Schwankung von Polynomen zwischen Gitterpunkten*,
-Math. Zeitschrift 86 (1964): where nothing can be above what was found, nothing is sought.
+The largest of sqrt(s^2 + k t^2) along a link is sought among all summits of its square. How far a
+square may rise between the places at which it is looked at is bounded by Ehlich and Zeller,
+*Schwankung von Polynomen zwischen Gitterpunkten*, Math. Zeitschrift 86 (1964): where nothing can be
+above what was found, nothing is sought.
 """
 
 from __future__ import annotations
@@ -31,17 +33,20 @@ from .member import Cell, Member
 
 _LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
 _BESIDE, _STEPS = 0.9, 40
-"""Of what is largest: what may be beside the summit. And steps of the golden section: where a summit is to 1e-9, it is to 1e-18.
+"""Of what is largest: what may be beside the summit.
+
+And steps of the golden section: where a summit is to 1e-9, it is to 1e-18.
 """
 _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
 @dataclass(frozen=True)
 class StressPeak:
-    """The stress that is largest in size, with its sign [Pa], and where: time [s], ratio xi/l, and the fibre's name.
+    """The stress that is largest in size, with its sign [Pa], and where: time [s], ratio xi/l, and
+    the fibre's name.
 
-    ``notch`` tells whether it is the stress at a notch, its factors included. Where a peak between the instants cannot be told,
-    ``value`` is NaN, and ``least`` the largest size that was found.
+    ``notch`` tells whether it is the stress at a notch, its factors included. Where a peak between
+    the instants cannot be told, ``value`` is NaN, and ``least`` the largest size that was found.
     """
 
     kind: str
@@ -55,7 +60,9 @@ class StressPeak:
 
 @dataclass(frozen=True, eq=False)
 class Largest:
-    """The stress largest in size along a link and over its fibres at every instant, each (t,): value, ratio xi/l, fibre's name."""
+    """The stress largest in size along a link and over its fibres at every instant, each (t,):
+    value, ratio xi/l, fibre's name.
+    """
 
     value: Array
     xi: Array
@@ -67,28 +74,41 @@ class Largest:
 class Stress:
     """The stresses in a link, nominal but where notches are said.
 
-    Kinds are ``normal``, positive in tension; ``shear``, its size; ``von_mises`` and ``tresca``, never negative. Methods raise
-    :class:`.UnknownNameError` for any other.
+    Kinds are ``normal``, positive in tension; ``shear``, its size; ``von_mises`` and ``tresca``,
+    never negative. Methods raise :class:`.UnknownNameError` for any other.
     """
 
     member: Member
 
     def __repr__(self) -> str:
-        return f"<Stress in '{self.member.link}': {self.member.t.size} instants, {len(self.member.cells[0].names)} fibres>"
+        return (
+            f"<Stress in '{self.member.link}': {self.member.t.size} instants,"
+            f" {len(self.member.cells[0].names)} fibres>"
+        )
 
     def grid(self, kind: str, xi: Array | None = None) -> Array:
-        """A stress (t, xi) over ratios, by default those of the solution: the largest in size of all fibres, on the tip's side."""
+        """A stress (t, xi) over ratios, by default those of the solution: the largest in size of
+        all fibres, on the tip's side.
+        """
         weights = _weights(kind)
         u = self.member.xi if xi is None else np.atleast_1d(xi)
         if u.ndim != 1 or not ((u >= 0.0) & (u <= 1.0)).all():
-            raise DeclarationError(f"stress: expected a row of ratios xi/l from 0 to 1, got {shown(xi)}")
+            raise DeclarationError(
+                f"stress: expected a row of ratios xi/l from 0 to 1, got {shown(xi)}"
+            )
         found = np.empty((self.member.t.size, u.size))
         for cell in self.member.cells:
             inside = np.flatnonzero((u >= cell.low) & ((u < cell.high) | (cell.high == 1.0)))
             factors = cell.factors(u[inside])
-            for start in range(0, inside.size, width := max(1, _BLOCK // (3 * len(cell.names) * self.member.t.size))):
+            for start in range(
+                0,
+                inside.size,
+                width := max(1, _BLOCK // (3 * len(cell.names) * self.member.t.size)),
+            ):
                 chosen = inside[start : start + width]
-                forces = self.member.at(np.broadcast_to(u[chosen], (self.member.t.size, chosen.size)))
+                forces = self.member.at(
+                    np.broadcast_to(u[chosen], (self.member.t.size, chosen.size))
+                )
                 values = np.einsum("cfkn,ktn->cftn", factors[..., start : start + width], forces)
                 squares = squared(values, weights)
                 best = np.argmax(squares, axis=0)[None]
@@ -97,20 +117,32 @@ class Stress:
         return found
 
     def at(self, xi: Share, side: Side = "tip", notch: Notch | None = None) -> Array:
-        """The stresses at a ratio: (3, fibres, t), normal, and shear along y and z, with the factors of a notch where given."""
+        """The stresses at a ratio: (3, fibres, t), normal, and shear along y and z, with the
+        factors of a notch where given.
+        """
         cell = self.member.cell_at(xi, side)
         forces = self.member.at(np.full((self.member.t.size, 1), xi), side, self._scale(notch))
-        return np.asarray(np.einsum("cfk,kt->cft", cell.factors(np.array([xi]))[..., 0], forces[..., 0]))
+        return np.asarray(
+            np.einsum("cfk,kt->cft", cell.factors(np.array([xi]))[..., 0], forces[..., 0])
+        )
 
     def fibres(self, xi: Share, side: Side = "tip") -> tuple[str, ...]:
         """The names of the fibres at a ratio."""
         return self.member.cell_at(xi, side).names
 
     def largest(self, kind: str) -> Largest:
-        """A stress largest in size at every instant, exactly along the link, whatever the grid; NaN where none counts."""
+        """A stress largest in size at every instant, exactly along the link, whatever the grid; NaN
+        where none counts.
+        """
         moving = self.member.counted
-        values, places, fibres = zip(*(stress._largest(kind) for stress in Stress(moving)._blocks()), strict=True)
-        value, place, names = np.concatenate(values), np.concatenate(places), list(itertools.chain.from_iterable(fibres))
+        values, places, fibres = zip(
+            *(stress._largest(kind) for stress in Stress(moving)._blocks()), strict=True
+        )
+        value, place, names = (
+            np.concatenate(values),
+            np.concatenate(places),
+            list(itertools.chain.from_iterable(fibres)),
+        )
         if moving is self.member:
             return Largest(value, place, tuple(names))
         found, told = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
@@ -119,12 +151,17 @@ class Stress:
         return Largest(found[0], found[1], tuple(told))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
-        """The largest over all instants that count; where ``notches`` are asked for, their stresses and theirs alone."""
+        """The largest over all instants that count; where ``notches`` are asked for, their stresses
+        and theirs alone.
+        """
         moving = Stress(self.member.counted)
         if notches:
             _weights(kind)
             self._require_notches()
-            return max((moving._at_notch(kind, notch) for notch in self.member.beam.notches), key=lambda peak: abs(peak.value))
+            return max(
+                (moving._at_notch(kind, notch) for notch in self.member.beam.notches),
+                key=lambda peak: abs(peak.value),
+            )
         best: StressPeak | None = None
         for stress in moving._blocks():
             found = stress._highest(kind, 0.0 if best is None else abs(best.value))
@@ -137,15 +174,22 @@ class Stress:
         """The size of a stress at notches, their factors included, at every instant (t,)."""
         weights = _weights(kind)
         self._require_notches()
-        each = [self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES]
-        return np.asarray(np.sqrt(np.max([squared(values, weights).max(axis=0) for values in each], axis=0)))
+        each = [
+            self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES
+        ]
+        return np.asarray(
+            np.sqrt(np.max([squared(values, weights).max(axis=0) for values in each], axis=0))
+        )
 
     def _require_notches(self) -> None:
         if not self.member.beam.notches:
             raise DeclarationError(f"the beam of link '{self.member.link}' has no notches")
 
     def _highest(self, kind: str, floor: float) -> StressPeak | None:
-        """The peak of a few instants; None where it is not above a floor. A coarse look leaves out instants that have it not."""
+        """The peak of a few instants; None where it is not above a floor.
+
+        A coarse look leaves out instants that have it not.
+        """
         rows = [part for cell in self.member.cells for part in self._parts(cell)]
         looked = [part.looked(_weights(kind), _GLANCES) for part in rows]
         least = np.max([squares.max(axis=(1, 2)) for squares, _ in looked], axis=0)
@@ -165,7 +209,16 @@ class Stress:
             squares = squared(values, _weights(kind))
             fibre, k = np.unravel_index(int(np.argmax(squares)), squares.shape)
             value = float(_signed(kind, squares[fibre, k], values[0, fibre, k]))
-            found.append(StressPeak(kind, value, float(self.member.t[k]), notch.at, self.fibres(notch.at, side)[fibre], True))
+            found.append(
+                StressPeak(
+                    kind,
+                    value,
+                    float(self.member.t[k]),
+                    notch.at,
+                    self.fibres(notch.at, side)[fibre],
+                    True,
+                )
+            )
         return max(found, key=lambda peak: abs(peak.value))
 
     def _scale(self, notch: Notch | None) -> Array:
@@ -174,10 +227,16 @@ class Stress:
     def _blocks(self) -> Iterator[Stress]:
         """The stresses over few instants after another."""
         member = self.member
-        each = sum((_LOOKS * (member.degree + cell.degree) + 1) * len(cell.names) for cell in member.cells)
+        each = sum(
+            (_LOOKS * (member.degree + cell.degree) + 1) * len(cell.names) for cell in member.cells
+        )
         height = max(1, _BLOCK // (each * (len(member.marks) + 1)))
         for start in range(0, member.t.size, height):
-            yield self if height >= member.t.size else Stress(member.during(slice(start, start + height)))
+            yield (
+                self
+                if height >= member.t.size
+                else Stress(member.during(slice(start, start + height)))
+            )
 
     def _largest(self, kind: str) -> tuple[Array, Array, list[str]]:
         """Values, ratios and fibres at every instant."""
@@ -197,7 +256,12 @@ class Stress:
                 last = order[np.append(np.diff(t[order]) != 0, True)]
                 better = last[square[last] > value[t[last]]]
                 at = t[better]
-                value[at], place[at], signs[at], fibre[at] = square[better], u[better], sign[better], number * 1000 + f[better]
+                value[at], place[at], signs[at], fibre[at] = (
+                    square[better],
+                    u[better],
+                    sign[better],
+                    number * 1000 + f[better],
+                )
         told = [names[k // 1000][k % 1000] for k in fibre.tolist()]
         return _signed(kind, value, signs), place, told
 
@@ -232,13 +296,17 @@ class _Part:
         return np.asarray(np.sum(self._factors(u) * self.member.at(u), axis=2) @ weights)
 
     def _factors(self, u: Array) -> Array:
-        """Of a cell of one cross-section, the same everywhere; between marks that stand still, at all instants."""
+        """Of a cell of one cross-section, the same everywhere; between marks that stand still, at
+        all instants.
+        """
         if not self.cell.degree:
             return self.cell.factors(np.full((1, 1), self.cell.low))
         return self.cell.factors(u if np.ptp(self.low) or np.ptp(self.high) else u[:1])
 
     def looked(self, weights: tuple[float, float], looks: int) -> tuple[Array, float]:
-        """The squares (t, fibres, looks), both ends among them, and how many times higher they may be in between."""
+        """The squares (t, fibres, looks), both ends among them, and how many times higher they may
+        be in between.
+        """
         places = _places(self.degree, looks)
         values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
         # A square is not negative: it is bounded about half of what is largest.
@@ -246,34 +314,46 @@ class _Part:
         return np.moveaxis(squared(values, weights), 0, 1), factor
 
     def summits(self, t: Any, f: Any, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
-        """The largest squares at some instants and fibres, their ratios, and the sign of the normal stress there."""
+        """The largest squares at some instants and fibres, their ratios, and the sign of the normal
+        stress there.
+        """
         square, x, sign = summits(self.coefficients[:, f, t], weights)
         return square, self.low[t] + (self.high - self.low)[t] * (x + 1.0) / 2, sign
 
 
 def _places(degree: int, looks: int) -> Array:
-    """Where squares, of twice the degree, are looked at: so many nodes of Chebyshev's for each degree, and both ends."""
+    """Where squares, of twice the degree, are looked at: so many nodes of Chebyshev's for each
+    degree, and both ends.
+    """
     return np.concatenate([[-1.0], chebyshev.chebpts1(max(looks * degree, 8)), [1.0]])
 
 
 def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
-    """The largest square of stresses from -1 to 1, where it is, and the sign of the normal stress there, each (n,).
+    """The largest square of stresses from -1 to 1, where it is, and the sign of the normal stress
+    there, each (n,).
 
-    ``c`` (3, n, degree + 1) are coefficients of Chebyshev's polynomials of normal stress, and of shear stress along y and along z.
-    In the angle whose cosine the place is, a square of degree n bends by no more than n^2 times its largest value (Bernstein's
-    inequality), so beside its summit it was looked at where it is lower by a twelfth at most. From every such place that is higher
+    ``c`` (3, n, degree + 1) are coefficients of Chebyshev's polynomials of normal stress, and of
+    shear stress along y and along z. In the angle whose cosine the place is, a square of degree n
+    bends by no more than n^2 times its largest value (Bernstein's inequality), so beside its summit
+    it was looked at where it is lower by a twelfth at most. From every such place that is higher
     than its neighbours it is followed upward, between these.
     """
     degree = c.shape[-1] - 1
     places = _places(degree, _LOOKS)
     squares = squared(c @ chebyshev.chebvander(places, degree).T, weights)
     edge = np.full((len(squares), 1), -1.0)
-    higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (squares >= np.hstack([squares[:, 1:], edge]))
+    higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (
+        squares >= np.hstack([squares[:, 1:], edge])
+    )
     rows, k = np.nonzero(higher & (squares >= _BESIDE * squares.max(axis=1, keepdims=True)))
     own = np.moveaxis(c[:, rows], 2, 0)
 
     def square(x: Array) -> Array:
-        return np.asarray(squared(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights))
+        return np.asarray(
+            squared(
+                np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights
+            )
+        )
 
     x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
     found, looked = square(x), squares[rows, k]
@@ -284,7 +364,9 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
 
 
 def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Where a function is largest between two places, between which it has one summit: by the golden section."""
+    """Where a function is largest between two places, between which it has one summit: by the
+    golden section.
+    """
     golden = (math.sqrt(5.0) - 1.0) / 2
     inner, outer = high - golden * (high - low), low + golden * (high - low)
     at_inner, at_outer = function(inner), function(outer)

@@ -27,7 +27,9 @@ _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
 class Place(NamedTuple):
-    """Where a link is looked at: a ratio xi/l, the side of it, and the notch whose factors count."""
+    """Where a link is looked at: a ratio xi/l, the side of it, and
+    the notch whose factors count.
+    """
 
     xi: float
     side: Side
@@ -35,9 +37,11 @@ class Place(NamedTuple):
 
 
 def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
-    """Where along a link and at which fibre a score is smallest: its value, the place, the fibre, and the swings there.
+    """Where along a link and at which fibre a score is smallest: its value, the place, the fibre,
+    and the swings there.
 
-    Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is worst, finer and finer.
+    Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is
+    worst, finer and finer.
     """
     found: list[tuple[tuple[float, ...], Place, str, Loaded]] = []
 
@@ -54,27 +58,41 @@ def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, 
 
 
 def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
-    """Look at the places of a link, and then around the one that ``look`` says is the worst so far, finer and finer."""
+    """Look at the places of a link, and then around the one that ``look`` says is the worst so far,
+    finer and finer.
+    """
     place, step = look(places(stress)), 1.0 / (FEW - 1)
     for _ in range(_ROUNDS):
         if place.notch is not None:
             return
         around = np.linspace(place.xi - step, place.xi + step, _ZOOM).tolist()
-        place, step = look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0), step * 2 / (_ZOOM - 1)
+        place, step = (
+            look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0),
+            step * 2 / (_ZOOM - 1),
+        )
 
 
 def places(stress: Stress) -> Iterator[Place]:
-    """Where along a link fatigue is looked at first: evenly, at both sides of stations and steps, and at notches."""
+    """Where along a link fatigue is looked at first: evenly, at both sides of stations and steps,
+    and at notches.
+    """
     member = stress.member
     still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]
     steps = {*still, *(cell.low for cell in member.cells), *(cell.high for cell in member.cells)}
     yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, FEW).tolist())
     yield from (Place(x, side, None) for x, side in itertools.product(sorted(steps), _SIDES))
-    yield from (Place(float(notch.at), side, felt(notch)) for notch, side in itertools.product(member.beam.notches, _SIDES))
+    yield from (
+        Place(float(notch.at), side, felt(notch))
+        for notch, side in itertools.product(member.beam.notches, _SIDES)
+    )
 
 
-def told(stress: Stress, places: Iterable[Place]) -> Iterator[tuple[Array, list[tuple[Place, str]]]]:
-    """The stresses at places, (3, fibres of all of them, t), and the place and the name of each fibre; some places after others."""
+def told(
+    stress: Stress, places: Iterable[Place]
+) -> Iterator[tuple[Array, list[tuple[Place, str]]]]:
+    """The stresses at places, (3, fibres of all of them, t), and the place and the name of each
+    fibre; some places after others.
+    """
     values, fibres, size = list[Array](), list[tuple[Place, str]](), 0
     for place in places:
         values.append(stress.at(place.xi, place.side, place.notch))

@@ -1,7 +1,8 @@
 """Peaks between instants: where a quantity is largest over all times of a solution's span.
 
-A peak of sampled values falls short of the true one by a part that goes with the square of the step. :mod:`.summits` searches
-between them; here the time derivatives that automatic differentiation gives then say at which time a smooth peak is.
+A peak of sampled values falls short of the true one by a part that goes with the square of the
+step. :mod:`.summits` searches between them; here the time derivatives that automatic
+differentiation gives then say at which time a smooth peak is.
 """
 
 from __future__ import annotations
@@ -45,25 +46,31 @@ _NOTHING = 1e-12
 """What is zero but for rounding, over what is largest."""
 
 _NEAR, _LESS = 1e-4, 1e-13
-"""How near to where it was found a smooth peak is, in steps between instants, and how much lower rounding may put it, of itself."""
+"""How near to where it was found a smooth peak is, in steps between instants, and how much lower
+rounding may put it, of itself.
+"""
 
 _TRIALS = 5
 
 
 @public
 def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
-    """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
+    """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`,
+    but over all times of its span.
 
-    A smooth peak is exact to rounding, and its time to 1e-12 of the step or to the derivative's rounding. So is a peak at a kink,
-    and one at a jump, where the higher side counts. Where a quantity grows without bound, the peak is infinite. No peak is below
-    that of the instants. Of several peaks that differ by rounding only, the first one in time is returned.
+    A smooth peak is exact to rounding, and its time to 1e-12 of the step or to the derivative's
+    rounding. So is a peak at a kink, and one at a jump, where the higher side counts. Where a
+    quantity grows without bound, the peak is infinite. No peak is below that of the instants. Of
+    several peaks that differ by rounding only, the first one in time is returned.
 
-    Where the search would take too long, because much may hide between the instants, a peak cannot be told: its value is NaN, and
-    ``least`` the largest size that was found. More instants may help. What equilibrium does not determine is NaN too, without a
-    ``least``; what elasticity tells of it has the peak of the instants.
+    Where the search would take too long, because much may hide between the instants, a peak cannot
+    be told: its value is NaN, and ``least`` the largest size that was found. More instants may
+    help. What equilibrium does not determine is NaN too, without a ``least``; what elasticity tells
+    of it has the peak of the instants.
 
-    Raises :class:`DeclarationError` where the solution is not of this scene, or a motion or constraint is other at a place between
-    instants than on both sides of it; :class:`UnknownNameError` for a name that is none.
+    Raises :class:`DeclarationError` where the solution is not of this scene, or a motion or
+    constraint is other at a place between instants than on both sides of it;
+    :class:`UnknownNameError` for a name that is none.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
     return ContinuousSolution.of(scene, solution.by_equilibrium).refined(sampled)[0]
@@ -71,7 +78,8 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
 @dataclass(frozen=True)
 class Shortfall:
-    """How far the peaks over ``count`` instants fall short of the true ones, over the true ones: the worst and the median force.
+    """How far the peaks over ``count`` instants fall short of the true ones, over the true ones:
+    the worst and the median force.
 
     ``sampled`` is at the instants, ``refined`` between them by :func:`refine`.
     """
@@ -93,51 +101,70 @@ def shortfall(
     t: Times | None = None,
     over: Over | None = None,
 ) -> list[Shortfall]:
-    """How far peaks fall short where a span of time is cut into so many instants, a row for each of ``counts``.
+    """How far peaks fall short where a span of time is cut into so many instants, a row for each of
+    ``counts``.
 
-    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`.
-    ``names`` are full names of quantities; by default all efforts, reactions and section forces that are wanted and determined.
-    Those that are zero but for rounding, grow without bound or are not told are left out. The true peaks are the largest refined
-    ones, of all counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left,
-    and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`. ``names``
+    are full names of quantities; by default all efforts, reactions and section forces that are
+    wanted and determined. Those that are zero but for rounding, grow without bound or are not told
+    are left out. The true peaks are the largest refined ones, of all counts and of twice as many
+    instants. Raises :class:`DeclarationError` for no counts or where no quantity is left, and what
+    :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     timing = scene.timing(t, over)
     start, stop = span_of(scene.prescribed, timing, scene.values(parameters))
     if not counts:
         raise DeclarationError("shortfall: expected at least one number of instants")
     solutions = [
-        evaluate(scene, t=(start, stop, count), parameters=parameters, backend="vm", certificate=False)
+        evaluate(
+            scene, t=(start, stop, count), parameters=parameters, backend="vm", certificate=False
+        )
         for count in (*counts, 2 * max(*counts, timing.count))
     ]
     last = solutions[-1]
     chosen = [name for name in (forces(last) if names is None else names) if last.determined(name)]
-    refined = np.array([[abs(peak.value) for peak in refine(scene, solution, chosen)] for solution in solutions])
-    sampled = np.array([[abs(solution.peak(name).value) for name in chosen] for solution in solutions])
+    refined = np.array(
+        [[abs(peak.value) for peak in refine(scene, solution, chosen)] for solution in solutions]
+    )
+    sampled = np.array(
+        [[abs(solution.peak(name).value) for name in chosen] for solution in solutions]
+    )
     true = refined.max(axis=0, initial=0.0)
     finite = np.where(np.isfinite(true), true, 0.0)
     units = np.array([last.unit(name) for name in chosen])
-    there = np.array([x > _NOTHING * finite[units == unit].max() for x, unit in zip(finite, units, strict=True)], dtype=bool)
+    there = np.array(
+        [x > _NOTHING * finite[units == unit].max() for x, unit in zip(finite, units, strict=True)],
+        dtype=bool,
+    )
     if not there.any():
         raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
     columns = [spread(rows, axis=1) for rows in missing for spread in (np.max, np.median)]
-    return [Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)]
+    return [
+        Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)
+    ]
 
 
 def resultants(solution: Solution) -> list[str]:
     """The full names of the resultants of a solution's reactions that equilibrium determines."""
     joints = dict.fromkeys(output.part for output in solution.outputs if output.group == "reaction")
-    found = (Output("reaction", joint, member) for joint in joints for member in solution.table.reactions)
+    found = (
+        Output("reaction", joint, member) for joint in joints for member in solution.table.reactions
+    )
     there = (output for output in found if solution.made_of(output)[0] in solution.outputs)
     return [str(output) for output in there if solution.determined(output)]
 
 
 @public
 def forces(solution: Solution) -> list[str]:
-    """The full names of a solution's efforts, reactions, section forces, what is largest along links, and own outputs: those that
-    equilibrium determines.
+    """The full names of a solution's efforts, reactions, section forces, what is largest along
+    links, and own outputs: those that equilibrium determines.
     """
-    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section", *LARGEST, "output"))
+    wanted = (
+        output
+        for output in solution.quantities()
+        if output.group in ("effort", "reaction", "section", *LARGEST, "output")
+    )
     return [str(output) for output in wanted if solution.determined(output)]
 
 
@@ -158,11 +185,15 @@ def rates(graph: Program) -> ca.Function:
     if newton is not None:
         # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
         closed = (z, t, d, p)
-        z_rate = newton.step.forward(1)(*closed, *newton.step(*closed), ca.DM.zeros(z.numel()), 1, d_rate, still)[0]
+        z_rate = newton.step.forward(1)(
+            *closed, *newton.step(*closed), ca.DM.zeros(z.numel()), 1, d_rate, still
+        )[0]
     place = (t, d, d_rate, d_acceleration, z, p)
     out = instant(*place)
     out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
-    both = ca.Function("rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"])
+    both = ca.Function(
+        "rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"]
+    )
     return both.expand("rates", {"cse": True})
 
 
@@ -188,8 +219,13 @@ class ContinuousSolution:
 
         Raises :class:`.DeclarationError` where it is not one of this scene.
         """
-        other = DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{scene.name}'")
-        if scene.name != solution.case or scene.parameters.keys() != solution.description["parameters"].keys():
+        other = DeclarationError(
+            f"the solution of '{solution.case}' is not one of this scene of '{scene.name}'"
+        )
+        if (
+            scene.name != solution.case
+            or scene.parameters.keys() != solution.description["parameters"].keys()
+        ):
             raise other
         told = scene.values(values_of(solution.description))
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
@@ -201,7 +237,9 @@ class ContinuousSolution:
 
         def again(t: EvenPoints, names: Sequence[str]) -> ContinuousSolution:
             asked: dict[str, Any] = {"backend": "vm", "certificate": False, "elastic": False}
-            return cls.of(scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked), searched)
+            return cls.of(
+                scene, evaluate(scene, parameters=told, t=t, wanted=names, **asked), searched
+            )
 
         found = cls(graph, stages, solution, p, z, graph.outputs, again, searched)
         if not found.agrees():
@@ -209,7 +247,9 @@ class ContinuousSolution:
         return found
 
     def agrees(self) -> bool:
-        """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""
+        """Whether the graph gives what the solution has: at one of three instants, for at a jump
+        rounding decides.
+        """
         solution = self.solution
         outputs = [output for output in solution.outputs if output not in solution.left_open]
         if not all(output in self.rows for output in outputs):
@@ -217,30 +257,46 @@ class ContinuousSolution:
         outputs = [output for output in outputs if output not in self.graph.loop_angles]
         moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
         some = moving[[0, moving.size // 2, -1]]
-        out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
+        out = self.stages.instant(
+            *self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p
+        ).full()
         units = [solution.unit(output) for output in outputs]
         sizes = dict.fromkeys(units, 0.0)
         for output, unit in zip(outputs, units, strict=True):
             sizes[unit] = max(sizes[unit], float(np.fmax.reduce(np.abs(solution.outputs[output]))))
         rounding = _NOTHING * max(sizes.values(), default=0.0)
-        gaps = [np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs]
+        gaps = [
+            np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs
+        ]
         limits = [_SAME * sizes[unit] + rounding for unit in units]
-        return bool(np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
+        return bool(
+            np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any()
+        )
 
     def in_equal_steps(self, *wanted: str) -> ContinuousSolution:
-        """The same, or what is ``wanted``, from as many instants in equal steps of time, between which peaks are sought."""
+        """The same, or what is ``wanted``, from as many instants in equal steps of time, between
+        which peaks are sought.
+        """
         t = self.solution.t
         names = list(wanted) or list(dict.fromkeys(map(wanted_for, self.solution.outputs)))
         return self.again((float(t[0]), float(t[-1]), t.size), names)
 
-    def refined(self, sampled: Sequence[Peak], listed: Listed | None = None) -> tuple[list[Peak], Array]:
-        """The peaks over all times, with the coordinate of the drive, of quantities whose peaks at the instants are known.
+    def refined(
+        self, sampled: Sequence[Peak], listed: Listed | None = None
+    ) -> tuple[list[Peak], Array]:
+        """The peaks over all times, with the coordinate of the drive, of quantities whose peaks at
+        the instants are known.
 
-        And of each quantity the local peaks that are ``listed``, (q, :data:`.TOPS`, 4): see :class:`.Peaks`.
+        And of each quantity the local peaks that are ``listed``, (q, :data:`.TOPS`, 4): see
+        :class:`.Peaks`.
         """
         over = self.solution.over
-        peaks, tops = (self if are_even(self.solution.t) else self.in_equal_steps()).searched(sampled, listed)
-        return (peaks if over is None else [self.at_the_drive(peak, over.joint) for peak in peaks]), tops
+        peaks, tops = (self if are_even(self.solution.t) else self.in_equal_steps()).searched(
+            sampled, listed
+        )
+        return (
+            peaks if over is None else [self.at_the_drive(peak, over.joint) for peak in peaks]
+        ), tops
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""
@@ -251,7 +307,9 @@ class ContinuousSolution:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
         return self.searched(sampled)[0]
 
-    def searched(self, sampled: Sequence[Peak], listed: Listed | None = None) -> tuple[list[Peak], Array]:
+    def searched(
+        self, sampled: Sequence[Peak], listed: Listed | None = None
+    ) -> tuple[list[Peak], Array]:
         """The same, and local peaks of each: see :meth:`refined`."""
         solution, nothing = self.solution, np.full((TOPS, 4), np.nan)
         found = {Output.of(peak.name): peak for peak in sampled}
@@ -259,7 +317,11 @@ class ContinuousSolution:
         if not sought or (solution.t.size == 1 and listed is None):
             return list(sampled), np.array([nothing for _ in sampled]).reshape(-1, TOPS, 4)
         self._refuse_isolated()
-        turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
+        turned = {
+            k: solution.outputs[name]
+            for k, name in enumerate(sought)
+            if name in self.graph.loop_angles
+        }
         signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
         searched = signals.peaks(units, scales, searching(self.backend), listed)
@@ -279,7 +341,9 @@ class ContinuousSolution:
         return [found[Output.of(peak.name)] for peak in sampled], tops
 
     def _refuse_isolated(self) -> None:
-        """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between instants than on both sides."""
+        """Raise :class:`.DeclarationError` where a motion or constraint is other at a place between
+        instants than on both sides.
+        """
         corners, t, p = self.graph.data.corners, self.solution.t, self.p.tolist()
         corners.refuse_isolated_laws(t, p, between=True)
         if corners.constraints:
@@ -290,7 +354,16 @@ class ContinuousSolution:
         """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        signals = Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+        signals = Signals(
+            self.graph,
+            self.stages,
+            sharpness,
+            quantities,
+            self.solution.t,
+            self.p,
+            self.z,
+            turned=turned,
+        )
         return replace(signals, rounding=sharpness.rounding(*signals.inputs(signals.t, signals.z)))
 
     def quantity(self, output: Output) -> Quantity:
@@ -304,17 +377,32 @@ class ContinuousSolution:
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
         solution = self.solution
-        others = [output for output in solution.quantities() if output in solution.outputs and solution.determined(output)]
+        others = [
+            output
+            for output in solution.quantities()
+            if output in solution.outputs and solution.determined(output)
+        ]
         units = compared([solution.unit(output) for output in (*names, *others)])
         scales = [0.0] * (max(units[: len(names)]) + 1)
         for output, k in zip(others, units[len(names) :], strict=True):
             if k < len(scales):
-                scales[k] = max(scales[k], float(np.fmax.reduce(np.abs(solution.outputs[output]), initial=0.0)))
+                scales[k] = max(
+                    scales[k], float(np.fmax.reduce(np.abs(solution.outputs[output]), initial=0.0))
+                )
         return units[: len(names)], scales
 
-    def timed(self, signals: Signals, names: Sequence[Output], peaks: Peaks) -> tuple[Array, Array, Array]:
-        """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
-        value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
+    def timed(
+        self, signals: Signals, names: Sequence[Output], peaks: Peaks
+    ) -> tuple[Array, Array, Array]:
+        """Values, times and ratios of peaks, the smooth ones at the times where their derivative is
+        zero, by the secant method.
+        """
+        value, t, xi, instants = (
+            peaks.value.copy(),
+            peaks.t.copy(),
+            peaks.xi.copy(),
+            self.solution.t,
+        )
         reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
         if not some:
@@ -328,18 +416,27 @@ class ContinuousSolution:
             with np.errstate(all="ignore"):
                 ahead = now - slope * ((now - before) / (slope - slope_before))
             going = np.abs(ahead - first) < reach
-            before, slope_before = np.where(going, now, before), np.where(going, slope, slope_before)
+            before, slope_before = (
+                np.where(going, now, before),
+                np.where(going, slope, slope_before),
+            )
             now = np.where(going, ahead, now)
         sizes, places, slope = self.slopes(signals, chosen, now)
-        better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (np.abs(slope) < np.abs(slope_first))
+        better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (
+            np.abs(slope) < np.abs(slope_first)
+        )
         t[some], xi[some] = np.where(better, now, first), np.where(better, places, xi[some])
         value[some] = np.where(better & (np.abs(sizes) > np.abs(value[some])), sizes, value[some])
         return value, t, xi
 
-    def slopes(self, signals: Signals, names: Sequence[Output], t: Array) -> tuple[Array, Array, Array]:
-        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its size.
+    def slopes(
+        self, signals: Signals, names: Sequence[Output], t: Array
+    ) -> tuple[Array, Array, Array]:
+        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its
+        size.
 
-        Where along a link a force is largest moves, but for the rate of its size only at a station does that count.
+        Where along a link a force is largest moves, but for the rate of its size only at a station
+        does that count.
         """
         near = signals.near(t)
         z, _ = signals.closed(t, near)
@@ -362,13 +459,21 @@ class ContinuousSolution:
             else:
                 value = columns[self.rows[name], 0]
                 if name in self.graph.loop_angles:
-                    value += math.tau * np.round((self.solution.outputs[name][near[k]] - value) / math.tau)
+                    value += math.tau * np.round(
+                        (self.solution.outputs[name][near[k]] - value) / math.tau
+                    )
                 found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
         return found[0], found[1], found[2]
 
     def law(self, link: str, columns: Array) -> SectionLaw:
-        """A link's law with columns of the graph, or of their rates, for its coefficients, loads and stations."""
-        own = {output: columns[k] for output, k in self.rows.items() if output.along and output.part == link}
+        """A link's law with columns of the graph, or of their rates, for its coefficients, loads
+        and stations.
+        """
+        own = {
+            output: columns[k]
+            for output, k in self.rows.items()
+            if output.along and output.part == link
+        }
         return self.solution.section(link).law.of(link, own)
 
 
@@ -379,6 +484,11 @@ def _columns(quantity: Quantity) -> set[int]:
 
 def wanted_for(output: Output) -> str:
     """What is to be wanted for an output."""
-    kinds = {"effort": "effort", "motion": "motion", "pose": "motion", "utilisation": f"safety:{output.part}"}
+    kinds = {
+        "effort": "effort",
+        "motion": "motion",
+        "pose": "motion",
+        "utilisation": f"safety:{output.part}",
+    }
     kind = "section" if output.along else output.group
     return kinds.get(output.group, f"{kind}:{output.part}" if output.part else kind)

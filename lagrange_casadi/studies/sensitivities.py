@@ -1,4 +1,6 @@
-"""How the outputs of a solution change with the parameters: series over time, section forces over time and xi/l, means, peaks."""
+"""How the outputs of a solution change with the parameters: series over time, section forces over
+time and xi/l, means, peaks.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +34,11 @@ _BLOCK = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Changes:
-    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
+    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the
+    parameter's name.
 
-    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the quantity is as large and changes
-    otherwise: the largest of both has no derivative.
+    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the
+    quantity is as large and changes otherwise: the largest of both has no derivative.
     """
 
     value: float
@@ -47,11 +50,12 @@ class Changes:
 @public
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked for.
+    """The derivatives of a ``solution`` by the parameters of its scene, each made when it is asked
+    for.
 
-    They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
-    :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
-    equilibrium leaves open.
+    They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand
+    still. Methods raise :class:`.UnknownNameError` for a quantity or a parameter that there is not,
+    :class:`.DeclarationError` for a quantity that equilibrium leaves open.
     """
 
     solution: Solution
@@ -66,24 +70,29 @@ class Sensitivities:
         return tuple(self.slopes.graph.data.parameters)
 
     def array(self, name: str, parameter: str) -> Array:
-        """The derivative of a quantity by a parameter over the instants, (t,), of a section force (t, xi).
+        """The derivative of a quantity by a parameter over the instants, (t,), of a section force
+        (t, xi).
 
-        Its unit is the quantity's over the parameter's. At a station, a section force is that on its tip's side.
+        Its unit is the quantity's over the parameter's. At a station, a section force is that on
+        its tip's side.
         """
         return self._all(name)[1][..., self._number(parameter)]
 
     def curvature(self, name: str, parameter: str, other: str) -> Array:
-        """The second derivative of a quantity by two parameters over the instants, (t,), of a section force (t, xi).
+        """The second derivative of a quantity by two parameters over the instants, (t,), of a
+        section force (t, xi).
 
-        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for a motion by samples that does
-        not tell its knots.
+        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for
+        a motion by samples that does not tell its knots.
         """
         row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
         way[0, 2 + self._number(other)] = 1.0
         nowhere = np.full(_BLOCK, np.nan)
 
         def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
-            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[:, 0, 2 + row]
+            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[
+                :, 0, 2 + row
+            ]
 
         return self._made(name, second, ())
 
@@ -102,7 +111,8 @@ class Sensitivities:
             return Changes(rms, self._named((weights * values) @ slopes / rms))
 
     def peak(self, name: str) -> Changes:
-        """How the peak of a quantity over all times of the solution's span changes, between the instants too: see :func:`.refine`.
+        """How the peak of a quantity over all times of the solution's span changes, between the
+        instants too: see :func:`.refine`.
 
         Its slopes are NaN where it has no derivative.
         """
@@ -118,15 +128,29 @@ class Sensitivities:
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
         nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
         ends = np.zeros((2, self.p.size))
-        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
-        tied = ties(self.slopes, self.solution.t, self.p, chosen, values, changes, ends, others) & ~nothing
-        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
-        return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
+        changes = peak_slopes(
+            self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing
+        )
+        tied = (
+            ties(self.slopes, self.solution.t, self.p, chosen, values, changes, ends, others)
+            & ~nothing
+        )
+        every = zip(
+            values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True
+        )
+        return [
+            Changes(value, self._named(slopes), PeakKind(kind), two)
+            for value, slopes, kind, two in every
+        ]
 
     def _largest(self, unit: str) -> float:
         """The largest size over the instants among the series of a unit."""
         solution = self.solution
-        same = (o for o in solution.quantities() if o.group != "section" and solution.determined(o) and solution.unit(o) == unit)
+        same = (
+            o
+            for o in solution.quantities()
+            if o.group != "section" and solution.determined(o) and solution.unit(o) == unit
+        )
         return max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
 
     @cached_property
@@ -145,11 +169,15 @@ class Sensitivities:
 
     def _over_time(self, name: str) -> tuple[Array, Array]:
         if self._known(name).group == "section":
-            raise DeclarationError(f"'{name}': a section force has a mean at every ratio; take that of array(...)")
+            raise DeclarationError(
+                f"'{name}': a section force has a mean at every ratio; take that of array(...)"
+            )
         return self._all(name)
 
     def _all(self, name: str) -> tuple[Array, Array]:
-        """A quantity and its derivatives by all parameters, (t, parameters) or (t, xi, parameters)."""
+        """A quantity and its derivatives by all parameters, (t, parameters)
+        or (t, xi, parameters).
+        """
 
         def first(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
             found = self.slopes.at(t, z, self.p, chosen, xi)
@@ -158,17 +186,26 @@ class Sensitivities:
         both = self._made(name, first, (1 + self.p.size,))
         return both[..., 0], both[..., 1:]
 
-    def _made(self, name: str, at: Callable[[Array, Array, Numbers, Array], Array], size: tuple[int, ...]) -> Array:
+    def _made(
+        self, name: str, at: Callable[[Array, Array, Numbers, Array], Array], size: tuple[int, ...]
+    ) -> Array:
         """What is of a ``size`` at points, over the instants, of a section force over (t, xi)."""
         output, solution = self._known(name), self.solution
         along = solution.xi if output.group == "section" else np.full(1, np.nan)
-        rows, xi = np.repeat(np.arange(solution.t.size), along.size), np.tile(along, solution.t.size)
+        rows, xi = (
+            np.repeat(np.arange(solution.t.size), along.size),
+            np.tile(along, solution.t.size),
+        )
         found = np.empty((rows.size, *size))
         for start in range(0, rows.size, _BLOCK):
             some = slice(start, start + _BLOCK)
             chosen = np.full(rows[some].size, self.slopes.numbers[output], np.intc)
             found[some] = at(solution.t[rows[some]], self._iterated[rows[some]], chosen, xi[some])
-        return found if output.group != "section" else found.reshape(solution.t.size, along.size, *size)
+        return (
+            found
+            if output.group != "section"
+            else found.reshape(solution.t.size, along.size, *size)
+        )
 
     @symbolic_property
     def _curvatures(self) -> Curvatures:
@@ -198,6 +235,9 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     quantities = [o for o in solution.quantities() if solution.determined(o)]
     quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
     made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
-    columns = sorted({program.outputs[part] for part in made} | {k for o, k in program.outputs.items() if o.along})
+    columns = sorted(
+        {program.outputs[part] for part in made}
+        | {k for o, k in program.outputs.items() if o.along}
+    )
     slopes = Slopes.of(program, quantities, Sharpness.of(program, columns), rung := Rung(backend))
     return Sensitivities(solution, slopes, continuous.p, rung, continuous)

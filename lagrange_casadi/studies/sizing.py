@@ -1,4 +1,6 @@
-"""Sizing: of a table of profiles the lightest for each link that is safe, with the loads that its own mass brings."""
+"""Sizing: of a table of profiles the lightest for each link that is safe, with the loads that its
+own mass brings.
+"""
 
 from __future__ import annotations
 
@@ -34,8 +36,8 @@ _TURNS = 100
 
 @dataclass(frozen=True)
 class StiffSafety(Safety):
-    """The factors of safety of a link, and against ``deflection``: what is allowed over the largest. Of that 1 is enough, of the
-    others ``enough``.
+    """The factors of safety of a link, and against ``deflection``: what is allowed over the
+    largest. Of that 1 is enough, of the others ``enough``.
     """
 
     enough: float = 1.0
@@ -59,8 +61,9 @@ _BENT = "deflection"
 
 @dataclass(frozen=True)
 class Sized:
-    """The profile chosen for a link: its mass [kg], its factors of safety, and the next lighter one, which is not safe, with its
-    factors where the rest is as chosen; None where it is the lightest.
+    """The profile chosen for a link: its mass [kg], its factors of safety, and the next lighter
+    one, which is not safe, with its factors where the rest is as chosen; None where it is the
+    lightest.
     """
 
     link: str
@@ -72,9 +75,11 @@ class Sized:
 
 @dataclass(frozen=True)
 class Sizing:
-    """What was chosen: a :class:`Sized` for each link, the parameters that they come to, and how often loads were evaluated.
+    """What was chosen: a :class:`Sized` for each link, the parameters that they come to, and how
+    often loads were evaluated.
 
-    ``left`` are links with a beam that the profiles do not fit, with why. ``solution`` is that of what was chosen.
+    ``left`` are links with a beam that the profiles do not fit, with why. ``solution`` is that of
+    what was chosen.
     """
 
     links: tuple[Sized, ...]
@@ -103,27 +108,43 @@ def size(
     yielding: str = "von_mises",
     deflection: Positive | None = None,
 ) -> Sizing:
-    """Choose for each link the lightest of some profiles with a factor of safety, against yielding, buckling and fatigue.
+    """Choose for each link the lightest of some profiles with a factor of safety, against yielding,
+    buckling and fatigue.
 
-    Where a ``deflection`` is given, the largest deflection across a link over its length is at most that too, as 1/500; the factors
-    of safety are :class:`StiffSafety` then.
+    Where a ``deflection`` is given, the largest deflection across a link over its length is at most
+    that too, as 1/500; the factors of safety are :class:`StiffSafety` then.
 
-    Dimensions of a link's cross-section that are parameters take a profile's values. Links begin with their lightest profile. As
-    long as one is not safe it takes the next that is under the loads as they are, and loads are evaluated anew. Then each link is
-    tried lighter, the others as they are, until none can be: no link alone can be lighter. The result is evaluated with its
+    Dimensions of a link's cross-section that are parameters take a profile's values. Links begin
+    with their lightest profile. As long as one is not safe it takes the next that is under the
+    loads as they are, and loads are evaluated anew. Then each link is tried lighter, the others as
+    they are, until none can be: no link alone can be lighter. The result is evaluated with its
     certificate.
 
-    Raises :class:`DeclarationError` where profiles fit no link, or not those that are named; :class:`NoDesignError` where no
-    profile is safe; and what :func:`.evaluate` and :func:`.strength.safety` do.
+    Raises :class:`DeclarationError` where profiles fit no link, or not those that are named;
+    :class:`NoDesignError` where no profile is safe; and what :func:`.evaluate` and
+    :func:`.strength.safety` do.
     """
-    search = _Search.of(scene, profiles, links, parameters or {}, float(safety), t, over, criterion, yielding, deflection)
+    search = _Search.of(
+        scene,
+        profiles,
+        links,
+        parameters or {},
+        float(safety),
+        t,
+        over,
+        criterion,
+        yielding,
+        deflection,
+    )
     choice = search.lightened(search.safe())
     return search.told(choice)
 
 
 @dataclass(frozen=True)
 class _Slot:
-    """What profiles may set of a link: the parameter of each dimension, and the profiles, lightest first."""
+    """What profiles may set of a link: the parameter of each dimension, and the profiles, lightest
+    first.
+    """
 
     parameters: Mapping[str, str]
     profiles: tuple[Profile, ...]
@@ -170,7 +191,9 @@ class _Search:
         slots: dict[str, _Slot] = {}
         left: dict[str, str] = {}
         defaults = scene.values(parameters)
-        spinning = [name for name in content.get("bars", ()) if name not in content.get("beside", ())]
+        spinning = [
+            name for name in content.get("bars", ()) if name not in content.get("beside", ())
+        ]
         for name in having if links is None else [name for name in having if name in links]:
             try:
                 if name in spinning and not beam_at(described, name, list(defaults.values())).round:
@@ -187,15 +210,34 @@ class _Search:
         for name, slot in slots.items():
             for parameter in dict.fromkeys(slot.parameters.values()):
                 if (other := taken.setdefault(parameter, name)) != name:
-                    raise DeclarationError(f"size: links '{other}' and '{name}' share parameter '{parameter}'; give each its own")
-        evaluated, judging = partial(evaluate, scene, t=t, over=over), {"criterion": criterion, "yielding": yielding}
+                    raise DeclarationError(
+                        f"size: links '{other}' and '{name}' share parameter '{parameter}'; give"
+                        " each its own"
+                    )
+        evaluated, judging = (
+            partial(evaluate, scene, t=t, over=over),
+            {"criterion": criterion, "yielding": yielding},
+        )
         sections = [f"section:{name}" for name in having]
-        return cls(evaluated, described, slots, dict(parameters), wanted, left, scene.wanted, sections, judging, bent)
+        return cls(
+            evaluated,
+            described,
+            slots,
+            dict(parameters),
+            wanted,
+            left,
+            scene.wanted,
+            sections,
+            judging,
+            bent,
+        )
 
     def solve(self, choice: Mapping[str, int]) -> Solution:
         """The loads with profiles by their numbers."""
         self.evaluations += 1
-        return self.evaluated(parameters=self.values(choice), wanted=self.sections, certificate=False)
+        return self.evaluated(
+            parameters=self.values(choice), wanted=self.sections, certificate=False
+        )
 
     def values(self, choice: Mapping[str, int]) -> dict[str, float]:
         found = dict(self.fixed)
@@ -204,7 +246,9 @@ class _Search:
         return found
 
     def judge(self, solution: Solution, name: str, k: int, *, whole: bool = False) -> Safety:
-        """How safe a link is with a profile, under the loads of a solution; ``whole`` against all, else until it is not safe."""
+        """How safe a link is with a profile, under the loads of a solution; ``whole`` against all,
+        else until it is not safe.
+        """
         member = Member.of(solution, name)
         slot, values = self.slots[name], values_of(solution.description)
         values |= slot.values(slot.profiles[k])
@@ -216,7 +260,10 @@ class _Search:
         against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
         peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
         allowed = self.bent * member.law.length
-        where = f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}"
+        where = (
+            f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l ="
+            f" {peak.xi:.4f}"
+        )
         verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
         return StiffSafety(found.link, (*found.verdicts, verdict), found.is_open, self.wanted)
 
@@ -225,7 +272,9 @@ class _Search:
         return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.wanted
 
     def safe(self) -> dict[str, int]:
-        """Numbers of profiles that are safe under the loads that they bring, each the first that is from the lightest upward."""
+        """Numbers of profiles that are safe under the loads that they bring, each the first that is
+        from the lightest upward.
+        """
         choice = dict.fromkeys(self.slots, 0)
         for _ in range(_TURNS):
             solution, changed = self.solve(choice), False
@@ -246,7 +295,11 @@ class _Search:
         best = max(whole, key=lambda k: whole[k].factor)
         profile, found = self.slots[name].profiles[best].name, whole[best]
         most = f"the most, '{profile}', has {found.factor:.4g} against {found.governs.against}"
-        stiff = "" if self.bent is None else f", and a deflection of {self.bent:g} of its length at most"
+        stiff = (
+            ""
+            if self.bent is None
+            else f", and a deflection of {self.bent:g} of its length at most"
+        )
         return f"size: link '{name}': no profile has a factor of {self.wanted:g}{stiff}; {most}"
 
     def lightened(self, choice: dict[str, int]) -> dict[str, int]:
@@ -258,22 +311,38 @@ class _Search:
                 for k in range(choice[name]):
                     lighter = {**choice, name: k}
                     solution = self.solve(lighter)
-                    if all(self.suffices(self.judge(solution, other, n)) for other, n in lighter.items()):
+                    if all(
+                        self.suffices(self.judge(solution, other, n))
+                        for other, n in lighter.items()
+                    ):
                         choice, changed = lighter, True
                         break
         return choice
 
     def told(self, choice: Mapping[str, int]) -> Sizing:
         """What was chosen, evaluated anew with its certificate."""
-        solution = self.evaluated(parameters=self.values(choice), wanted=[*self.outputs, *self.sections])
+        solution = self.evaluated(
+            parameters=self.values(choice), wanted=[*self.outputs, *self.sections]
+        )
         links = []
         for name, k in choice.items():
             slot, mass = self.slots[name], solution.description["bodies"][name]["mass"]
             before = None
             if k:
-                before = slot.profiles[k - 1], self.judge(self.solve({**choice, name: k - 1}), name, k - 1, whole=True)
-            links.append(Sized(name, slot.profiles[k], mass, self.judge(solution, name, k, whole=True), before))
-        chosen = {n: v for n, v in self.values(choice).items() if n not in self.fixed or self.fixed[n] != v}
+                before = (
+                    slot.profiles[k - 1],
+                    self.judge(self.solve({**choice, name: k - 1}), name, k - 1, whole=True),
+                )
+            links.append(
+                Sized(
+                    name, slot.profiles[k], mass, self.judge(solution, name, k, whole=True), before
+                )
+            )
+        chosen = {
+            n: v
+            for n, v in self.values(choice).items()
+            if n not in self.fixed or self.fixed[n] != v
+        }
         return Sizing(tuple(links), chosen, self.evaluations, self.left, solution)
 
 
@@ -296,7 +365,11 @@ def _slot(
 ) -> _Slot:
     """Find the profiles that may be a link's own. Raises :class:`_UnfitError`."""
     own: dict[str, str] = {}
-    shapes = list(beam_at(described, link, ca.vertcat(ca.SX(0, 1), *(one.symbol for one in parameters.values()))).course.shapes())
+    shapes = list(
+        beam_at(
+            described, link, ca.vertcat(ca.SX(0, 1), *(one.symbol for one in parameters.values()))
+        ).course.shapes()
+    )
     for name in profiles[0].dimensions:
         if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:
             raise _UnfitError(f"{name} is no dimension of its {lacking[0]}")
@@ -311,7 +384,9 @@ def _slot(
         values = slot.values(profile)
         for name, value in profile.dimensions.items():
             if values[own[name]] != value:
-                raise _UnfitError(f"profile '{profile.name}' gives parameter '{own[name]}' two values")
+                raise _UnfitError(
+                    f"profile '{profile.name}' gives parameter '{own[name]}' two values"
+                )
             if fault := parameters[own[name]].fault(value):
                 raise _UnfitError(f"profile '{profile.name}': {fault}")
         weights.append(_area(beam_at(described, link, list((dict(defaults) | values).values()))))

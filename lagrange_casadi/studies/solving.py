@@ -68,12 +68,18 @@ def solve(
     scene = scene.giving(elastic)
     gives = scene.elastic
     if gives and rung.table is not None:
-        raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
+        raise DeclarationError(
+            "elastic: a table has no place for what equilibrium leaves open; evaluate without a"
+            " table"
+        )
     names = scene.wanted if wanted is None else wanted
     graph = compile_scene(scene, names, parameters=values)
     rung.check(graph)
     checked_laws(graph.data, checked_span(graph.laws, timing, values), tuple(values.values()))
-    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
+    require(
+        "the outputs over time",
+        (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count),
+    )
     _announce(graph, timing.count, rung, threads or cores())
     instants, places = instants_of(graph.laws, timing, values), points(ratios)
     times = instants.t
@@ -92,15 +98,32 @@ def solve(
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
-    solution = Solution(graph.data.name, times, places, ordered, description, provenance, left_open, over=instants.over)
+    solution = Solution(
+        graph.data.name,
+        times,
+        places,
+        ordered,
+        description,
+        provenance,
+        left_open,
+        over=instants.over,
+    )
     by = by_parameters(graph.data.parameters, names)
     slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
-    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity)
+    solution = replace(
+        solution, tolerance=tolerance(solution), sensitivities=slopes, elasticity=elasticity
+    )
     if solution.resting.any():
-        open_ = {name: held for name, held in holding(scene, solution).items() if np.isnan(solution.effort(name)).any()}
+        open_ = {
+            name: held
+            for name, held in holding(scene, solution).items()
+            if np.isnan(solution.effort(name)).any()
+        }
         solution = replace(solution, held=open_)
     if certificate:
-        residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within) | unbalanced
+        residuals = (
+            _closed(graph, out, p) | residuals_of(solution, graph, out, p, within) | unbalanced
+        )
         errors = explained(solution, residuals, estimate(graph, found, solution, p))
         named = {str(output): error for output, error in errors.items()}
         solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
@@ -117,25 +140,32 @@ def _announce(graph: Program, count: int, rung: Rung, threads: int) -> None:
     shared = 1 if graph.newton is not None or rung.backend == "vm" else threads
     takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
     if takes > _LONG:
-        many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
+        many, each = (
+            f"{count:,}".replace(",", " "),
+            "" if rung.newton is None else f" of {rung.newton} Newton steps each",
+        )
         warn(f"{many} instants{each} take about {in_words(takes)}")
 
 
 def checked_span(laws: Laws, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
-    """The first and the last of instants [s]. Raises :class:`DeclarationError` where there are none, or samples of a motion end."""
+    """The first and the last of instants [s].
+
+    Raises :class:`DeclarationError` where there are none, or samples of a motion end.
+    """
     start, stop = span_of(laws, timing, values)
     for joint, (low, high) in zip(laws.joints, laws.spans, strict=True):
         if start < low or stop > high:
             raise DeclarationError(
-                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
-                f"{start:g} to {stop:g} s is asked for"
+                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s,"
+                f" but t from {start:g} to {stop:g} s is asked for"
             )
     return start, stop
 
 
 @functools.lru_cache(maxsize=64)
 def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...]) -> None:
-    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters.
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for
+    values of the parameters.
 
     Also where it puts into a curve what is beyond the curve's ends.
     """
@@ -148,20 +178,26 @@ def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...
     if beyond.size:
         at, joint = beyond[0]
         raise DeclarationError(
-            f"the motion of joint '{laws.joints[joint]}': what is put into its curve is beyond the curve's ends at "
-            f"t = {t[at]:.6g} s"
+            f"the motion of joint '{laws.joints[joint]}': what is put into its curve is beyond the"
+            f" curve's ends at t = {t[at]:.6g} s"
         )
 
 
 def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
-    """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they would jump by a turn.
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they
+    would jump by a turn.
 
     They are those columns, not copies: in ``out`` too angles go on after this.
     """
     found = {output: out[k] for output, k in graph.outputs.items()}
-    parts = {part: out[graph.columns.index(part)] for signs in graph.loop_angles.values() for part in signs}
+    parts = {
+        part: out[graph.columns.index(part)]
+        for signs in graph.loop_angles.values()
+        for part in signs
+    }
     turns = {
-        part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row for part, row in parts.items()
+        part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row
+        for part, row in parts.items()
     }
     for angle, signs in graph.loop_angles.items():
         for part, sign in signs.items():
@@ -170,18 +206,30 @@ def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
     return found
 
 
-def residuals_of(solution: Solution, graph: Program, out: Array, p: Array, within: Mapping[Output, Array]) -> dict[str, Array]:
-    """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t) of a graph, for parameters ``p``.
+def residuals_of(
+    solution: Solution, graph: Program, out: Array, p: Array, within: Mapping[Output, Array]
+) -> dict[str, Array]:
+    """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t)
+    of a graph, for parameters ``p``.
 
-    ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
+    ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before
+    the solution was made of it.
     """
-    return certify(solution, graph.data.declared(p), _hidden(graph, out, solution.left_open), within)
+    return certify(
+        solution, graph.data.declared(p), _hidden(graph, out, solution.left_open), within
+    )
 
 
 def _hidden(graph: Program, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
-    """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
-    unwanted = {Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()}
-    return unwanted | {output: out[graph.outputs[output]] for output in left_open if output in graph.outputs}
+    """Forces that a solution does not give, and its certificate needs: multipliers that were not
+    wanted, and what is open.
+    """
+    unwanted = {
+        Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()
+    }
+    return unwanted | {
+        output: out[graph.outputs[output]] for output in left_open if output in graph.outputs
+    }
 
 
 def _closed(graph: Program, out: Array, p: Array) -> dict[str, Array]:
@@ -192,11 +240,13 @@ def _closed(graph: Program, out: Array, p: Array) -> dict[str, Array]:
 
 
 def _condition(graph: Program, found: Evaluated) -> dict[str, Array]:
-    """How much an error in a loop's lengths or drives grows in its solution: the worst 1/sin(transmission angle) of all loops.
+    """How much an error in a loop's lengths or drives grows in its solution: the worst
+    1/sin(transmission angle) of all loops.
 
     For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.
 
-    2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer, Edelman, Johnson 1995).
+    2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer,
+    Edelman, Johnson 1995).
     """
     worst: list[Array] = []
     for name, k in graph.checks("closure").items():

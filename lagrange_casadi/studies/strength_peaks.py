@@ -1,7 +1,9 @@
-"""Stresses and factors of safety over all times of a solution's span: as :mod:`.peaks`, of what is largest along a whole link.
+"""Stresses and factors of safety over all times of a solution's span: as :mod:`.peaks`, of what is
+largest along a whole link.
 
-At a time the largest stress along a link is exact (:mod:`..strength.stress`). Over time it is the upper edge of smooth curves, one
-for each fibre and summit: where two cross it has a kink that points downward, beside which the search looks more closely.
+At a time the largest stress along a link is exact (:mod:`..strength.stress`). Over time it is the
+upper edge of smooth curves, one for each fibre and summit: where two cross it has a kink that
+points downward, beside which the search looks more closely.
 """
 
 from __future__ import annotations
@@ -27,14 +29,18 @@ from .peaks import ContinuousSolution
 
 
 @public
-def refine_stress(scene: Scene, solution: Solution, link: str, kind: str = "von_mises", *, notches: bool = False) -> StressPeak:
-    """The peak of a stress in a link of a solution, as :meth:`.Stress.peak`, but over all times of its span.
+def refine_stress(
+    scene: Scene, solution: Solution, link: str, kind: str = "von_mises", *, notches: bool = False
+) -> StressPeak:
+    """The peak of a stress in a link of a solution, as :meth:`.Stress.peak`, but over all times of
+    its span.
 
-    It is exact to rounding, and not below that of the instants. Where the search would take too long its value is NaN, and
-    ``least`` the largest size that was found. What elasticity tells has the peak of the instants.
+    It is exact to rounding, and not below that of the instants. Where the search would take too
+    long its value is NaN, and ``least`` the largest size that was found. What elasticity tells has
+    the peak of the instants.
 
-    Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none, and :class:`.DeclarationError`
-    where the solution is not of this scene.
+    Raises what :func:`.strength.stress` does, :class:`.UnknownNameError` for a kind that is none,
+    and :class:`.DeclarationError` where the solution is not of this scene.
     """
     stress = solution.stress(link)
     peak = stress.peak(kind, notches=notches)
@@ -44,11 +50,18 @@ def refine_stress(scene: Scene, solution: Solution, link: str, kind: str = "von_
 
 @public
 def refine_safety(
-    scene: Scene, solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises"
+    scene: Scene,
+    solution: Solution,
+    link: str,
+    *,
+    criterion: str = "goodman",
+    yielding: str = "von_mises",
 ) -> Safety:
-    """The factors of safety of a link, as :func:`.strength.safety`, against yielding and buckling over all times of its span.
+    """The factors of safety of a link, as :func:`.strength.safety`, against yielding and buckling
+    over all times of its span.
 
-    Against fatigue it is that of the instants. What could not be searched is open. Raises what :func:`refine_stress` does.
+    Against fatigue it is that of the instants. What could not be searched is open. Raises what
+    :func:`refine_stress` does.
     """
     told = safety(solution, link, criterion=criterion, yielding=yielding)
     found = _Searched.of(scene, solution, link)
@@ -63,14 +76,19 @@ def refine_safety(
         elif verdict.against == "buckling":
             refined = found.buckled(verdict, as_column(solution.description, found.member))
         if refined is None:
-            left.append(f"{verdict.against}: less than {verdict.factor:.4g}, that of the instants, may hide between them")
+            left.append(
+                f"{verdict.against}: less than {verdict.factor:.4g}, that of the instants, may hide"
+                " between them"
+            )
         else:
             verdicts.append(refined)
     return Safety(link, tuple(verdicts), tuple(left))
 
 
 _BESIDE = 1e-4
-"""Of itself: how far a factor may be from that of the link at the time that is told; where it is further, it jumps there."""
+"""Of itself: how far a factor may be from that of the link at the time that is told; where it is
+further, it jumps there.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +102,11 @@ class _Along:
     def at(self, columns: Array) -> Member:
         """The link at the times of some columns."""
         outputs = {output: columns[k] for output, k in self.columns.items()}
-        return replace(self.member, law=self.member.law.of(self.member.link, outputs), t=np.zeros(columns.shape[1]))
+        return replace(
+            self.member,
+            law=self.member.law.of(self.member.link, outputs),
+            t=np.zeros(columns.shape[1]),
+        )
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
         """Ratios, which are not told, and sizes, each (1, t)."""
@@ -104,10 +126,14 @@ class _Searched:
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution, link: str) -> _Searched | None:
-        """That of a link; None where nothing is between the instants, or equilibrium alone does not tell its forces."""
+        """That of a link; None where nothing is between the instants, or equilibrium alone does not
+        tell its forces.
+        """
         told = solution.by_equilibrium
         member = Member.of(solution, link)
-        if solution.t.size == 1 or any(not told.determined(f"section:{link}:{force}") for force in member.forces):
+        if solution.t.size == 1 or any(
+            not told.determined(f"section:{link}:{force}") for force in member.forces
+        ):
             return None
         found = ContinuousSolution.of(scene, told)
         return cls(member, found if are_even(solution.t) else found.in_equal_steps())
@@ -117,20 +143,27 @@ class _Searched:
 
         def size(member: Member) -> Array:
             stress = Stress(member)
-            return stress.largest_at_notches(kind) if sampled.notch else np.abs(stress.largest(kind).value)
+            return (
+                stress.largest_at_notches(kind)
+                if sampled.notch
+                else np.abs(stress.largest(kind).value)
+            )
 
-        found = self.over_time.signals([self._along(size)], {}).peaks([0], search=searching(self.over_time.backend))
+        found = self.over_time.signals([self._along(size)], {}).peaks(
+            [0], search=searching(self.over_time.backend)
+        )
         peak = Stress(self.at(float(found.t[0]))).peak(kind, notches=sampled.notch)
         best = max(sampled, peak, key=lambda one: abs(one.value))
         return best if found.told[0] else replace(best, value=math.nan, least=abs(best.value))
 
     def buckled(self, sampled: Verdict, of: Column) -> Verdict | None:
-        """The factor against buckling, of which that at the instants is known; None where it cannot be told.
+        """The factor against buckling, of which that at the instants is known; None where it cannot
+        be told.
 
         It jumps where compression begins: the graph knows when that is.
         """
         used = self.over_time.in_equal_steps(f"safety:{self.member.link}")
-        ((peak,), _) = used.refined([used.solution.peak(f"utilisation:{self.member.link}:buckling")])
+        (peak,), _ = used.refined([used.solution.peak(f"utilisation:{self.member.link}:buckling")])
         if math.isnan(peak.value):
             return None
         factor = 1.0 / peak.value if peak.value else math.inf
@@ -150,5 +183,9 @@ class _Searched:
 
     def _along(self, size: Callable[[Member], Array]) -> _Along:
         link = self.member.link
-        own = {output: k for output, k in self.over_time.rows.items() if output.along and output.part == link}
+        own = {
+            output: k
+            for output, k in self.over_time.rows.items()
+            if output.along and output.part == link
+        }
         return _Along(self.member, own, size)

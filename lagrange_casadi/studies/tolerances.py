@@ -1,4 +1,6 @@
-"""What tolerances of parameters do to peaks: to first order by exact derivatives, and by designs drawn at random."""
+"""What tolerances of parameters do to peaks: to first order by exact derivatives, and by designs
+drawn at random.
+"""
 
 from __future__ import annotations
 
@@ -27,10 +29,11 @@ _LARGEST = 1_000_000
 class Spread:
     """How far the peak of a quantity spreads.
 
-    ``nominal`` is the peak without tolerances, with its sign. To first order ``worst`` is how far it may be off, if every parameter
-    is at the worse end of its tolerance, and ``sigma`` its standard deviation; ``shares`` are by parameter what of the variance is
-    due to it, the largest first. Both are NaN where the peak has no derivative. ``mean``, ``deviation``, ``low`` and ``high`` are
-    those of the designs that were drawn: mean, standard deviation, least and largest.
+    ``nominal`` is the peak without tolerances, with its sign. To first order ``worst`` is how far
+    it may be off, if every parameter is at the worse end of its tolerance, and ``sigma`` its
+    standard deviation; ``shares`` are by parameter what of the variance is due to it, the largest
+    first. Both are NaN where the peak has no derivative. ``mean``, ``deviation``, ``low`` and
+    ``high`` are those of the designs that were drawn: mean, standard deviation, least and largest.
     """
 
     quantity: str
@@ -47,7 +50,8 @@ class Spread:
 
 @dataclass(frozen=True, eq=False)
 class Spreads:
-    """What tolerances [units of the parameters] do to a scene's peaks, by full name, the one that spreads most for its size first.
+    """What tolerances [units of the parameters] do to a scene's peaks, by full name, the one that
+    spreads most for its size first.
 
     ``drawn`` designs were evaluated, of which ``failed`` have no result.
     """
@@ -59,10 +63,14 @@ class Spreads:
     peaks: Mapping[str, Spread]
 
 
-def read_tolerance(parameters: Mapping[str, Parameter], name: str, value: float | str, nominal: float) -> float:
-    """A tolerance in the parameter's unit: a number, or a text such as ``0.1mm``, ``0.5deg``, ``2g`` or ``1%``.
+def read_tolerance(
+    parameters: Mapping[str, Parameter], name: str, value: float | str, nominal: float
+) -> float:
+    """A tolerance in the parameter's unit: a number, or a text such as ``0.1mm``, ``0.5deg``,
+    ``2g`` or ``1%``.
 
-    Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is no tolerance of it.
+    Raises :class:`UnknownNameError` for what is no parameter, :class:`DeclarationError` for what is
+    no tolerance of it.
     """
     if name not in parameters:
         raise UnknownNameError("parameter", name, parameters)
@@ -71,8 +79,8 @@ def read_tolerance(parameters: Mapping[str, Parameter], name: str, value: float 
         found = _number(value, unit, nominal)
     except ValueError:
         raise DeclarationError(
-            f"tolerance of '{name}': expected a number above 0 in {unit or '1'}, or a text such as '0.1mm', '0.5deg', '2g' or "
-            f"'1%', got {value!r}"
+            f"tolerance of '{name}': expected a number above 0 in {unit or '1'}, or a text such as"
+            f" '0.1mm', '0.5deg', '2g' or '1%', got {value!r}"
         ) from None
     return found
 
@@ -101,18 +109,25 @@ def tolerances(
     samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
     backend: Backend = "auto",
 ) -> Spreads:
-    """How far peaks spread where parameters are ``within`` tolerances: by name plus or minus so much, as ``{"l": "0.1mm"}``.
+    """How far peaks spread where parameters are ``within`` tolerances: by name plus or minus so
+    much, as ``{"l": "0.1mm"}``.
 
-    To first order by exact derivatives; and by ``samples`` designs, whose parameters are drawn evenly from their tolerances and
-    independently, the same ones in every run. A standard deviation is that of even distributions: a tolerance over the root of 3.
+    To first order by exact derivatives; and by ``samples`` designs, whose parameters are drawn
+    evenly from their tolerances and independently, the same ones in every run. A standard deviation
+    is that of even distributions: a tolerance over the root of 3.
 
-    ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises what that does, and
-    :class:`DeclarationError` for what is no tolerance.
+    ``parameters``, ``wanted``, ``t``, ``over`` and ``backend`` are as in :func:`.evaluate`. Raises
+    what that does, and :class:`DeclarationError` for what is no tolerance.
     """
     if not isinstance(within, Mapping) or not within:
-        raise DeclarationError(f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}")
+        raise DeclarationError(
+            f"tolerances: expected tolerances by parameter, as {{'l': '0.1mm'}}, got {within!r}"
+        )
     values = scene.values(parameters)
-    sizes = {name: read_tolerance(scene.parameters, name, value, values.get(name, 0.0)) for name, value in within.items()}
+    sizes = {
+        name: read_tolerance(scene.parameters, name, value, values.get(name, 0.0))
+        for name, value in within.items()
+    }
     for name, size in sizes.items():
         for end in (values[name] - size, values[name] + size):
             scene.parameters[name].check(end)
@@ -127,12 +142,27 @@ def tolerances(
     moves = gradient.slopes[:, places] * reach
     found = {}
     for k, quantity in enumerate(f.quantities):
-        found[quantity] = _spread(quantity, f.units[k], float(gradient.value[k]), moves[k], tuple(sizes), drawn.value[ok, k])
+        found[quantity] = _spread(
+            quantity,
+            f.units[k],
+            float(gradient.value[k]),
+            moves[k],
+            tuple(sizes),
+            drawn.value[ok, k],
+        )
     ranked = sorted(found, key=lambda name: -_relative(found[name]))
-    return Spreads(scene.name, sizes, samples, int(np.count_nonzero(~ok)), {name: found[name] for name in ranked})
+    return Spreads(
+        scene.name,
+        sizes,
+        samples,
+        int(np.count_nonzero(~ok)),
+        {name: found[name] for name in ranked},
+    )
 
 
-def _spread(quantity: str, unit: str, nominal: float, moves: Array, names: Sequence[str], values: Array) -> Spread:
+def _spread(
+    quantity: str, unit: str, nominal: float, moves: Array, names: Sequence[str], values: Array
+) -> Spread:
     # The sign of a peak may turn where two are nearly as large.
     values = values * np.sign(values) * (np.sign(nominal) or 1.0)
     variances = moves**2 / 3.0
@@ -141,10 +171,23 @@ def _spread(quantity: str, unit: str, nominal: float, moves: Array, names: Seque
     order = sorted(range(len(names)), key=lambda k: -shares[k] if shares[k] == shares[k] else 0.0)
     told = values.size > 0 and bool(np.isfinite(values).all())
     mean, deviation, low, high = (
-        (float(x) for x in (values.mean(), values.std(), values.min(), values.max())) if told else (float("nan"),) * 4
+        (float(x) for x in (values.mean(), values.std(), values.min(), values.max()))
+        if told
+        else (float("nan"),) * 4
     )
     by_name = {names[k]: float(shares[k]) for k in order}
-    return Spread(quantity, unit, nominal, float(np.abs(moves).sum()), total**0.5, by_name, mean, deviation, low, high)
+    return Spread(
+        quantity,
+        unit,
+        nominal,
+        float(np.abs(moves).sum()),
+        total**0.5,
+        by_name,
+        mean,
+        deviation,
+        low,
+        high,
+    )
 
 
 def _relative(spread: Spread) -> float:

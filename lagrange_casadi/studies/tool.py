@@ -1,8 +1,9 @@
 """How far a point moves because links bend, by the unit-load method.
 
-The displacement of a point along a direction is the sum over all links of section forces, times compliance, times the section
-forces of a unit force there (Castigliano; Timoshenko, *Strength of Materials*, part I, on strain energy), the drives held. The
-latter are the difference of two evaluations, with a force as large as the machine's own, and without.
+The displacement of a point along a direction is the sum over all links of section forces, times
+compliance, times the section forces of a unit force there (Castigliano; Timoshenko, *Strength of
+Materials*, part I, on strain energy), the drives held. The latter are the difference of two
+evaluations, with a force as large as the machine's own, and without.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ from .evaluate import evaluate
 class ToolDeflection:
     """How far a point moves because links bend, stretch and twist, at instants ``t`` [s].
 
-    ``by_link`` is the part of every link that has a beam, in ground axes [m], (t, 2), in space (t, 3); other links are rigid.
+    ``by_link`` is the part of every link that has a beam, in ground axes [m], (t, 2), in space (t,
+    3); other links are rigid.
     """
 
     t: Array
@@ -63,28 +65,42 @@ def tool_deflection(
     t: Times | None = None,
     over: Over | None = None,
 ) -> ToolDeflection:
-    """How far a point of a scene moves because links bend, quasi-statically, the drives held where they are.
+    """How far a point of a scene moves because links bend, quasi-statically, the drives held where
+    they are.
 
-    Links that have a beam give way, others are rigid. Where equilibrium leaves forces open, least strain energy tells them.
-    Parameters are those of :func:`.evaluate`.
+    Links that have a beam give way, others are rigid. Where equilibrium leaves forces open, least
+    strain energy tells them. Parameters are those of :func:`.evaluate`.
 
-    Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces of a link that gives way stay
-    open, or the point is on the ground or of another mechanism; and what :func:`.evaluate` does.
+    Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces
+    of a link that gives way stay open, or the point is on the ground or of another mechanism; and
+    what :func:`.evaluate` does.
     """
     pushed, pushes, body = with_push(scene, point)
     links = beams_of(template(scene).content)
     if not links:
-        raise DeclarationError("tool_deflection: no link has a beam, which says what it is made of; all are rigid")
+        raise DeclarationError(
+            "tool_deflection: no link has a beam, which says what it is made of; all are rigid"
+        )
 
-    asked: dict[str, Any] = {"t": t, "over": over, "wanted": [f"section:{link}" for link in links], "elastic": links}
+    asked: dict[str, Any] = {
+        "t": t,
+        "over": over,
+        "wanted": [f"section:{link}" for link in links],
+        "elastic": links,
+    }
 
     def sections(forces: Mapping[str, float]) -> Solution:
-        return evaluate(pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked)
+        return evaluate(
+            pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked
+        )
 
     plain = sections({})
     # A force elsewhere pulls a bar, and bends none.
     members = {link: Member.of(plain, link, spun=link != body) for link in links}
-    beams = {link: Compliance.of(member, f"tool_deflection: link '{link}'") for link, member in members.items()}
+    beams = {
+        link: Compliance.of(member, f"tool_deflection: link '{link}'")
+        for link, member in members.items()
+    }
     push = _size(plain, links)
     by_link = {link: np.zeros((plain.t.size, len(pushes))) for link in links}
     for k, name in enumerate(pushes):
@@ -92,13 +108,22 @@ def tool_deflection(
         for link, beam in beams.items():
             at = nodes(beam.member)
             own = beam.member.at(at.u)
-            more = np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces]) - own
-            by_link[link][:, k] = np.sum(beam.strains(own, at.index, at.u) * more * at.weights, axis=(0, 2)) / push
+            more = (
+                np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces])
+                - own
+            )
+            by_link[link][:, k] = (
+                np.sum(beam.strains(own, at.index, at.u) * more * at.weights, axis=(0, 2)) / push
+            )
     return ToolDeflection(plain.t, by_link)
 
 
 def _size(solution: Solution, links: list[str]) -> float:
     """A force as large as those in the links, so that nothing is lost in the difference."""
     forces = ("axial", "shear")
-    most = max(float(np.abs(solution.section(link).law.extreme(force)[1]).max()) for link in links for force in forces)
+    most = max(
+        float(np.abs(solution.section(link).law.extreme(force)[1]).max())
+        for link in links
+        for force in forces
+    )
     return most or 1.0

@@ -1,8 +1,10 @@
-"""The trade between speed and accuracy, measured: every method of evaluation (rung) on one scene, side by side on this machine.
+"""The trade between speed and accuracy, measured: every method of evaluation (rung) on one scene,
+side by side on this machine.
 
-Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the scene's own grid, relative to the
-peak of each quantity over them; of what is zero by structure, relative to the largest peak of its unit. Times are of the
-instants alone, nothing derived or compiled, on one thread, taken in turns so that whatever else the machine does meets all.
+Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the
+scene's own grid, relative to the peak of each quantity over them; of what is zero by structure,
+relative to the largest peak of its unit. Times are of the instants alone, nothing derived or
+compiled, on one thread, taken in turns so that whatever else the machine does meets all.
 """
 
 from __future__ import annotations
@@ -44,7 +46,10 @@ _LEAST = 2e-3
 
 COMPILED = (
     *(Rung(backend, precision) for precision in PRECISIONS for backend in ("lanes", "c")),
-    *(Rung("c", flags=flags) for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")),
+    *(
+        Rung("c", flags=flags)
+        for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")
+    ),
     Rung("lanes", flags="-ffast-math"),
     *(Rung(backend, precision, newton=1) for precision in PRECISIONS for backend in ("lanes", "c")),
     *(Rung(backend, newton=2) for backend in ("lanes", "c")),
@@ -58,8 +63,9 @@ RUNGS = (*COMPILED, Rung("vm"))
 class Measurement:
     """What a rung costs and gives: seconds an instant, and errors relative to each quantity's peak.
 
-    ``largest`` is over all quantities and instants, ``median`` over the quantities' largest; ``worst`` names the quantity that errs
-    most. ``note`` says what else there is to know, such as how many nodes a table has.
+    ``largest`` is over all quantities and instants, ``median`` over the quantities' largest;
+    ``worst`` names the quantity that errs most. ``note`` says what else there is to know, such as
+    how many nodes a table has.
     """
 
     rung: Rung
@@ -74,7 +80,8 @@ class Measurement:
 class Trade:
     """The rungs of one scene, fastest first, and those that it has not, with the reason.
 
-    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where that cannot be said.
+    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where
+    that cannot be said.
     """
 
     case: str
@@ -95,8 +102,15 @@ class Trade:
 
     @property
     def exported(self) -> Trade:
-        """The same of what exported C can be: one instant at a time, by a compiler's usual flags."""
-        return replace(self, measurements=tuple(one for one in self.measurements if one.rung.backend == "c" and not one.rung.flags))
+        """The same of what exported C can be: one instant at a time,
+        by a compiler's usual flags.
+        """
+        return replace(
+            self,
+            measurements=tuple(
+                one for one in self.measurements if one.rung.backend == "c" and not one.rung.flags
+            ),
+        )
 
     def fastest(self, accuracy: float) -> Measurement:
         """The fastest rung whose largest error is at most ``accuracy``, relative to the peak.
@@ -116,8 +130,16 @@ class Trade:
 
     def as_dict(self) -> dict[str, Any]:
         """All of it as plain numbers and words, for JSON."""
-        rungs = [asdict(one) | {"options": one.rung.options, "front": one in self.front} for one in self.measurements]
-        found = {"case": self.case, "instants": self.instants, "compared": self.compared, "rungs": rungs}
+        rungs = [
+            asdict(one) | {"options": one.rung.options, "front": one in self.front}
+            for one in self.measurements
+        ]
+        found = {
+            "case": self.case,
+            "instants": self.instants,
+            "compared": self.compared,
+            "rungs": rungs,
+        }
         return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
 
 
@@ -131,10 +153,12 @@ def trade(
     rungs: Sequence[Rung] = RUNGS,
     progress: Callable[[Rung], None] = lambda rung: None,
 ) -> Trade:
-    """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is told of each before it is taken.
+    """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is
+    told of each before it is taken.
 
-    Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
-    their own, and what :func:`.evaluate` raises where the scene has no result.
+    Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for
+    graphs that call functions of their own, and what :func:`.evaluate` raises where the scene has
+    no result.
     """
     told = scene.values(parameters)
     values = np.array(list(told.values()))
@@ -157,7 +181,11 @@ def trade(
         except (AssemblyError, CompilerError, DeclarationError) as error:
             refused[rung.options] = str(error)
             continue
-        nodes = "" if evaluated.cycle is None else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
+        nodes = (
+            ""
+            if evaluated.cycle is None
+            else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
+        )
         found[rung] = (*truth.errors(program, evaluated), nodes)
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
@@ -189,14 +217,22 @@ class _Truth:
         for unit, size in _motions(program, t, p).items():
             largest[unit] = max(largest.get(unit, 0.0), size)
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
-        self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
+        self.scales = {
+            name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0
+            for name, peak in peaks.items()
+        }
 
     def errors(self, program: Program, evaluated: Evaluated) -> tuple[float, float, str]:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
         for name, k in program.outputs.items():
             if name in self.columns:
-                gaps = [float(x - float(y)) for x, y in zip(self.columns[name], evaluated.out[k, self.compared], strict=True)]
+                gaps = [
+                    float(x - float(y))
+                    for x, y in zip(
+                        self.columns[name], evaluated.out[k, self.compared], strict=True
+                    )
+                ]
                 if name in self.angles:
                     gaps = [math.remainder(gap, math.tau) for gap in gaps]
                 worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
@@ -205,14 +241,25 @@ class _Truth:
 
 
 def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
-    """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
-    extent, (_, rates, _) = program.extent(p), (np.atleast_2d(part.full()) for part in program.motion(t[None], p))
+    """What motions of each unit are beside: those of a point as far away as the mechanism is large,
+    turned by the fastest drive.
+    """
+    extent, (_, rates, _) = (
+        program.extent(p),
+        (np.atleast_2d(part.full()) for part in program.motion(t[None], p)),
+    )
     kinds = [program.data.kinds.coordinates[name] for name in program.driven]
-    turning = [np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0) for row, kind in zip(rates, kinds, strict=True)]
+    turning = [
+        np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0)
+        for row, kind in zip(rates, kinds, strict=True)
+    ]
     rate = float(max(turning, default=0.0))
     units = ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0))
     return {
-        unit + per: size * rate**power for unit, size in units for power, per in enumerate(("", "/s", "/s^2")) if unit + per != "1"
+        unit + per: size * rate**power
+        for unit, size in units
+        for power, per in enumerate(("", "/s", "/s^2"))
+        if unit + per != "1"
     }
 
 
@@ -225,7 +272,9 @@ def _work(program: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[]
 
 
 def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:
-    """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be read off a clock."""
+    """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be
+    read off a clock.
+    """
     taken: dict[Rung, list[float]] = {rung: [] for rung in works}
     for _ in range(ROUNDS):
         for rung, (work, count) in works.items():

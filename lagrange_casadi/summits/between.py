@@ -1,4 +1,6 @@
-"""What curves may do between equal steps of time, told by their values at them: how far they go, and where they may do anything."""
+"""What curves may do between equal steps of time, told by their values at them: how far they go,
+and where they may do anything.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ RISE = 0.5
 """By how much an exponent may seem to rise above both ends of a step."""
 
 STRAIGHT = 4.0
-"""How many times further than it may seem to go beyond its ends an argument goes in a step through which it goes straight on."""
+"""How many times further than it may seem to go beyond its ends an argument goes in a step through
+which it goes straight on.
+"""
 
 NEGLIGIBLE = 40.0
 """By how much an exponent is below the largest where the power is nothing beside that."""
@@ -37,12 +41,14 @@ _NUMBERED = (Kind.SWITCH, Kind.KNOT)
 
 
 def highest(y: Array) -> Array:
-    """An upper bound of curves in every step, (..., n - 1), of their values (..., n) at five or more times.
+    """An upper bound of curves in every step, (..., n - 1), of their values (..., n) at five or
+    more times.
 
-    Where it bends downwards at both ends of a step, a curve is below the chords of the steps beside it; where upwards, below its
-    own. Where it bends both ways, and in the first step and the last, it rises above an end at most as far as a kink in the middle
-    would that bends it as much. To all this comes what the flanks of a kink bend upwards; so beside an inflection, through which
-    the chord rises though the curve may fall.
+    Where it bends downwards at both ends of a step, a curve is below the chords of the steps beside
+    it; where upwards, below its own. Where it bends both ways, and in the first step and the last,
+    it rises above an end at most as far as a kink in the middle would that bends it as much. To all
+    this comes what the flanks of a kink bend upwards; so beside an inflection, through which the
+    chord rises though the curve may fall.
     """
     a, b = y[..., :-1], y[..., 1:]
     inner = -np.diff(y, 2)
@@ -56,7 +62,11 @@ def highest(y: Array) -> Array:
     flanks[..., :2], flanks[..., -2:] = 2 * np.abs(inner[..., 1:3]), 2 * np.abs(inner[..., -3:-1])
     with np.errstate(all="ignore"):
         up, down = left + (b - a), right - (b - a)
-        tip = np.where((up > 0.0) & (down > 0.0), a + up * (right / (left + right)) + flanks, np.maximum(a, b) + beside)
+        tip = np.where(
+            (up > 0.0) & (down > 0.0),
+            a + up * (right / (left + right)) + flanks,
+            np.maximum(a, b) + beside,
+        )
         either = np.maximum(a + np.abs(left) / 2, b + np.abs(right) / 2) + flanks
         concave, convex = (left >= 0.0) & (right >= 0.0), (left <= 0.0) & (right <= 0.0)
     concave[..., [0, -1]] = convex[..., [0, -1]] = False
@@ -64,12 +74,18 @@ def highest(y: Array) -> Array:
 
 
 def unresolved(
-    rows: Array, watches: Sequence[Watch], step: float, kinks: npt.NDArray[np.intp] | None = None, finest: bool = False
+    rows: Array,
+    watches: Sequence[Watch],
+    step: float,
+    kinks: npt.NDArray[np.intp] | None = None,
+    finest: bool = False,
 ) -> tuple[Flags, Flags]:
-    """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched (watches, n), and which have kinks.
+    """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched
+    (watches, n), and which have kinks.
 
-    ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one in each of two steps may not.
-    In the ``finest`` steps they do: there rounding makes as many, where what is watched is nearly zero, and poles alone hide more.
+    ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one
+    in each of two steps may not. In the ``finest`` steps they do: there rounding makes as many,
+    where what is watched is nearly zero, and poles alone hide more.
     """
     found = np.zeros(rows.shape[1] - 1, bool)
     count = np.zeros(found.size, np.intp) if kinks is None else kinks.copy()
@@ -87,13 +103,21 @@ def unresolved(
     return found | (count > 1) | ((count > 0) & beside), count > 0
 
 
-def passed(rows: Array, watches: Sequence[Watch], step: int, length: float) -> Iterator[tuple[int, float]]:
-    """What is watched, by number, that has a kink or a jump in a step as it passes a number, and that number.
+def passed(
+    rows: Array, watches: Sequence[Watch], step: int, length: float
+) -> Iterator[tuple[int, float]]:
+    """What is watched, by number, that has a kink or a jump in a step as it passes a number, and
+    that number.
 
-    Nothing where something else may hide there. Whole numbers come first, for where they are passed others jump.
+    Nothing where something else may hide there. Whole numbers come first, for where they are passed
+    others jump.
     """
     none = np.zeros(rows.shape[1] - 1, bool)
-    others = [(row, watch) for row, watch in zip(rows, watches, strict=True) if watch.kind not in (Kind.STEP, *_NUMBERED)]
+    others = [
+        (row, watch)
+        for row, watch in zip(rows, watches, strict=True)
+        if watch.kind not in (Kind.STEP, *_NUMBERED)
+    ]
     if any(_unresolved(row, watch, length, none)[0][step] for row, watch in others):
         return
     for kinds in ((Kind.STEP,), _NUMBERED):
@@ -115,8 +139,12 @@ def beyond(kind: Kind, value: float, at: float) -> bool:
     return value >= at if kind is Kind.STEP else value > at
 
 
-def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Flags, npt.NDArray[np.intp]]:
-    """Where one of the watched is unresolved, and how many kinks it makes in each step; it may have one itself in ``bent`` ones."""
+def _unresolved(
+    row: Array, watch: Watch, step: float, bent: Flags
+) -> tuple[Flags, npt.NDArray[np.intp]]:
+    """Where one of the watched is unresolved, and how many kinks it makes in each step; it may have
+    one itself in ``bent`` ones.
+    """
     kind, none = watch.kind, np.zeros(row.size - 1, np.intp)
     if kind is Kind.RATE:
         return _either(np.abs(row) * step > RATE), none
@@ -135,10 +163,16 @@ def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Fla
         return beyond | crossed | (nearest < DIP * np.minimum(np.abs(a), np.abs(b))), none
     if kind in _NUMBERED:
         crossed, touched = passed_or_touched(np.sort(watch.at), a, b, low, high)
-        return (np.zeros(none.size, bool), crossed + touched) if kind is Kind.KNOT else (touched > 0, crossed)
+        return (
+            (np.zeros(none.size, bool), crossed + touched)
+            if kind is Kind.KNOT
+            else (touched > 0, crossed)
+        )
     if kind is Kind.STEP:
         first, last = np.floor(a), np.floor(b)
-        beyond = (np.floor(high) > np.maximum(first, last)) | (np.floor(low) < np.minimum(first, last))
+        beyond = (np.floor(high) > np.maximum(first, last)) | (
+            np.floor(low) < np.minimum(first, last)
+        )
         passed = np.abs(last - first)
         return beyond, np.where(np.isfinite(passed), np.minimum(passed, 2), 0).astype(np.intp)
     if kind is Kind.SOFT:
@@ -146,11 +180,16 @@ def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Fla
         first, last = np.minimum(a, b), np.maximum(a, b)
         turns = ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
         return turns, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(np.intp)
-    return (high > np.maximum(a, b) + RISE) & (high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE), none
+    return (high > np.maximum(a, b) + RISE) & (
+        high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE
+    ), none
 
 
-def passed_or_touched(at: Array, a: Array, b: Array, low: Array, high: Array) -> tuple[Numbers, Numbers]:
-    """How many of the numbers ``at``, which rise, an argument passes from ``a`` to ``b``, and how many others it may touch.
+def passed_or_touched(
+    at: Array, a: Array, b: Array, low: Array, high: Array
+) -> tuple[Numbers, Numbers]:
+    """How many of the numbers ``at``, which rise, an argument passes from ``a`` to ``b``, and how
+    many others it may touch.
 
     It stays between ``low`` and ``high``. What is not a number passes as what is below all.
     """
@@ -162,7 +201,10 @@ def passed_or_touched(at: Array, a: Array, b: Array, low: Array, high: Array) ->
 
 
 def _between(row: Array, bent: Flags) -> tuple[Array, Array]:
-    """Bounds of an argument in every step. Unless it may have a kink there, one that bends little stays between its ends."""
+    """Bounds of an argument in every step.
+
+    Unless it may have a kink there, one that bends little stays between its ends.
+    """
     low, high = -highest(-row), highest(row)
     least, most = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
     straight = ~bent & (most - least >= STRAIGHT * ((high - most) + (least - low)))

@@ -28,9 +28,11 @@ _SLOPES = (
 
 
 class Fit(NamedTuple):
-    """What polynomials say of a summit each: where it is, in steps from the middle value, its size, slope and curve there.
+    """What polynomials say of a summit each: where it is, in steps from the middle value, its size,
+    slope and curve there.
 
-    What a polynomial misses there bends its slope by ``steep`` times that. ``rough`` is its sixth difference.
+    What a polynomial misses there bends its slope by ``steep`` times that. ``rough`` is its sixth
+    difference.
     """
 
     x: Array
@@ -47,9 +49,15 @@ def window(at: int, count: int) -> int:
 
 
 def bounds(at: int, count: int) -> tuple[float, float, float]:
-    """Where to begin to seek a summit near a value, and between where, in steps from the middle of its window."""
+    """Where to begin to seek a summit near a value, and between where, in steps from the middle of
+    its window.
+    """
     start = float(at - window(at, count) - SEVEN // 2)
-    return start, start + INSIDE if at == 0 else start - 1.0, start - INSIDE if at == count - 1 else start + 1.0
+    return (
+        start,
+        start + INSIDE if at == 0 else start - 1.0,
+        start - INSIDE if at == count - 1 else start + 1.0,
+    )
 
 
 def summit(y: Array, start: Array, low: Array, high: Array) -> Fit:
@@ -82,24 +90,35 @@ def summit(y: Array, start: Array, low: Array, high: Array) -> Fit:
             x = np.clip(np.where(curve < 0.0, x - slope / curve, x), low, high)
         square = x * x
         # The product of x - j over the seven places j, and its slope.
-        steep = (((7 * square - 70) * square + 147) * square - 36) / (x * (((square - 14) * square + 49) * square - 36))
+        steep = (((7 * square - 70) * square + 147) * square - 36) / (
+            x * (((square - 14) * square + 49) * square - 36)
+        )
     return Fit(x, at(x, 0), at(x, 1), at(x, 2), steep, np.abs(720 * a[6]))
 
 
 def stretch(y: Array) -> tuple[Array, Array]:
-    """What polynomials through seven values each, (7, m), of which the first are those at an end, say of the step there.
+    """What polynomials through seven values each, (7, m), of which the first are those at an end,
+    say of the step there.
 
-    Their values in its middle, and the least size of their slopes, by steps, at its ends and there: zero where they turn.
+    Their values in its middle, and the least size of their slopes, by steps, at its ends and there:
+    zero where they turn.
     """
     slopes = np.stack([weights @ y for weights in _SLOPES])
-    least = np.where((slopes > 0.0).all(axis=0) | (slopes < 0.0).all(axis=0), np.abs(slopes).min(axis=0), 0.0)
+    least = np.where(
+        (slopes > 0.0).all(axis=0) | (slopes < 0.0).all(axis=0), np.abs(slopes).min(axis=0), 0.0
+    )
     return _MIDDLE @ y, least
 
 
 def where(y: Array, at: int, level: float) -> float:
-    """Where between value ``at`` and the next of a row, in steps from it, it passes a number: by a polynomial in the values."""
+    """Where between value ``at`` and the next of a row, in steps from it, it passes a number: by a
+    polynomial in the values.
+    """
     first = window(at, y.size)
-    values, places = y[first : first + SEVEN] - level, np.arange(first - at, first - at + SEVEN, dtype=float)
+    values, places = (
+        y[first : first + SEVEN] - level,
+        np.arange(first - at, first - at + SEVEN, dtype=float),
+    )
     for k in range(1, SEVEN):
         places = (values[k:] * places[:-1] - values[:-k] * places[1:]) / (values[k:] - values[:-k])
     place = float(places[0])
@@ -107,11 +126,18 @@ def where(y: Array, at: int, level: float) -> float:
 
 
 def kink(y: Array) -> list[tuple[float, float]]:
-    """Where parabolas through three values on either side of the middle one of seven meet, in steps from it, and their size there.
+    """Where parabolas through three values on either side of the middle one of seven meet, in steps
+    from it, and their size there.
 
-    And a little before it and after it, for only there does each show what it is worth. Nothing where they do not meet in a tip.
+    And a little before it and after it, for only there does each show what it is worth. Nothing
+    where they do not meet in a tip.
     """
-    a1, a2, b1, b2 = y[2] - y[1], (y[2] - 2 * y[1] + y[0]) / 2, y[4] - y[5], (y[4] - 2 * y[5] + y[6]) / 2
+    a1, a2, b1, b2 = (
+        y[2] - y[1],
+        (y[2] - 2 * y[1] + y[0]) / 2,
+        y[4] - y[5],
+        (y[4] - 2 * y[5] + y[6]) / 2,
+    )
 
     def left(x: float) -> float:
         return float(y[2] + (x + 1) * (a1 + (x + 2) * a2))

@@ -12,7 +12,9 @@ from .panels import TOPS, CurveSource, Samples
 
 
 def base_of(quantity: Numbers, values: Array, count: int) -> Array:
-    """Of each quantity what its values are counted from: as far below the least as the largest is above it."""
+    """Of each quantity what its values are counted from: as far below the least as the largest is
+    above it.
+    """
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.fmin.at(low, quantity, np.fmin.reduce(values, axis=1))
     np.fmax.at(high, quantity, np.fmax.reduce(values, axis=1))
@@ -35,7 +37,9 @@ class Counted:
 
 
 class Tops:
-    """Local peaks of quantities, of curves in steps so long: the largest of each, at most :data:`.TOPS`."""
+    """Local peaks of quantities, of curves in steps so long: the largest of each, at most
+    :data:`.TOPS`.
+    """
 
     def __init__(self, quantity: Numbers, count: int, step: float) -> None:
         self.quantity, self.step = quantity, step
@@ -46,19 +50,30 @@ class Tops:
         q = self.quantity[curve]
         rows = self.rows[q]
         near = [row for row in rows if row[0] == curve and abs(row[1] - t) <= self.step]
-        out = near[:1] or (sorted(rows, key=lambda row: abs(row[3]))[:1] if len(rows) == TOPS else [])
+        out = near[:1] or (
+            sorted(rows, key=lambda row: abs(row[3]))[:1] if len(rows) == TOPS else []
+        )
         if not any(abs(row[3]) >= abs(value) for row in out):
             self.rows[q] = [row for row in rows if row not in out] + [(curve, t, xi, value)]
 
-    def listing(self, t: Array, given: Samples, least: Array, limit: Array, rounding: Array) -> Array:
-        """Those that are the largest of their step and far from larger ones, (q, :data:`.TOPS`, 4): see :class:`.Peaks`.
+    def listing(
+        self, t: Array, given: Samples, least: Array, limit: Array, rounding: Array
+    ) -> Array:
+        """Those that are the largest of their step and far from larger ones, (q, :data:`.TOPS`, 4):
+        see :class:`.Peaks`.
 
-        At instants too, where these reach the ``least`` of their curve; of what is level some, and one where it has no limit.
+        At instants too, where these reach the ``least`` of their curve; of what is level some, and
+        one where it has no limit.
         """
         sizes = np.nan_to_num(np.abs(given.values), nan=0.0, posinf=np.inf)
         around, off = np.pad(sizes, ((0, 0), (1, 1)), constant_values=-1.0), rounding[:, None]
         before, after = around[:, :-2], around[:, 2:]
-        tops = (sizes >= before - off) & (sizes >= after - off) & (sizes >= least[:, None]) & ~np.isnan(given.values)
+        tops = (
+            (sizes >= before - off)
+            & (sizes >= after - off)
+            & (sizes >= least[:, None])
+            & ~np.isnan(given.values)
+        )
         level = np.maximum(sizes - before, sizes - after) <= off
         for curve in range(len(sizes)):
             flat = np.flatnonzero(tops[curve] & level[curve])
@@ -72,7 +87,9 @@ class Tops:
                 curve, time, _, value = row
                 i = int(np.clip((time - t[0]) // self.step, 0, t.size - 2)) if t.size > 1 else 0
                 size = abs(value) + rounding[curve]
-                near = any(other[0] == curve and abs(other[1] - time) <= self.step for other in kept)
+                near = any(
+                    other[0] == curve and abs(other[1] - time) <= self.step for other in kept
+                )
                 if size >= least[curve] and (size >= sizes[curve, i : i + 2]).all() and not near:
                     kept.append(row)
             found[q, : len(kept)] = np.reshape(kept, (-1, 4))

@@ -1,4 +1,6 @@
-"""What is searched, and a panel of it: equal steps of time with the values at their ends, and what gives more of these."""
+"""What is searched, and a panel of it: equal steps of time with the values at their ends, and what
+gives more of these.
+"""
 
 from __future__ import annotations
 
@@ -32,9 +34,9 @@ _TRIALS, _WATCHED = 3, 2
 class Curves:
     """Of which quantity each curve is, which unit each quantity has, and what is watched.
 
-    The peak of a quantity is that of the curve of its own that goes furthest: those of a section force are the force at the link's
-    ends and stations, and where it turns along the link. ``scales`` are of each unit how large others are, ``knots`` times of
-    kinks.
+    The peak of a quantity is that of the curve of its own that goes furthest: those of a section
+    force are the force at the link's ends and stations, and where it turns along the link.
+    ``scales`` are of each unit how large others are, ``knots`` times of kinks.
     """
 
     quantities: tuple[int, ...]
@@ -46,10 +48,12 @@ class Curves:
 
 @dataclass(frozen=True, eq=False)
 class Peaks:
-    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where it is, and whether it is told.
+    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where
+    it is, and whether it is told.
 
-    A peak that is not told is at least this, which was found. ``tops``, where they are asked for, (q, :data:`TOPS`, 4), are local
-    peaks in no order: the number of the curve among its quantity's own, NaN where there are no more, time, ratio and value.
+    A peak that is not told is at least this, which was found. ``tops``, where they are asked for,
+    (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its quantity's
+    own, NaN where there are no more, time, ratio and value.
     """
 
     value: Array
@@ -62,8 +66,9 @@ class Peaks:
 class Listed(NamedTuple):
     """Which local peaks are listed: those down to a ``share`` of the largest.
 
-    Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted from so far below the least at
-    the instants that a share of little more than a half takes all there are between that and the largest.
+    Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
+    from so far below the least at the instants that a share of little more than a half takes all
+    there are between that and the largest.
     """
 
     share: float
@@ -71,7 +76,9 @@ class Listed(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """At n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and what is watched (w, n)."""
+    """At n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and what is
+    watched (w, n).
+    """
 
     values: Array
     places: Array
@@ -109,7 +116,8 @@ class Panel:
 
 @dataclass
 class Summit:
-    """A value beside which a curve may rise, by its number in a panel: where to look, and what is expected there (:class:`.Fit`).
+    """A value beside which a curve may rise, by its number in a panel: where to look, and what is
+    expected there (:class:`.Fit`).
 
     ``kink`` has the times at which to look for a kink, and the sizes expected there.
     """
@@ -129,16 +137,22 @@ class Summit:
     again: bool = False
 
 
-def sides(source: CurveSource, panel: Panel, step: int, watches: Sequence[Watch], beside: float) -> tuple[Array, Samples] | None:
-    """The times just before and just after a kink or a jump in a step, and of itself, and what there is; None where none is found.
+def sides(
+    source: CurveSource, panel: Panel, step: int, watches: Sequence[Watch], beside: float
+) -> tuple[Array, Samples] | None:
+    """The times just before and just after a kink or a jump in a step, and of itself, and what
+    there is; None where none is found.
 
-    They are ``beside`` it, as far as the step goes. What is watched tells where it is: between both it passes its number.
+    They are ``beside`` it, as far as the step goes. What is watched tells where it is: between both
+    it passes its number.
     """
     start, stop = panel.t[step], panel.t[step + 1]
     beside = max(beside, SPACING * float(np.abs(panel.t).max()))
     if panel.t.size < fits.SEVEN or not stop - start > 8 * beside:
         return None
-    for _, (k, level) in zip(range(_WATCHED), passed(panel.samples.watched, watches, step, panel.step), strict=False):
+    for _, (k, level) in zip(
+        range(_WATCHED), passed(panel.samples.watched, watches, step, panel.step), strict=False
+    ):
         row, kind = panel.samples.watched[k], watches[k].kind
         place, slope = fits.where(row, step, level), row[step + 1] - row[step]
         before: tuple[float, float] | None = None

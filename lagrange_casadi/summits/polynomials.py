@@ -12,7 +12,9 @@ from ..base.arrays import Array
 
 @functools.cache
 def interpolation(degree: int) -> tuple[Array, Array]:
-    """Nodes from -1 to 1, and what makes coefficients of Chebyshev's polynomials of the values there: values @ weights."""
+    """Nodes from -1 to 1, and what makes coefficients of Chebyshev's polynomials of the values
+    there: values @ weights.
+    """
     nodes = chebyshev.chebpts1(degree + 1)
     weights = chebyshev.chebvander(nodes, degree) * (2.0 / (degree + 1))
     weights[:, 0] /= 2.0

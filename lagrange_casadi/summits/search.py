@@ -1,16 +1,19 @@
-"""The largest size of curves over all times of a span, by their values at equal steps, and at more times where these leave it open.
+"""The largest size of curves over all times of a span, by their values at equal steps, and at more
+times where these leave it open.
 
-A panel is a row of equal steps with the values at their ends. In each step :mod:`.between` bounds every curve. What could rise
-above the largest size so far is looked at: a polynomial through seven values around a summit says where, and what it misses there
-says whether it is to be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, or two
-where it is known when in it a kink or a jump is, of steps a ninth as long, and so on, until all are closed, or so short that
-nothing but a jump, a kink or a pole is left in them. Where that takes too many panels, or a quantity grows on slowly without an
-end, its peak is not told.
+A panel is a row of equal steps with the values at their ends. In each step :mod:`.between` bounds
+every curve. What could rise above the largest size so far is looked at: a polynomial through seven
+values around a summit says where, and what it misses there says whether it is to be believed. A
+step that this leaves open, or in which something may hide, becomes a panel of its own, or two where
+it is known when in it a kink or a jump is, of steps a ninth as long, and so on, until all are
+closed, or so short that nothing but a jump, a kink or a pole is left in them. Where that takes too
+many panels, or a quantity grows on slowly without an end, its peak is not told.
 
-Where friction at rest leaves a curve open at an instant, the steps beside it are searched by themselves from where, or up to
-where, it is a number.
+Where friction at rest leaves a curve open at an instant, the steps beside it are searched by
+themselves from where, or up to where, it is a number.
 
-The C does the same (``codegen/search.c`` and its neighbours), and is tested against this, which serves where no compiler is.
+The C does the same (``codegen/search.c`` and its neighbours), and is tested against this, which
+serves where no compiler is.
 """
 
 from __future__ import annotations
@@ -24,13 +27,28 @@ from ..base.arrays import Array
 from . import fits
 from .between import Flags, highest, unresolved
 from .listing import Counted, Tops, base_of
-from .panels import INNER, SIDE, SPACING, Curves, CurveSource, Listed, Panel, Peaks, Samples, Summit, joined, sides
+from .panels import (
+    INNER,
+    SIDE,
+    SPACING,
+    Curves,
+    CurveSource,
+    Listed,
+    Panel,
+    Peaks,
+    Samples,
+    Summit,
+    joined,
+    sides,
+)
 
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
 
 FINEST = 10
-"""Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing hides but beside a pole."""
+"""Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing
+hides but beside a pole.
+"""
 
 BESIDE_REST = 3
 """Panels within each other beside an instant at which friction at rest leaves a curve open."""
@@ -48,20 +66,26 @@ NOTHING = 1e-12
 """What is zero but for rounding, over the largest of its unit."""
 
 NOISE = 1e-6
-"""Of itself: how far rounding may throw a quantity, as near a dead centre, and be no more than that."""
+"""Of itself: how far rounding may throw a quantity, as near a dead centre, and be no more than
+that.
+"""
 
 TRUST, TRUST_ASIDE = 1e-5, 1e-6
-"""What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more, its slope may be off by other
-things as well."""
+"""What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more,
+its slope may be off by other things as well."""
 
 CLOSE = 8 * float(np.finfo(float).eps)
 """Of its largest size: by how much a value may be off by its own rounding."""
 
 STRETCH = 1e-4
-"""What a polynomial may miss in the middle of an end step, of its least slope there, which is then off by nine times that."""
+"""What a polynomial may miss in the middle of an end step, of its least slope there, which is then
+off by nine times that.
+"""
 
 ENDLESS, LAST = 0.1, 1e-11
-"""By how much of itself a quantity grows over the last step towards a pole, and where it has come to its end."""
+"""By how much of itself a quantity grows over the last step towards a pole, and where it has come
+to its end.
+"""
 
 QUIET = 10
 """Values from whose differences rounding is told."""
@@ -73,12 +97,21 @@ ROUGH = 0.1
 """Of its curve: how large the sixth difference of a polynomial may be that is believed."""
 
 
-def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags, listed: Listed | None = None) -> Peaks:
-    """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
+def peaks(
+    source: CurveSource,
+    curves: Curves,
+    t: Array,
+    samples: Samples,
+    hiding: Flags,
+    listed: Listed | None = None,
+) -> Peaks:
+    """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples``
+    are.
 
-    ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
-    that are as large but for rounding the first is told, for else rounding would choose their sign. A quantity that is no number at
-    any instant, as friction at rest leaves it, has no peak. ``listed`` says which local peaks are told too.
+    ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below
+    the largest sample. Of several that are as large but for rounding the first is told, for else
+    rounding would choose their sign. A quantity that is no number at any instant, as friction at
+    rest leaves it, has no peak. ``listed`` says which local peaks are told too.
     """
     base, way = np.zeros(len(curves.units)), listed.way if listed else 0
     if way:
@@ -104,10 +137,18 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
 
 
 class _Search:
-    """What is known so far of each quantity: its largest size, and where one as large was found first."""
+    """What is known so far of each quantity: its largest size, and where one as large was found
+    first.
+    """
 
     def __init__(
-        self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags, listed: Listed | None
+        self,
+        source: CurveSource,
+        curves: Curves,
+        t: Array,
+        samples: Samples,
+        lacking: Flags,
+        listed: Listed | None,
     ) -> None:
         self.lacking, self.begin = lacking, float(t[0])
         self.share = listed.share if listed else None
@@ -119,7 +160,9 @@ class _Search:
         np.maximum.at(scales, np.array(curves.units), self.best)
         scales[: len(curves.scales)] = np.fmax(scales[: len(curves.scales)], curves.scales)
         self.scale = scales[list(curves.units)]
-        self.size, self.t, self.xi, self.sign = (np.full(self.best.size, x) for x in (-1.0, np.inf, np.nan, 1.0))
+        self.size, self.t, self.xi, self.sign = (
+            np.full(self.best.size, x) for x in (-1.0, np.inf, np.nan, 1.0)
+        )
         self.told, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
         self.samples, self.hidden = samples.values, 0
         self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
@@ -134,18 +177,28 @@ class _Search:
     @property
     def least(self) -> Array:
         """What a summit of each quantity must reach to matter."""
-        return np.asarray(self.best - self.rounding if self.share is None else self.share * self.best)
+        return np.asarray(
+            self.best - self.rounding if self.share is None else self.share * self.best
+        )
 
     @property
     def limit(self) -> Array:
-        """What each curve must rise above to matter; one of what is nothing beside others of its unit never does."""
-        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding if self.share is None else self.least, np.inf)
+        """What each curve must rise above to matter; one of what is nothing beside others of its
+        unit never does.
+        """
+        limit = np.where(
+            self.best > NOTHING * self.scale,
+            self.best + self.rounding if self.share is None else self.least,
+            np.inf,
+        )
         return np.asarray(limit[self.quantity])
 
     def ends(self, values: Array) -> Array:
         """What each curve must rise above in each step: both its ends."""
         sizes = np.abs(values)
-        return np.asarray(np.maximum(sizes[:, :-1], sizes[:, 1:]) + self.rounding[self.quantity, None])
+        return np.asarray(
+            np.maximum(sizes[:, :-1], sizes[:, 1:]) + self.rounding[self.quantity, None]
+        )
 
     def note(self, curve: int, value: float, t: float, xi: float) -> None:
         """Take in what a curve is at a time; what is nothing has its peak at an instant."""
@@ -162,21 +215,40 @@ class _Search:
             there = self.best[q] > NOTHING * self.scale[q]
             taken = there and size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
-            self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
+            self.size[q], self.t[q], self.xi[q], self.sign[q] = (
+                size,
+                t,
+                xi,
+                math.copysign(1.0, value),
+            )
 
     def lacks(self, t: float) -> Flags:
-        """Which curves are not sought at a time: in steps beside rest those that are open there are left out."""
-        return np.asarray(self.lacking[:, int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))])
+        """Which curves are not sought at a time: in steps beside rest those that are open there are
+        left out.
+        """
+        return np.asarray(
+            self.lacking[
+                :, int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))
+            ]
+        )
 
     def found(self, t: Array, samples: Samples) -> Peaks:
-        """The peaks; of those at instants, only now the first is sought, among those at which there is a number."""
+        """The peaks; of those at instants, only now the first is sought, among those at which there
+        is a number.
+        """
         for q in np.flatnonzero(np.isfinite(self.best)):
             rows, least = np.flatnonzero(self.quantity == q), self.best[q] - self.rounding[q]
             sizes = np.nan_to_num(np.abs(samples.values[rows]), nan=-1.0, posinf=np.inf)
             i = int(np.argmax((sizes >= least).any(axis=0)))
             row = int(rows[np.argmax(sizes[:, i])])
-            if sizes[:, i].max() >= least and (self.size[q] < least or t[i] < self.t[q] - self.step / 2):
-                self.t[q], self.xi[q], self.sign[q] = t[i], samples.places[row, i], math.copysign(1.0, samples.values[row, i])
+            if sizes[:, i].max() >= least and (
+                self.size[q] < least or t[i] < self.t[q] - self.step / 2
+            ):
+                self.t[q], self.xi[q], self.sign[q] = (
+                    t[i],
+                    samples.places[row, i],
+                    math.copysign(1.0, samples.values[row, i]),
+                )
         told = (self.told & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, told)
 
@@ -187,7 +259,9 @@ class _Search:
             hiding, bound = np.ones(n - 1, bool), np.full((values.shape[0], n - 1), -np.inf)
         else:
             kinks = np.histogram(self.knots, panel.t)[0] if depth and self.knots.size else None
-            unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks, depth >= FINEST)
+            unseen, kinked = unresolved(
+                panel.samples.watched, self.curves.watches, panel.step, kinks, depth >= FINEST
+            )
             hiding = hiding | unseen
             bound = np.fmax(highest(values), highest(-values))
             bound[bound <= self.ends(values)] = -np.inf
@@ -195,7 +269,9 @@ class _Search:
             self.stretches(panel, bound, hiding | kinked)
             self.settle(panel, bound)
             open_ = (bound > self.limit[:, None]).any(axis=1)
-            bound[[curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]] = -np.inf
+            bound[
+                [curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]
+            ] = -np.inf
         size = np.fmax(self.best, np.finfo(float).tiny)[self.quantity]
         while True:
             rise = np.max((bound - self.limit[:, None]) / size[:, None], axis=0)
@@ -213,9 +289,14 @@ class _Search:
             hiding[step], bound[:, step] = False, -np.inf
 
     def inside(self, panel: Panel, step: int, depth: int) -> None:
-        """Search a step as a panel of its own, or as two if it is known where in it a kink or a jump is."""
+        """Search a step as a panel of its own, or as two if it is known where in it a kink or a
+        jump is.
+        """
         start, stop = panel.t[step], panel.t[step + 1]
-        first, last = panel.samples.some(slice(step, step + 1)), panel.samples.some(slice(step + 1, step + 2))
+        first, last = (
+            panel.samples.some(slice(step, step + 1)),
+            panel.samples.some(slice(step + 1, step + 2)),
+        )
         beside = SIDE * self.step
         found = sides(self.source, panel, step, self.curves.watches, beside)
         if found is None:
@@ -232,7 +313,9 @@ class _Search:
             self.part(t[1], stop, samples.some(slice(1, 2)), last, depth)
 
     def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
-        """Search what is between two times as a panel; beside rest, where what switches is no number, only so deep."""
+        """Search what is between two times as a panel; beside rest, where what switches is no
+        number, only so deep.
+        """
         lacks = self.lacks((a + b) / 2)
         if depth >= BESIDE_REST and lacks.any():
             return
@@ -250,65 +333,102 @@ class _Search:
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
 
     def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
-        """What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end."""
+        """What is left in a step that is as short as can be: a kink, a jump, or what grows on
+        without an end.
+        """
         for curve in np.flatnonzero(risen):
             q, row, endless = self.quantity[curve], panel.samples.values[curve], -1
             for at, along in ((step, -1), (step + 1, 1), (step, 1), (step + 1, -1)):
                 near = at + along * np.arange(3)
                 if near.min() < 0 or near.max() >= row.size:
                     continue
-                # Towards a pole both steps grow, of two beside this one or of this one and the next; at a jump at most one does.
+                # Towards a pole both steps grow, of two beside this one or of this one and the
+                # next; at a jump at most one does.
                 sizes = np.abs(row[near])
                 growth = sizes[:2] - sizes[1:]
-                if sizes[0] >= self.best[q] / 2 and sizes[2] > NOISE * sizes[0] and (growth > ENDLESS * sizes[:2]).all():
+                if (
+                    sizes[0] >= self.best[q] / 2
+                    and sizes[2] > NOISE * sizes[0]
+                    and (growth > ENDLESS * sizes[:2]).all()
+                ):
                     endless = at
                 beside = (at == step) == (along < 0)
-                if beside and deepest and sizes[0] >= self.best[q] / 2 and (growth > LAST * self.best[q]).all():
+                if (
+                    beside
+                    and deepest
+                    and sizes[0] >= self.best[q] / 2
+                    and (growth > LAST * self.best[q]).all()
+                ):
                     self.going[q] = max(self.going[q], sizes[0])
             if endless >= 0:
-                self.best[q], self.t[q], self.xi[q] = np.inf, panel.t[endless], panel.samples.places[curve, endless]
+                self.best[q], self.t[q], self.xi[q] = (
+                    np.inf,
+                    panel.t[endless],
+                    panel.samples.places[curve, endless],
+                )
                 self.sign[q] = math.copysign(1.0, row[endless])
 
     def stretches(self, panel: Panel, bound: Array, kinked: Flags) -> None:
-        """Look at the middles of the end steps, where polynomials go through them straight on, and close those that do."""
+        """Look at the middles of the end steps, where polynomials go through them straight on, and
+        close those that do.
+        """
         t, n = panel.t, panel.t.size
-        for step, end in ((0, slice(0, fits.SEVEN)), (n - 2, slice(n - 1, n - fits.SEVEN - 1 if n > fits.SEVEN else None, -1))):
+        for step, end in (
+            (0, slice(0, fits.SEVEN)),
+            (n - 2, slice(n - 1, n - fits.SEVEN - 1 if n > fits.SEVEN else None, -1)),
+        ):
             if kinked[step] or ((self.knots > t[step]) & (self.knots < t[step + 1])).any():
                 continue
             curves = np.flatnonzero(bound[:, step] > self.limit)
             y = panel.samples.values[curves][:, end].T
             middle, least = fits.stretch(y)
             rounding = self.rounding[self.quantity[curves]]
-            straight = (least > 0.0) & (np.abs(np.diff(y, 6, axis=0))[0] <= rounding + ROUGH * least)
+            straight = (least > 0.0) & (
+                np.abs(np.diff(y, 6, axis=0))[0] <= rounding + ROUGH * least
+            )
             if not straight.any():
                 continue
             time = (t[step] + t[step + 1]) / 2
             values, places, _ = self.source.at(np.array([time]))
             for curve in curves[straight].tolist():
                 self.note(curve, values[curve, 0], time, places[curve, 0])
-            passed = straight & (np.abs(values[curves, 0] - middle) <= np.maximum(rounding, STRETCH * least))
+            passed = straight & (
+                np.abs(values[curves, 0] - middle) <= np.maximum(rounding, STRETCH * least)
+            )
             bound[curves[passed], step] = -np.inf
 
     def settle(self, panel: Panel, bound: Array) -> None:
-        """Look for the summits of curves that may rise above what is known; what this closes is bounded no more."""
+        """Look for the summits of curves that may rise above what is known; what this closes is
+        bounded no more.
+        """
         summits = list(self.summits(panel, bound))
         opened = [summit for summit in summits if not summit.closed]
-        found = self.look([(summit, t) for summit in opened for t in (summit.t, *(t for t, _ in summit.kink))])
+        found = self.look(
+            [(summit, t) for summit in opened for t in (summit.t, *(t for t, _ in summit.kink))]
+        )
         for summit in opened:
             first, kink = next(found), [abs(next(found) - size) for _, size in summit.kink]
             tipped = bool(kink) and max(kink) <= self.rounding[self.quantity[summit.curve]]
             summit.closed = self.closed(panel, summit, first) or tipped
         again = [summit for summit in opened if summit.again and not summit.closed]
-        for summit, size in zip(again, self.look([(summit, summit.t) for summit in again]), strict=True):
+        for summit, size in zip(
+            again, self.look([(summit, summit.t) for summit in again]), strict=True
+        ):
             missed, rounding = abs(size - summit.size), self.rounding[self.quantity[summit.curve]]
             # What was missed now bends the slope in turn.
-            summit.closed = missed <= rounding or 10 * missed**2 * (1 + summit.steep**2) <= -summit.bend * rounding
+            summit.closed = (
+                missed <= rounding
+                or 10 * missed**2 * (1 + summit.steep**2) <= -summit.bend * rounding
+            )
         for summit in summits:
             if summit.closed:
                 bound[summit.curve, max(summit.at - 1, 0) : summit.at + 1] = -np.inf
             else:
                 for t in (summit.t, *(t for t, _ in summit.kink)):
-                    bound[summit.curve, np.clip(np.searchsorted(panel.t, t, side="right") - 1, 0, panel.t.size - 2)] = np.inf
+                    bound[
+                        summit.curve,
+                        np.clip(np.searchsorted(panel.t, t, side="right") - 1, 0, panel.t.size - 2),
+                    ] = np.inf
 
     def summits(self, panel: Panel, bound: Array) -> Iterator[Summit]:
         """The summits of curves that may rise above what is known."""
@@ -323,16 +443,23 @@ class _Search:
                     bound[curve, step] = -np.inf
                     continue
                 for at in (step, step + 1):
-                    top = (at == 0 or sizes[at - 1] < sizes[at]) and (at == n - 1 or sizes[at] >= sizes[at + 1])
+                    top = (at == 0 or sizes[at - 1] < sizes[at]) and (
+                        at == n - 1 or sizes[at] >= sizes[at + 1]
+                    )
                     if top and (curve, at) not in found[-1:]:
                         found.append((curve, at))
         if not found:
             return
         signs = [math.copysign(1.0, panel.samples.values[curve, at]) for curve, at in found]
         firsts = [fits.window(at, n) for _, at in found]
-        ys = [panel.samples.values[curve, first : first + fits.SEVEN] for (curve, _), first in zip(found, firsts, strict=True)]
+        ys = [
+            panel.samples.values[curve, first : first + fits.SEVEN]
+            for (curve, _), first in zip(found, firsts, strict=True)
+        ]
         ys = [sign * y for sign, y in zip(signs, ys, strict=True)]
-        fit = fits.summit(np.stack(ys, axis=1), *np.transpose([fits.bounds(at, n) for _, at in found]))
+        fit = fits.summit(
+            np.stack(ys, axis=1), *np.transpose([fits.bounds(at, n) for _, at in found])
+        )
         for k, (curve, at) in enumerate(found):
             x, size, slope, bend, steep, rough = (float(values[k]) for values in fit)
             start, q = panel.t[firsts[k]], self.quantity[curve]
@@ -345,30 +472,38 @@ class _Search:
             yield summit
 
     def told_before(self, values: Array, curve: int) -> Flags:
-        """In which steps a curve is, all around, what others of its quantity are: as one that turns only beyond its link's end."""
+        """In which steps a curve is, all around, what others of its quantity are: as one that turns
+        only beyond its link's end.
+        """
         others = np.flatnonzero(self.quantity[:curve] == self.quantity[curve])
         same = np.ones(values.shape[1] + 2, bool)
-        same[1:-1] = (np.abs(values[others] - values[curve]) <= self.rounding[self.quantity[curve]]).any(axis=0)
+        same[1:-1] = (
+            np.abs(values[others] - values[curve]) <= self.rounding[self.quantity[curve]]
+        ).any(axis=0)
         return np.asarray(same[:-3] & same[1:-2] & same[2:-1] & same[3:])
 
     def noise(self, curve: int, row: Array, step: int) -> float:
         """What a curve's values beside a step are off by rounding.
 
-        That is where third differences are no smaller than second ones, and change their sign to and fro: those of a steep flank
-        do not.
+        That is where third differences are no smaller than second ones, and change their sign to
+        and fro: those of a steep flank do not.
         """
         if row.size < QUIET:
             return 0.0
         first = min(max(step - QUIET // 2 + 1, 0), row.size - QUIET)
         thirds = np.diff(row[first : first + QUIET], 3)
-        second, third = (float(np.median(np.abs(of))) for of in (np.diff(row[first : first + QUIET], 2), thirds))
+        second, third = (
+            float(np.median(np.abs(of))) for of in (np.diff(row[first : first + QUIET], 2), thirds)
+        )
         turns = np.count_nonzero(np.sign(thirds[1:]) * np.sign(thirds[:-1]) < 0.0)
         q = self.quantity[curve]
         noisy = turns >= 2 and second <= third <= NOISE * (self.best[q] + BESIDE * self.scale[q])
         return 3 * third if noisy else 0.0
 
     def rounded(self, curve: int) -> bool:
-        """Whether a curve is nothing but rounding: it zigzags at the instants, though between most of them nothing hides."""
+        """Whether a curve is nothing but rounding: it zigzags at the instants, though between most
+        of them nothing hides.
+        """
         row = self.samples[curve]
         if row.size < 2 * QUIET or 2 * self.hidden > row.size:
             return False
@@ -387,14 +522,20 @@ class _Search:
             yield summit.sign * values[summit.curve, k]
 
     def closed(self, panel: Panel, summit: Summit, found: float) -> bool:
-        """Whether what was found closes both steps beside a summit; else, if it is worth another look, the summit says where."""
+        """Whether what was found closes both steps beside a summit; else, if it is worth another
+        look, the summit says where.
+        """
         rounding, missed = float(self.rounding[self.quantity[summit.curve]]), found - summit.size
         if not (summit.bend < 0.0 and summit.rough <= rounding - ROUGH * summit.bend):
             return False
         if not (abs(missed) <= rounding or abs(missed) <= -summit.trust * summit.bend):
             return False
         # What is missed by rounding says nothing of the slope, however near a value is.
-        slope = summit.slope + (missed * summit.steep if abs(missed) > CLOSE * self.best[self.quantity[summit.curve]] else 0.0)
+        slope = summit.slope + (
+            missed * summit.steep
+            if abs(missed) > CLOSE * self.best[self.quantity[summit.curve]]
+            else 0.0
+        )
         gain = slope**2 / (-2 * summit.bend)
         if not math.isfinite(slope) or gain <= rounding:
             return True

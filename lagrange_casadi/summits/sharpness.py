@@ -1,9 +1,11 @@
-"""Where a scene may be sharper than its instants: what its graph divides by, compares, turns by and raises, to be watched.
+"""Where a scene may be sharper than its instants: what its graph divides by, compares, turns by and
+raises, to be watched.
 
-Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what does is a divisor that nearly
-vanishes, a comparison that changes, an angle that turns far between two instants, or a steep function. The arguments of all such
-operations are smooth wherever those inside them are, so their values at the instants tell between which of them something may
-rise and fall unseen. :mod:`.between` reads them.
+Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what
+does is a divisor that nearly vanishes, a comparison that changes, an angle that turns far between
+two instants, or a steep function. The arguments of all such operations are smooth wherever those
+inside them are, so their values at the instants tell between which of them something may rise and
+fall unseen. :mod:`.between` reads them.
 """
 
 from __future__ import annotations
@@ -52,7 +54,9 @@ class Kind(enum.IntEnum):
 
 @dataclass(frozen=True)
 class Watch:
-    """A watched argument; ``at`` are the numbers at which it switches or has knots, or the one beyond which it changes nothing."""
+    """A watched argument; ``at`` are the numbers at which it switches or has knots, or the one
+    beyond which it changes nothing.
+    """
 
     kind: Kind
     at: tuple[float, ...] = ()
@@ -62,8 +66,8 @@ class Watch:
 class Sharpness:
     """What is to be watched of a scene.
 
-    ``watched(t, d, d_rate, d_acceleration, z, p) -> out`` has a row for each of ``watches``. ``knots`` are the times at which the
-    second derivative of a motion by samples has a kink.
+    ``watched(t, d, d_rate, d_acceleration, z, p) -> out`` has a row for each of ``watches``.
+    ``knots`` are the times at which the second derivative of a motion by samples has a kink.
     """
 
     watched: Any
@@ -75,10 +79,15 @@ class Sharpness:
     def of(cls, graph: Program, columns: Sequence[int]) -> Sharpness:
         """Of what some columns of a scene's graph are made of.
 
-        What is largest along a link is compared with much, and not looked into: it is as sharp as the link's law, and no sharper.
+        What is largest along a link is compared with much, and not looked into: it is as sharp as
+        the link's law, and no sharper.
         """
         largest = {k for output, k in graph.outputs.items() if output.group in LARGEST}
-        laws = {k for output, k in graph.outputs.items() if output.along} if largest & {*columns} else set()
+        laws = (
+            {k for output, k in graph.outputs.items() if output.along}
+            if largest & {*columns}
+            else set()
+        )
         columns = sorted({*columns, *laws} - largest)
         inputs = graph.instant.sx_in()
         names = [graph.instant.name_in(i) for i in range(len(inputs))]
@@ -94,15 +103,20 @@ class Sharpness:
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
     def rounding(self, *inputs: Any) -> Array:
-        """How far from zero rounding takes each of the watched that is nothing else at any of n places; zero for others (rows, 1).
+        """How far from zero rounding takes each of the watched that is nothing else at any of n
+        places; zero for others (rows, 1).
 
-        Such a one changes its sign by chance, and would seem to have kinks everywhere. ``inputs`` are those of ``watched``, of n
-        columns or of one.
+        Such a one changes its sign by chance, and would seem to have kinks everywhere. ``inputs``
+        are those of ``watched``, of n columns or of one.
         """
         given = [ca.DM(rows).full() for rows in inputs]
         count = max(rows.shape[1] for rows in given)
-        off = _ROUNDINGS * running_errors(self.watched, *(np.broadcast_to(rows, (len(rows), count)) for rows in given))
-        nothing = (np.abs(self.watched(*inputs).full()) <= off).all(axis=1) & np.isfinite(off).all(axis=1)
+        off = _ROUNDINGS * running_errors(
+            self.watched, *(np.broadcast_to(rows, (len(rows), count)) for rows in given)
+        )
+        nothing = (np.abs(self.watched(*inputs).full()) <= off).all(axis=1) & np.isfinite(off).all(
+            axis=1
+        )
         return np.asarray(np.where(nothing, off.max(axis=1), 0.0)[:, None])
 
 
@@ -114,12 +128,19 @@ def with_watched(graph: Program, sharpness: Sharpness) -> Program:
     out = ca.vertcat(graph.instant(*inputs), sharpness.watched(*inputs))
     instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
     return replace(
-        graph, instant=instant, columns=(*graph.columns, *(Check("watched", str(k)) for k in range(len(sharpness.watches))))
+        graph,
+        instant=instant,
+        columns=(
+            *graph.columns,
+            *(Check("watched", str(k)) for k in range(len(sharpness.watches))),
+        ),
     )
 
 
 def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
-    """Between which of the instants ``t`` a motion by samples bends more than the instants show, (t - 1,)."""
+    """Between which of the instants ``t`` a motion by samples bends more than the instants show, (t
+    - 1,).
+    """
     found = np.zeros(max(t.size - 1, 0), bool)
     knots = np.array([knot for knot in sharpness.knots if t[0] < knot < t[-1]])
     if not knots.size or t.size < 3:
@@ -127,7 +148,9 @@ def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArra
     here, there = (np.atleast_2d(graph.motion(times[None], p)[2].full()) for times in (t, knots))
     bends = np.abs(np.diff(here, 2))
     bends = np.concatenate([bends[:, :1], bends, bends[:, -1:]], axis=1)
-    allowed = np.maximum(bends[:, :-1], bends[:, 1:]) / 2 + _ROUNDING * np.abs(here).max(axis=1, keepdims=True)
+    allowed = np.maximum(bends[:, :-1], bends[:, 1:]) / 2 + _ROUNDING * np.abs(here).max(
+        axis=1, keepdims=True
+    )
     place = np.clip(np.searchsorted(t, knots, side="right") - 1, 0, t.size - 2)
     share = (knots - t[place]) / (t[place + 1] - t[place])
     chord = here[:, place] * (1 - share) + here[:, place + 1] * share
@@ -137,7 +160,9 @@ def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArra
 
 _ROUNDING = 1e-12
 _ROUNDINGS = 4.0
-"""How many times more than its own rounding may take what is watched from zero, for iterated coordinates are off too."""
+"""How many times more than its own rounding may take what is watched from zero, for iterated
+coordinates are off too.
+"""
 
 _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
 """Beyond which these are one, but for less than a rounding."""
@@ -161,7 +186,9 @@ class _Found:
     def look(self, function: Any, inputs: Sequence[Any]) -> None:
         """Go through the operations of a function of ``inputs``."""
         for operation, operands in operations(function, inputs):
-            self.held += operands  # so that no other node takes the place of one that is known by its number
+            self.held += (
+                operands  # so that no other node takes the place of one that is known by its number
+            )
             for kind, argument, at in _watched(operation, operands):
                 self.add(kind, argument, at)
 
@@ -170,7 +197,11 @@ class _Found:
         argument = self.bare(argument) if kind in (Kind.POLE, Kind.ROOT) else argument
         if not self.moves(argument):
             return
-        if kind is Kind.KNOT and argument.element_hash() == self.moving[0].element_hash() and self.knots >= {*at}:
+        if (
+            kind is Kind.KNOT
+            and argument.element_hash() == self.moving[0].element_hash()
+            and self.knots >= {*at}
+        ):
             return
         self.held.append(argument)
         row = argument
@@ -190,7 +221,9 @@ class _Found:
         return not expression.is_constant() and bool(ca.depends_on(expression, self.moving))
 
     def bare(self, divisor: Any) -> Any:
-        """A divisor without what is zero where it is, or nowhere: roots, squares, signs, and what parameters alone set."""
+        """A divisor without what is zero where it is, or nowhere: roots, squares, signs, and what
+        parameters alone set.
+        """
         while not (divisor.is_constant() or divisor.is_symbolic()):
             operation = divisor.op()
             if operation in _ALIKE:
@@ -205,10 +238,21 @@ class _Found:
         return divisor
 
 
-_ALIKE = {ca.OP_NEG, ca.OP_INV, ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_FABS, ca.OP_COPYSIGN, ca.OP_CONSTPOW}
+_ALIKE = {
+    ca.OP_NEG,
+    ca.OP_INV,
+    ca.OP_SQ,
+    ca.OP_SQRT,
+    ca.OP_TWICE,
+    ca.OP_FABS,
+    ca.OP_COPYSIGN,
+    ca.OP_CONSTPOW,
+}
 
 
-def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
+def _watched(
+    operation: int, operands: Sequence[Any]
+) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
     """What is to be watched of an operation."""
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_DIV, ca.OP_INV):
@@ -229,7 +273,8 @@ def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, An
     elif operation in (ca.OP_FABS, ca.OP_SIGN):
         yield Kind.SWITCH, x, (0.0,)
     elif operation == ca.OP_COPYSIGN:
-        # That of a root or a reciprocal keeps a sign through a division or a reflection, and makes no jump.
+        # That of a root or a reciprocal keeps a sign through a division or a reflection, and makes
+        # no jump.
         if x.is_constant() or x.is_symbolic() or x.op() not in (ca.OP_SQRT, ca.OP_INV):
             yield Kind.SWITCH, y, (0.0,)
     elif operation == ca.OP_CALL:

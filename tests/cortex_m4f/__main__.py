@@ -1,4 +1,6 @@
-"""``python -m tests.cortex_m4f``: the sizes, the stack and the instructions of exported mechanisms on a Cortex-M4F."""
+"""``python -m tests.cortex_m4f``: the sizes, the stack and the instructions of exported mechanisms
+on a Cortex-M4F.
+"""
 
 import sys
 import tempfile
@@ -8,7 +10,15 @@ from lagrange_casadi.errors import LagrangeCasadiError
 
 from .target import RUNGS, exported, missing
 
-CASES = ("slider_crank", "four_bar", "andrews_squeezer", "rrr3", "spatial_slider_crank", "arm6", "five_link_suspension")
+CASES = (
+    "slider_crank",
+    "four_bar",
+    "andrews_squeezer",
+    "rrr3",
+    "spatial_slider_crank",
+    "arm6",
+    "five_link_suspension",
+)
 
 
 def row(name, rung, optimized, folder):
@@ -18,8 +28,24 @@ def row(name, rung, optimized, folder):
     own, whole, n = found.sections(found.object), found.sections(found.whole), found.measured
     library = sum(whole.values()) - sum(own.values())
     stack = max(value for key, value in n.items() if key.startswith("stack"))
-    numbers = [len(found.contract.outputs), own["text"], own["rodata"], library, n["bytes model"], stack, found.stated]
-    return [name, rung, optimized, *numbers, n["instructions evaluate"], n["instructions worst"], n.get("instructions section", "")]
+    numbers = [
+        len(found.contract.outputs),
+        own["text"],
+        own["rodata"],
+        library,
+        n["bytes model"],
+        stack,
+        found.stated,
+    ]
+    return [
+        name,
+        rung,
+        optimized,
+        *numbers,
+        n["instructions evaluate"],
+        n["instructions worst"],
+        n.get("instructions section", ""),
+    ]
 
 
 def main():
@@ -44,7 +70,9 @@ def main():
     print("| --- " * 3 + "| --: " * 10 + "|")
     with tempfile.TemporaryDirectory() as work:
         for name in CASES:
-            for number, (rung, optimized) in enumerate((rung, o) for rung in RUNGS for o in ("-O2", "-Os")):
+            for number, (rung, optimized) in enumerate(
+                (rung, o) for rung in RUNGS for o in ("-O2", "-Os")
+            ):
                 try:
                     cells = row(name, rung, optimized, Path(work) / f"{name}_{number}")
                 except LagrangeCasadiError as reason:

@@ -1,4 +1,6 @@
-"""What is built for a Cortex-M4F, run on the board mps2-an386 as an emulator has it, and measured there."""
+"""What is built for a Cortex-M4F, run on the board mps2-an386 as an emulator has it, and measured
+there.
+"""
 
 import re
 import shutil
@@ -11,11 +13,27 @@ from lagrange_casadi.case import load_case
 from lagrange_casadi.exports import export
 
 HERE = Path(__file__).parent
-COMPILER, NM, SIZE, EMULATOR = "arm-none-eabi-gcc", "arm-none-eabi-nm", "arm-none-eabi-size", "qemu-system-arm"
+COMPILER, NM, SIZE, EMULATOR = (
+    "arm-none-eabi-gcc",
+    "arm-none-eabi-nm",
+    "arm-none-eabi-size",
+    "qemu-system-arm",
+)
 CORE = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
 FLAGS = (*CORE, "-ffp-contract=off", "-fno-math-errno")
-# One instruction a nanosecond of the board's time, so that its SysTick, of 25 MHz, counts 40 of them.
-MACHINE = ("-M", "mps2-an386", "-nographic", "-monitor", "none", "-serial", "none", "-icount", "shift=0")
+# One instruction a nanosecond of the board's time, so that its SysTick, of 25 MHz, counts 40 of
+# them.
+MACHINE = (
+    "-M",
+    "mps2-an386",
+    "-nographic",
+    "-monitor",
+    "none",
+    "-serial",
+    "none",
+    "-icount",
+    "shift=0",
+)
 SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 RUNGS = {
     "single": {"precision": "single"},
@@ -31,13 +49,25 @@ def missing():
     absent = [tool for tool in (COMPILER, NM, SIZE, EMULATOR) if shutil.which(tool) is None]
     if absent:
         return f"there is no {absent[0]}"
-    found = subprocess.run([COMPILER, *CORE, "-print-file-name=librdimon.a"], capture_output=True, text=True, check=True)
+    found = subprocess.run(
+        [COMPILER, *CORE, "-print-file-name=librdimon.a"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return "" if "/" in found.stdout else "the cross compiler has no newlib with semihosting"
 
 
 def run(*command, cwd=None):
     """What a command prints. Raises with what it complains about where it fails."""
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, cwd=cwd, timeout=120)
+    done = subprocess.run(
+        [str(word) for word in command],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=cwd,
+        timeout=120,
+    )
     if done.returncode:
         raise RuntimeError(f"{command[0]} answers {done.returncode}:\n{done.stdout}{done.stderr}")
     return done.stdout
@@ -45,7 +75,9 @@ def run(*command, cwd=None):
 
 @dataclass(frozen=True)
 class Target:
-    """An exported folder, by its contract, optimized for the machine; instants of ``span`` (start, stop) [s] are measured."""
+    """An exported folder, by its contract, optimized for the machine; instants of ``span`` (start,
+    stop) [s] are measured.
+    """
 
     folder: Path
     contract: object
@@ -60,10 +92,21 @@ class Target:
 
     @cached_property
     def object(self):
-        """The mechanism's object; in single precision no double is meant, nor comes in by a promotion."""
+        """The mechanism's object; in single precision no double is meant, nor comes in by a
+        promotion.
+        """
         path = self._work / "mechanism.o"
         strict = ["-Wdouble-promotion", "-Wfloat-conversion"] if self.contract.rests else []
-        flags = [*FLAGS, self.optimized, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", *strict]
+        flags = [
+            *FLAGS,
+            self.optimized,
+            "-std=c99",
+            "-pedantic",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            *strict,
+        ]
         run(COMPILER, *flags, "-c", self.folder / f"{self.contract.prefix}.c", "-o", path)
         return path
 
@@ -75,11 +118,27 @@ class Target:
         return path
 
     def program(self, source, *flags):
-        """What a program with the object prints on the machine. Raises where it does not exit with 0."""
+        """What a program with the object prints on the machine.
+
+        Raises where it does not exit with 0.
+        """
         image = self._work / f"{source.stem}.elf"
         linked = ["--specs=rdimon.specs", "-nostartfiles", "-T", HERE / "link.ld"]
         files = [HERE / "startup.c", source, self.object]
-        run(COMPILER, *FLAGS, self.optimized, "-std=gnu99", "-I", self.folder, *flags, *files, *linked, "-lm", "-o", image)
+        run(
+            COMPILER,
+            *FLAGS,
+            self.optimized,
+            "-std=gnu99",
+            "-I",
+            self.folder,
+            *flags,
+            *files,
+            *linked,
+            "-lm",
+            "-o",
+            image,
+        )
         return run(EMULATOR, *MACHINE, *SEMIHOSTING, "-kernel", image)
 
     def selftest(self):
@@ -90,9 +149,16 @@ class Target:
     def measured(self):
         """Numbers by what they are: instructions a call, bytes of stack, bytes of structs."""
         c, (start, stop) = self.contract, self.span
-        told = {"MECHANISM": c.prefix, "SETTINGS": len(c.settings), "RESTS": int(c.rests), "LINKS": len(c.links)}
+        told = {
+            "MECHANISM": c.prefix,
+            "SETTINGS": len(c.settings),
+            "RESTS": int(c.rests),
+            "LINKS": len(c.links),
+        }
         told |= {"START": f"{start!r}", "STEP": f"{(stop - start) / 64!r}"}
-        lines = self.program(HERE / "measure.c", *(f"-D{key}={value}" for key, value in told.items())).splitlines()
+        lines = self.program(
+            HERE / "measure.c", *(f"-D{key}={value}" for key, value in told.items())
+        ).splitlines()
         return {name: int(value) for name, value in (line.rsplit(" ", 1) for line in lines)}
 
     def sections(self, path):

@@ -1,8 +1,10 @@
-"""Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a result at all.
+"""Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a
+result at all.
 
-Instants of a design are evaluated several at once, by SIMD, and reduced in C to what is kept. Between instants peaks are sought by
-evaluating the same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same
-bytes whatever stands beside it.
+Instants of a design are evaluated several at once, by SIMD, and reduced in C to what is kept.
+Between instants peaks are sought by evaluating the same graph at a few more instants there. A
+design depends on nothing but its own parameters: its row has the same bytes whatever stands beside
+it.
 """
 
 from __future__ import annotations
@@ -58,8 +60,9 @@ _LOOKS = 32
 class DesignEngine:
     """A scene compiled for many designs.
 
-    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
-    gives; ``columns`` those of histories. What equilibrium leaves open for a design is NaN there.
+    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``,
+    and ``efforts`` those of what it gives; ``columns`` those of histories. What equilibrium leaves
+    open for a design is NaN there.
     """
 
     rung: Rung
@@ -80,10 +83,14 @@ class DesignEngine:
         *,
         timing: Timing | None = None,
     ) -> DesignEngine:
-        """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a ``timing`` in place of ``t``."""
+        """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a
+        ``timing`` in place of ``t``.
+        """
         rung = rung or Rung()
         if rung.table is not None:
-            raise DeclarationError("designs are not read from a table: each would need a table of its own")
+            raise DeclarationError(
+                "designs are not read from a table: each would need a table of its own"
+            )
         graph = compile_scene(scene, wanted)
         rung.check(graph)
         scene.checked(scene.values())
@@ -103,9 +110,21 @@ class DesignEngine:
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
             source = codegen.emit_designs(watched, stages, rung.newton, kept.reduction)
-            guess = begun(graph, float(even[0]), p) if times.timing.joint else graph.newton.guess if graph.newton else ()
+            guess = (
+                begun(graph, float(even[0]), p)
+                if times.timing.joint
+                else graph.newton.guess
+                if graph.newton
+                else ()
+            )
             return codegen.load_designs(
-                source, compiler, tuple(shlex.split(rung.flags)), kept.reduction, even.size, np.array(guess, float), rung.precision
+                source,
+                compiler,
+                tuple(shlex.split(rung.flags)),
+                kept.reduction,
+                even.size,
+                np.array(guess, float),
+                rung.precision,
             )
 
         found = compiled(rung, build)
@@ -143,9 +162,14 @@ class DesignEngine:
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """The names of quantities, and outputs in histories, that equilibrium or friction at rest may leave open for designs."""
+        """The names of quantities, and outputs in histories, that equilibrium or friction at rest
+        may leave open for designs.
+        """
         doubts = {quantity for _, quantity in self.kept.reduction.doubts}
-        quantities, outputs = tuple(self.kept.quantities[k] for k in sorted(doubts)), [*self.graph.doubtful]
+        quantities, outputs = (
+            tuple(self.kept.quantities[k] for k in sorted(doubts)),
+            [*self.graph.doubtful],
+        )
         if self.graph.checks("rest"):
             quantities, outputs = self.kept.quantities, [*self.graph.outputs]
         return tuple(dict.fromkeys(map(str, [*quantities, *outputs])))
@@ -162,7 +186,9 @@ class DesignEngine:
 
     @property
     def t(self) -> Array:
-        """The instants (t,) [s] of the parameters' defaults; those of all designs, where these have them in common."""
+        """The instants (t,) [s] of the parameters' defaults; those of all designs, where these have
+        them in common.
+        """
         return self.times.default[0]
 
     @property
@@ -172,8 +198,15 @@ class DesignEngine:
 
     @property
     def cost(self) -> float:
-        """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
-        return seconds(self.graph, self.count + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+        """Seconds that a core takes for a design, within a factor of three or so: counted, not
+        measured, the same everywhere.
+        """
+        return seconds(
+            self.graph,
+            self.count + _LOOKS * len(self.quantities),
+            self.rung,
+            interpreted=self.library is None,
+        )
 
     @property
     def room(self) -> int:
@@ -181,26 +214,40 @@ class DesignEngine:
         return 8 * self.kept.reduction.rows * self.count
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
-        """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
+        """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with
+        ``histories``, its series too.
 
-        Values are not checked against the parameters' ranges. ``threads`` share the designs, by default one a core; no byte depends
-        on them. Raises :class:`DeclarationError` for another shape, :class:`SizeError` where the outcome does not fit into memory.
+        Values are not checked against the parameters' ranges. ``threads`` share the designs, by
+        default one a core; no byte depends on them. Raises :class:`DeclarationError` for another
+        shape, :class:`SizeError` where the outcome does not fit into memory.
         """
         p = np.ascontiguousarray(p, float)
         if p.ndim != 2 or p.shape[1] != len(self.parameters):
-            raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
+            raise DeclarationError(
+                f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}"
+            )
         n, history = len(p), (len(p), len(self.graph.columns), self.count)
-        require("the peaks of the designs", (n, 3 * len(self.kept.quantities) + 2 * len(self.efforts)))
+        require(
+            "the peaks of the designs", (n, 3 * len(self.kept.quantities) + 2 * len(self.efforts))
+        )
         if histories:
             require("the histories of the designs", history)
         columns = np.empty(history) if histories else None
-        found, times = self._room(n, columns), np.empty((n, self.count)) if histories and not self.shared else None
+        found, times = (
+            self._room(n, columns),
+            np.empty((n, self.count)) if histories and not self.shared else None,
+        )
         # What all have in common is not cut: it is made once.
         many = len(self.graph.columns) if self.watch.columns else 1
         size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
             some = slice(start, start + size)
-            self._fill(p[some], rows_of(found, some), threads or cores(), None if times is None else times[some])
+            self._fill(
+                p[some],
+                rows_of(found, some),
+                threads or cores(),
+                None if times is None else times[some],
+            )
         outcome = outcome_of(found, times=times)
         if self.times.law is not None:
             outcome = replace(outcome, over=self.times.at_drive(outcome.t, p))
@@ -210,16 +257,21 @@ class DesignEngine:
             self._withhold(out, row)
         with np.errstate(invalid="ignore"):
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
-        return replace(outcome, series=np.stack([series[output] for output in self.outputs], axis=1))
+        return replace(
+            outcome, series=np.stack([series[output] for output in self.outputs], axis=1)
+        )
 
     def history(self, p: Array, listed: Listed | None = None) -> History:
-        """One design (parameters,) over the instants that are asked for, or, with local peaks, in equal steps of time.
+        """One design (parameters,) over the instants that are asked for, or, with local peaks, in
+        equal steps of time.
 
         Without, no peaks are sought, so none can be untold.
         """
         p, columns = p[None], np.empty((1, len(self.graph.columns), self.count))
         t = self.times.of(p, asked=listed is None)[listed is None]
-        found = self._room(1, columns) | {"iterated": np.empty((1, self.graph.instant.size1_in("z"), self.count))}
+        found = self._room(1, columns) | {
+            "iterated": np.empty((1, self.graph.instant.size1_in("z"), self.count))
+        }
         tops = np.full((1, len(self.kept.quantities), TOPS, 4), np.nan)
         if listed is None:
             self._series(p, t, found, 1)
@@ -229,7 +281,9 @@ class DesignEngine:
         return History(outcome_of(found), t[0], columns[0], found["iterated"][0], tops[0])
 
     def told(self, out: Array, p: Array) -> dict[Output, Array]:
-        """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
+        """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is
+        open is NaN, angles go on.
+        """
         self._withhold(out, p)
         series = outputs_of(self.graph, out)
         return {output: series[output] for output in self.outputs}
@@ -237,7 +291,12 @@ class DesignEngine:
     def _withhold(self, out: Array, p: Array) -> None:
         """Take from the columns (columns, t) of a design what equilibrium leaves open."""
         with np.errstate(invalid="ignore"):
-            out[[self.graph.outputs[output] for output in undetermined(self.graph, out, p, self.rung)]] = np.nan
+            out[
+                [
+                    self.graph.outputs[output]
+                    for output in undetermined(self.graph, out, p, self.rung)
+                ]
+            ] = np.nan
 
     @property
     def plain(self) -> bool:
@@ -262,7 +321,9 @@ class DesignEngine:
         return {"status": np.zeros(n, np.int8), **kept, "history": columns}
 
     def _fill(self, p: Array, found: Results, threads: int, times: Array | None) -> None:
-        """Evaluate designs: peaks between instants in equal steps of time; histories at the instants that were asked for."""
+        """Evaluate designs: peaks between instants in equal steps of time; histories at the
+        instants that were asked for.
+        """
         series = found["history"]
         even, asked = self.times.of(p, asked=series is not None)
         if times is not None:
@@ -281,13 +342,19 @@ class DesignEngine:
         refuse(found, failed, others["status"])
         series[found["status"] != Status.OK] = np.nan
 
-    def _evaluate(self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None) -> None:
-        """Fill what is asked for of designs ``p`` at instants ``t`` (1 or n, t), in equal steps where peaks are."""
+    def _evaluate(
+        self, p: Array, t: Array, found: Results, threads: int, listed: Listed | None = None
+    ) -> None:
+        """Fill what is asked for of designs ``p`` at instants ``t`` (1 or n, t), in equal steps
+        where peaks are.
+        """
         if self.library is not None:
             self.library.evaluate(t, self.bent(p, t), p, found, threads, listed)
             return
         for i, row in enumerate(p):
-            status, design = outcome(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton, listed)
+            status, design = outcome(
+                self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton, listed
+            )
             found["status"][i] = status
             for name, array in found.items():
                 if name != "status" and array is not None:
@@ -296,24 +363,35 @@ class DesignEngine:
     def _series(self, p: Array, t: Array, found: Results, threads: int) -> None:
         """The columns of designs at any instants, without peaks."""
         if self.library is not None:
-            self.library.evaluate(t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads)
+            self.library.evaluate(
+                t, np.zeros((1, 0), bool), p, found | dict.fromkeys(KEPT), threads
+            )
             return
         for i, row in enumerate(p):
-            found["status"][i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
+            found["status"][i], table = columns_of(
+                self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton
+            )
             found["history"][i] = np.nan if table is None else table.out
             if "iterated" in found:
                 found["iterated"][i] = np.nan if table is None else table.iterated
 
     def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
-        """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
+        """In which steps between the instants of each design its motion bends more than they show;
+        one row where none has knots.
+        """
         if len(t) == 1 or not self.kept.sharpness.knots:
             # Of the defaults: a row of what is found must not depend on the designs beside it.
             t, p = t[:1], self.graph.data.defaults[None]
-        known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
+        known = [
+            bent(self.graph, self.kept.sharpness, times, row)
+            for times, row in zip(t, p, strict=True)
+        ]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
     def _refuse_motions(self, p: Array, t: Array, found: Results) -> None:
-        """Take the result from designs whose motion cannot be; the history has their columns, if these are watched."""
+        """Take the result from designs whose motion cannot be; the history has their columns, if
+        these are watched.
+        """
         if not self.watch:
             return
         status = self.watch.statuses(p, t, found["status"], found["history"])
@@ -321,29 +399,41 @@ class DesignEngine:
 
     @symbolic_property
     def slopes(self) -> Slopes:
-        """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
+        """The derivatives of :attr:`quantities` at points; they are derived and compiled when they
+        are first asked for.
+        """
         return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
 
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
-        """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
+        """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``,
+        change with all parameters.
+        """
         return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
 
     @symbolic_property
     def curvatures(self) -> Curvatures:
-        """Their second derivatives at points; they are derived and compiled when they are first asked for."""
+        """Their second derivatives at points; they are derived and compiled when they are first
+        asked for.
+        """
         return Curvatures.of(self.slopes, self.rung)
 
     def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
-        """The second derivatives (q, parameters, parameters) of the peaks of a design, whose gradient is ``own``."""
+        """The second derivatives (q, parameters, parameters) of the peaks of a design, whose
+        gradient is ``own``.
+        """
         return curvature(self.curvatures, self.times, self._unit_numbers, p, (value, t, xi), own)
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
-        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
+        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see
+        :func:`.ties`.
+        """
         others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
         return tied(self.slopes, self.times, self._unit_numbers, p, value, own, others)
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
-        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""
+        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with
+        all parameters.
+        """
         chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
         return mean_slopes(self.slopes, self.times, p, chosen)
 
@@ -355,14 +445,18 @@ class DesignEngine:
         return slopes
 
     def slopes_at(self, p: Array, found: Outcome) -> Array:
-        """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""
+        """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where
+        there is none.
+        """
         slopes = np.full((*found.value.shape, len(self.parameters)), np.nan)
         for k in np.flatnonzero(found.status == Status.OK):
             slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
         return slopes
 
     def failures(self, p: Array, whole: Program) -> dict[str, float]:
-        """What fails of one design that has a result, (parameters,), by a graph of all outputs: see :mod:`.witness`."""
+        """What fails of one design that has a result, (parameters,), by a graph of all outputs: see
+        :mod:`.witness`.
+        """
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
         return failures(whole, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])

@@ -20,11 +20,19 @@ from .times import DesignTimes
 
 
 def gradient(
-    slopes: Slopes, times: DesignTimes, units: npt.NDArray[np.intp], p: Array, value: Array, t: Array, xi: Array
+    slopes: Slopes,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    value: Array,
+    t: Array,
+    xi: Array,
 ) -> PeakSlopes:
-    """That of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and ratios ``xi``.
+    """That of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and ratios
+    ``xi``.
 
-    ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with nothing.
+    ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with
+    nothing.
     """
     instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
@@ -32,14 +40,18 @@ def gradient(
 
 
 class MeanSlopes(NamedTuple):
-    """The derivatives of means over time, and of roots of mean squares, by all parameters, (e, parameters); NaN of a root of 0."""
+    """The derivatives of means over time, and of roots of mean squares, by all parameters, (e,
+    parameters); NaN of a root of 0.
+    """
 
     mean: Array
     rms: Array
 
 
 def mean_slopes(slopes: Slopes, times: DesignTimes, p: Array, chosen: Numbers) -> MeanSlopes:
-    """Those of what is ``chosen`` (e,) of a design ``p`` (parameters,): of sums by trapezia, whose instants may move."""
+    """Those of what is ``chosen`` (e,) of a design ``p`` (parameters,): of sums by trapezia, whose
+    instants may move.
+    """
     instants = times.of(p[None], asked=False)[0][0]
     first, last = _ends(slopes, times, instants, p)
     share = np.linspace(0.0, 1.0, instants.size)[:, None]
@@ -65,17 +77,29 @@ def curvature(
     peaks: tuple[Array, Array, Array],
     own: PeakSlopes,
 ) -> Array:
-    """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design, whose gradient is ``own``."""
+    """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design,
+    whose gradient is ``own``.
+    """
     instants = times.of(p[None], asked=False)[0][0]
     chosen = np.arange(own.kinds.size, dtype=np.intc)
-    ends = end_bends(curvatures.slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p)
+    ends = end_bends(
+        curvatures.slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p
+    )
     return peak_bends(curvatures, instants, p, chosen, peaks, own, ends, _nothing(units, peaks[0]))
 
 
 def tied(
-    slopes: Slopes, times: DesignTimes, units: npt.NDArray[np.intp], p: Array, value: Array, own: PeakSlopes, others: Array
+    slopes: Slopes,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    value: Array,
+    own: PeakSlopes,
+    others: Array,
 ) -> npt.NDArray[np.bool_]:
-    """Which of them (q,) tie with another peak; ``others`` (q, n, 4) are those that are as large: see :func:`.ties`."""
+    """Which of them (q,) tie with another peak; ``others`` (q, n, 4) are those that are as large:
+    see :func:`.ties`.
+    """
     instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
     return ties(slopes, instants, p, chosen, value, own, ends, others) & ~_nothing(units, value)

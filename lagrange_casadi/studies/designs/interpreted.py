@@ -1,4 +1,6 @@
-"""What is kept of a design where there is no compiler: the same as the emitted C keeps, by CasADi's virtual machine and NumPy."""
+"""What is kept of a design where there is no compiler: the same as the emitted C keeps, by CasADi's
+virtual machine and NumPy.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +23,21 @@ from .outcome import KEPT
 from .reduction import KeptOutputs
 
 
-def columns_of(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
-    """The columns of a design at instants, or why it has no result; no number where friction at rest reaches."""
+def columns_of(
+    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None
+) -> tuple[Status, Evaluated | None]:
+    """The columns of a design at instants, or why it has no result; no number where friction at
+    rest reaches.
+    """
     if not np.isfinite(p).all():
         return Status.INVALID, None
     reduction = kept.reduction
     margins = reduction.matter(p).full().ravel()[: reduction.margins]
-    if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: reduction.positive] > 0.0).all()):
+    if not (
+        np.isfinite(margins).all()
+        and (margins >= 0.0).all()
+        and (margins[: reduction.positive] > 0.0).all()
+    ):
         return Status.IMPOSSIBLE, None
     if not t[-1] >= t[0]:
         return Status.NO_INSTANTS, None
@@ -40,7 +50,12 @@ def columns_of(graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: in
 
 
 def outcome(
-    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None, listed: Listed | None = None
+    graph: Program,
+    kept: KeptOutputs,
+    t: Array,
+    p: Array,
+    newton: int | None,
+    listed: Listed | None = None,
 ) -> tuple[Status, dict[str, Array] | None]:
     """What is kept of a design, by its names in C, or why it has no result."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
@@ -48,12 +63,17 @@ def outcome(
         return status, None
     reduction, rung = kept.reduction, Rung("vm", newton=newton)
     left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
-    doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
+    doubted = {
+        quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open
+    }
     told = [k for k in range(len(reduction.units)) if k not in doubted]
     efforts = evaluated.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
         means = np.array([_means(t, effort) for effort in efforts]).reshape(-1, 2).T
-    peaks, tops = np.full((3, len(reduction.units)), np.nan), np.full((len(reduction.units), TOPS, 4), np.nan)
+    peaks, tops = (
+        np.full((3, len(reduction.units)), np.nan),
+        np.full((len(reduction.units), TOPS, 4), np.nan),
+    )
     if told:
         signals = _signals(graph, kept, t, p, newton, evaluated, told)
         found = signals.peaks([reduction.units[k] for k in told], listed=listed)
@@ -63,7 +83,11 @@ def outcome(
         tops[told] = np.nan if found.tops is None else found.tops
     means[:, [effort not in told for effort in reduction.efforts]] = np.nan
     every = dict(zip(KEPT, (*peaks, *means), strict=True))
-    return Status.OK, every | {"history": evaluated.out, "iterated": evaluated.iterated, "tops": tops}
+    return Status.OK, every | {
+        "history": evaluated.out,
+        "iterated": evaluated.iterated,
+        "tops": tops,
+    }
 
 
 def _means(t: Array, values: Array) -> tuple[Any, Any]:
@@ -74,10 +98,29 @@ def _means(t: Array, values: Array) -> tuple[Any, Any]:
 
 
 def _signals(
-    graph: Program, kept: KeptOutputs, t: Array, p: Array, newton: int | None, evaluated: Evaluated, some: Sequence[int]
+    graph: Program,
+    kept: KeptOutputs,
+    t: Array,
+    p: Array,
+    newton: int | None,
+    evaluated: Evaluated,
+    some: Sequence[int],
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     description, reduction = graph.data.at(p), kept.reduction
-    sections = [one for link in kept.links for one in section_forces(description, link, graph.outputs).values()]
+    sections = [
+        one
+        for link in kept.links
+        for one in section_forces(description, link, graph.outputs).values()
+    ]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
-    return Signals(graph, evaluated.stages, kept.sharpness, [quantities[k] for k in some], t, p, evaluated.iterated, newton)
+    return Signals(
+        graph,
+        evaluated.stages,
+        kept.sharpness,
+        [quantities[k] for k in some],
+        t,
+        p,
+        evaluated.iterated,
+        newton,
+    )

@@ -21,9 +21,10 @@ Results: TypeAlias = dict[str, Any]
 class Outcome:
     """What is kept of n designs, a row each; rows of designs without a result hold NaN.
 
-    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
-    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
-    are whole histories, where they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
+    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each
+    quantity with its sign, its time [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``,
+    (n, e), those of each effort over time. ``series`` (n, columns, t) are whole histories, where
+    they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
     ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
     """
 
@@ -40,10 +41,11 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """One design over instants ``t`` (t,): its ``columns`` (columns, t) and iterated coordinates (z, t).
+    """One design over instants ``t`` (t,): its ``columns`` (columns, t) and iterated coordinates
+    (z, t).
 
-    Where peaks were sought, ``tops`` (q, :data:`.TOPS`, 4) are local ones of its quantities: see :class:`.Peaks`. ``outcome`` has
-    its status, and what is kept.
+    Where peaks were sought, ``tops`` (q, :data:`.TOPS`, 4) are local ones of its quantities: see
+    :class:`.Peaks`. ``outcome`` has its status, and what is kept.
     """
 
     outcome: Outcome

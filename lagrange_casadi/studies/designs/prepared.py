@@ -1,4 +1,6 @@
-"""A scene made ready for many evaluations, one after another: what does not depend on parameters' values is done once."""
+"""A scene made ready for many evaluations, one after another: what does not depend on parameters'
+values is done once.
+"""
 
 from __future__ import annotations
 
@@ -36,8 +38,8 @@ _Values: TypeAlias = Mapping[str, Any] | None
 class Peaks:
     """What the instants of one evaluation come to, with all between them.
 
-    ``value``, ``t`` and ``xi``, (q,), are the peak of each quantity with its sign, its time [s] and its ratio xi/l, NaN off a link;
-    ``mean`` and ``rms``, (e,), those of each effort over time.
+    ``value``, ``t`` and ``xi``, (q,), are the peak of each quantity with its sign, its time [s] and
+    its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (e,), those of each effort over time.
     """
 
     value: Array
@@ -51,11 +53,12 @@ class Peaks:
 class Gradient:
     """The peaks of q ``quantities``, and how each changes with the parameters.
 
-    ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are the derivatives of ``value``,
-    with its sign, by each of ``parameters``, in the quantity's unit over the parameter's. ``kinds`` (q,) says what each peak is at:
-    see :class:`.PeakKind`. Slopes are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
-    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told; :attr:`tied` says
-    where that is so.
+    ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are
+    the derivatives of ``value``, with its sign, by each of ``parameters``, in the quantity's unit
+    over the parameter's. ``kinds`` (q,) says what each peak is at: see :class:`.PeakKind`. Slopes
+    are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
+    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one
+    that is told; :attr:`tied` says where that is so.
     """
 
     quantities: tuple[str, ...]
@@ -71,7 +74,8 @@ class Gradient:
 
     @symbolic_property
     def tied(self) -> npt.NDArray[np.bool_]:
-        """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
+        """Which peaks (q,) tie with another of the same quantity that changes otherwise: the
+        largest of both has no derivative.
 
         It is looked for when it is first asked for, which takes longer than the gradient.
         """
@@ -79,7 +83,9 @@ class Gradient:
 
     @cached_property
     def mean(self) -> dict[str, dict[str, float]]:
-        """The derivatives of the means of ``efforts`` over time, by effort and parameter; made when they are first asked for."""
+        """The derivatives of the means of ``efforts`` over time, by effort and parameter; made when
+        they are first asked for.
+        """
         return self._named(self._means.mean)
 
     @cached_property
@@ -92,21 +98,30 @@ class Gradient:
         return self.add_up()
 
     def _named(self, slopes: Array) -> dict[str, dict[str, float]]:
-        return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.efforts, slopes.tolist(), strict=True)}
+        return {
+            name: dict(zip(self.parameters, row, strict=True))
+            for name, row in zip(self.efforts, slopes.tolist(), strict=True)
+        }
 
     def __getitem__(self, quantity: str) -> dict[str, float]:
-        """The derivatives of the peak of a quantity, by the parameter's name. Raises :class:`UnknownNameError`."""
+        """The derivatives of the peak of a quantity, by the parameter's name.
+
+        Raises :class:`UnknownNameError`.
+        """
         if quantity not in self.quantities:
             raise UnknownNameError("quantity with a peak", quantity, self.quantities)
-        return dict(zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True))
+        return dict(
+            zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True)
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Curvature:
     """The second derivatives of the peaks of q ``quantities`` by the ``parameters``.
 
-    ``bends`` (q, parameters, parameters) are symmetric, of the peaks with their sign, in the quantity's unit over both parameters'.
-    They are NaN where :class:`Gradient` has no slopes, and where a peak that is level in time would jump elsewhere.
+    ``bends`` (q, parameters, parameters) are symmetric, of the peaks with their sign, in the
+    quantity's unit over both parameters'. They are NaN where :class:`Gradient` has no slopes, and
+    where a peak that is level in time would jump elsewhere.
     """
 
     quantities: tuple[str, ...]
@@ -114,44 +129,69 @@ class Curvature:
     bends: Array
 
     def __getitem__(self, quantity: str) -> dict[str, dict[str, float]]:
-        """Those of the peak of a quantity, by the names of both parameters. Raises :class:`UnknownNameError`."""
+        """Those of the peak of a quantity, by the names of both parameters.
+
+        Raises :class:`UnknownNameError`.
+        """
         if quantity not in self.quantities:
             raise UnknownNameError("quantity with a peak", quantity, self.quantities)
         rows = self.bends[self.quantities.index(quantity)].tolist()
-        return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.parameters, rows, strict=True)}
+        return {
+            name: dict(zip(self.parameters, row, strict=True))
+            for name, row in zip(self.parameters, rows, strict=True)
+        }
 
 
 class _Answers(threading.local):
-    """The arrays that evaluations write into, and what is bound to them: made anew in each thread that asks for them."""
+    """The arrays that evaluations write into, and what is bound to them: made anew in each thread
+    that asks for them.
+    """
 
     def __init__(self, engine: DesignEngine, defaults: Array) -> None:
         self.p, self.status = defaults[None].copy(), np.zeros(1, np.int8)
         graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
         self.history = np.empty((1, len(graph.columns), engine.count))
-        self.rows = {str(output): self.history[0, graph.outputs[output]] for output in engine.outputs}
-        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)}
+        self.rows = {
+            str(output): self.history[0, graph.outputs[output]] for output in engine.outputs
+        }
+        places = {
+            name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(KEPT)
+        }
         self.seen = Peaks(*(places[name][0] for name in KEPT))
         self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
-        # Where nothing but the values changes from call to call, all that remains is the call itself.
+        # Where nothing but the values changes from call to call, all that remains is the call
+        # itself.
         if engine.library is not None and engine.times.common:
             even, asked = self.instants = engine.times.of(self.p)
             bind = partial(engine.library.bound, p=self.p)
             nowhere = np.zeros((1, 0), bool)
-            # What is watched at the instants of peaks; series of the evaluation before stay what they are.
+            # What is watched at the instants of peaks; series of the evaluation before stay what
+            # they are.
             self.even = np.empty_like(self.history) if engine.watch.columns else None
             self.fill = (
-                bind(asked, nowhere, results={"status": self.status, **dict.fromkeys(KEPT), "history": self.history}),
-                bind(even, engine.bent(self.p, even), results={"status": self.status, **places, "history": self.even}),
+                bind(
+                    asked,
+                    nowhere,
+                    results={"status": self.status, **dict.fromkeys(KEPT), "history": self.history},
+                ),
+                bind(
+                    even,
+                    engine.bent(self.p, even),
+                    results={"status": self.status, **places, "history": self.even},
+                ),
             )
 
 
 class Prepared:
     """A scene that answers for values of its parameters: see :func:`prepare`.
 
-    Any number of threads may use one. Answers lie in arrays of the thread that asks; :meth:`copy` has others, for the same thread.
+    Any number of threads may use one. Answers lie in arrays of the thread that asks; :meth:`copy`
+    has others, for the same thread.
     """
 
-    def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]) -> None:
+    def __init__(
+        self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]
+    ) -> None:
         self._engine, self._explain = engine, explain
         self._declared = engine.graph.data.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
@@ -185,20 +225,26 @@ class Prepared:
 
     @property
     def t(self) -> Array:
-        """The instants (t,) [s] of this thread's last evaluation; before the first one, those of the defaults."""
+        """The instants (t,) [s] of this thread's last evaluation; before the first one, those of
+        the defaults.
+        """
         instants: Array = self._engine.times.of(self._answers.p)[1][0]
         return instants
 
     def copy(self) -> Prepared:
-        """Another one with arrays of its own, for answers that are needed side by side; nothing is derived or compiled for it."""
+        """Another one with arrays of its own, for answers that are needed side by side; nothing is
+        derived or compiled for it.
+        """
         return Prepared(self._engine, self._explain)
 
     def __call__(self, /, *values: _Values, **named: Any) -> Mapping[str, Array]:
-        """The series (t,) of all outputs, by name, for values of parameters, by name or in mappings; the defaults for others.
+        """The series (t,) of all outputs, by name, for values of parameters, by name or in
+        mappings; the defaults for others.
 
-        Where a joint that rubs is at rest, what depends on its friction is NaN at these instants, as in :func:`.evaluate`.
-        This thread's next evaluation overwrites the arrays. Raises :class:`UnknownNameError` and :class:`ParameterError` for what
-        is no parameter, or out of range, and :class:`AssemblyError` where there is no result.
+        Where a joint that rubs is at rest, what depends on its friction is NaN at these instants,
+        as in :func:`.evaluate`. This thread's next evaluation overwrites the arrays. Raises
+        :class:`UnknownNameError` and :class:`ParameterError` for what is no parameter, or out of
+        range, and :class:`AssemblyError` where there is no result.
         """
         engine, p = self._engine, self._set(values, named)
         answers = self._answers
@@ -209,43 +255,71 @@ class Prepared:
             return {str(o): row for o, row in engine.told(found.columns, p[0]).items()}
         fill[0]()
         self._refuse(self._watched(answers.instants[1], answers.history), p)
-        return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
+        return (
+            answers.rows
+            if engine.plain
+            else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
+        )
 
     def peaks(self, /, *values: _Values, **named: Any) -> Peaks:
-        """Peaks and means for values of parameters; this thread's next evaluation overwrites the arrays.
+        """Peaks and means for values of parameters; this thread's next evaluation overwrites the
+        arrays.
 
-        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told. Where a joint that rubs is at rest,
-        instants do not count for what depends on its friction; what is open at all of them is NaN.
+        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told. Where a
+        joint that rubs is at rest, instants do not count for what depends on its friction; what is
+        open at all of them is NaN.
         """
         return self._peaks(self._set(values, named))
 
     def gradient(self, /, *values: _Values, **named: Any) -> Gradient:
         """Peaks and their derivatives by all parameters, for values of these.
 
-        They are exact, by automatic differentiation. The first call derives and compiles them, in doubles; a later one takes a few
-        times as long as :meth:`peaks` at most. Raises what that does.
+        They are exact, by automatic differentiation. The first call derives and compiles them, in
+        doubles; a later one takes a few times as long as :meth:`peaks` at most. Raises what that
+        does.
         """
         p, value, t, xi = self._kept_peaks(values, named)
         found = self._engine.gradient(p, value, t, xi)
-        look, add_up = partial(self._engine.tied, p, value, found), partial(self._engine.mean_slopes, p)
-        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, self.efforts, look, add_up)
+        look, add_up = (
+            partial(self._engine.tied, p, value, found),
+            partial(self._engine.mean_slopes, p),
+        )
+        return Gradient(
+            self.quantities,
+            self.parameters,
+            value,
+            t,
+            xi,
+            found.slopes,
+            found.kinds,
+            self.efforts,
+            look,
+            add_up,
+        )
 
     def curvature(self, /, *values: _Values, **named: Any) -> Curvature:
-        """The second derivatives of peaks by all parameters, for values of these: how their gradient changes.
+        """The second derivatives of peaks by all parameters, for values of these: how their
+        gradient changes.
 
-        They are exact, by automatic differentiation, as peaks move in time and along links. The first call derives and compiles
-        them, in doubles. Raises what :meth:`gradient` does, and :class:`DeclarationError` for a motion by samples that does not
-        tell its knots.
+        They are exact, by automatic differentiation, as peaks move in time and along links. The
+        first call derives and compiles them, in doubles. Raises what :meth:`gradient` does, and
+        :class:`DeclarationError` for a motion by samples that does not tell its knots.
         """
         p, value, t, xi = self._kept_peaks(values, named)
         own = self._engine.gradient(p, value, t, xi)
-        return Curvature(self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own))
+        return Curvature(
+            self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own)
+        )
 
     @public
-    def designs(self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False) -> Outcome:
-        """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
+    def designs(
+        self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False
+    ) -> Outcome:
+        """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`;
+        ``threads`` share them.
 
-        Values are not checked against the parameters' ranges. A design without a result has its status, and NaN.
+        Values are not checked against the parameters' ranges. A design without a result has its
+        status, and NaN.
         """
         return self._engine.evaluate(p, threads=threads, histories=histories)
 
@@ -255,13 +329,19 @@ class Prepared:
         if fill is None:
             found = engine.evaluate(p, threads=1)
             self._refuse(found.status[0], p)
-            return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
+            return Peaks(
+                *(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms))
+            )
         fill[1]()
         self._refuse(self._watched(answers.instants[0], answers.even), p)
         return answers.seen
 
-    def _kept_peaks(self, values: Sequence[_Values], named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
-        """The parameters (parameters,), and of the peaks there the values, times and ratios, as copies that stay."""
+    def _kept_peaks(
+        self, values: Sequence[_Values], named: Mapping[str, Any]
+    ) -> tuple[Array, Array, Array, Array]:
+        """The parameters (parameters,), and of the peaks there the values, times and ratios, as
+        copies that stay.
+        """
         p = self._set(values, named)
         peaks = self._peaks(p)
         return p[0].copy(), peaks.value.copy(), peaks.t.copy(), peaks.xi.copy()
@@ -275,7 +355,9 @@ class Prepared:
             if given is None:
                 continue
             if type(given) is not dict and not isinstance(given, Mapping):
-                raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(given)}")
+                raise DeclarationError(
+                    f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(given)}"
+                )
             for name, value in given.items():
                 parameter = self._declared.get(name)
                 if parameter is None:
@@ -286,7 +368,9 @@ class Prepared:
         return p
 
     def _watched(self, t: Array, columns: Array | None) -> int:
-        """The status of this thread's evaluation at instants (1, t); its motion may have a corner though all have numbers."""
+        """The status of this thread's evaluation at instants (1, t); its motion may have a corner
+        though all have numbers.
+        """
         engine, answers = self._engine, self._answers
         if not engine.watch:
             return int(answers.status[0])
@@ -313,9 +397,10 @@ def prepare(
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
 
-    Takes what :func:`.evaluate` takes, but for values of parameters, which each evaluation is told. It derives and compiles once;
-    an evaluation is then a call of the compiled code, with the verdicts of :func:`.sweep`. There is no certificate and no estimate
-    of errors: :func:`.evaluate` the design that is chosen.
+    Takes what :func:`.evaluate` takes, but for values of parameters, which each evaluation is told.
+    It derives and compiles once; an evaluation is then a call of the compiled code, with the
+    verdicts of :func:`.sweep`. There is no certificate and no estimate of errors: :func:`.evaluate`
+    the design that is chosen.
 
         f = prepare(scene, wanted=["effort"])
         largest = abs(f(l=0.25)["effort:O"]).max()
@@ -325,7 +410,24 @@ def prepare(
     """
     named = () if wanted is None else wanted
     without_life(named, "prepared scenes")
-    without_fitted(fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes")
-    engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
-    asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
-    return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))
+    without_fitted(
+        fitted_of(compile_scene(scene, wanted).data.template.content), named, "prepared scenes"
+    )
+    engine = DesignEngine.of(
+        scene,
+        wanted,
+        rung=Rung(backend, precision, newton, None, flags),
+        timing=scene.timing(t, over),
+    )
+    asked: dict[str, Any] = {
+        "t": t,
+        "over": over,
+        "wanted": wanted,
+        "backend": backend,
+        "precision": precision,
+        "newton": newton,
+    }
+    return Prepared(
+        engine,
+        lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False),
+    )

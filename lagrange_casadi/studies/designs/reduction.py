@@ -1,4 +1,6 @@
-"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its instants to."""
+"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its
+instants to.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +31,15 @@ from ...summits.sharpness import Sharpness
 
 @symbolic
 def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
-    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them.
+    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or
+    may, as parameters set them.
 
     ``alike`` tells that all designs have the instants ``t``.
     """
     time, p = graph.laws.motion.sx_in()
-    if rung.precision == "single" or (alike and not ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)):
+    if rung.precision == "single" or (
+        alike and not ca.depends_on(ca.vertcat(*graph.laws.motion(time, p)), p)
+    ):
         return stages_for(graph, rung.precision, t, graph.data.defaults)
     try:
         return compensated(graph, "double")
@@ -44,12 +49,12 @@ def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> St
 
 @dataclass(frozen=True, eq=False)
 class KeptOutputs:
-    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``,
-    which are efforts and outputs of the user's own.
+    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``,
+    and means of ``efforts``, which are efforts and outputs of the user's own.
 
-    Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
-    ``links`` come last. Which of them equilibrium leaves open is decided for each design. ``reduction`` is the same in numbers of
-    columns, as C takes it.
+    Quantities are the wanted outputs, without angles that loops set, and sizes of joints'
+    reactions; the section forces of ``links`` come last. Which of them equilibrium leaves open is
+    decided for each design. ``reduction`` is the same in numbers of columns, as C takes it.
     """
 
     quantities: tuple[Output, ...]
@@ -74,8 +79,13 @@ class KeptOutputs:
                 if parts[:1] == [output] and len(parts) > 1:
                     chosen[size] = tuple(at[other] for other in parts)
             chosen[output] = (k,)
-        links = [link for link in data.template.content["bodies"] if Output("law", link, "n0") in at]
-        names = [*chosen, *(Output("section", link, force) for link in links for force in table.forces)]
+        links = [
+            link for link in data.template.content["bodies"] if Output("law", link, "n0") in at
+        ]
+        names = [
+            *chosen,
+            *(Output("section", link, force) for link in links for force in table.forces),
+        ]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(data.kinds) for output in names)
@@ -87,9 +97,16 @@ class KeptOutputs:
         columns |= {k for row in rows for k in row if k >= 0}
         sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung)
-        doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
+        doubted = {
+            k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")
+        }
         made = {name: _made_of(graph, name, table) for name in names}
-        doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
+        doubts = [
+            (doubted[graph.doubtful[n]], k)
+            for k, name in enumerate(names)
+            for n in made[name]
+            if n in graph.doubtful
+        ]
         reduction = Reduction(
             quantities=tuple(chosen.values()),
             links=along,
@@ -118,13 +135,20 @@ def _along(data: ModelData, link: str, at: dict[Output, int], table: Table) -> A
         if name in data.partial:
             marks += [(end, width), (end,)]
         directions = (*table.spread, *table.couples) if sliced else table.spread
-        terms = (at.get(Output("spread", link, member, name, power), -1) for member in directions for power in range(powers))
+        terms = (
+            at.get(Output("spread", link, member, name, power), -1)
+            for member in directions
+            for power in range(powers)
+        )
         spreads.append((width, end, *terms))
     if spreads:
         marks += data.jumps[link]
     return Along(
         tuple(at[Output("law", link, member)] for member in table.law),
-        tuple(tuple(at[Output("station", link, member, station)] for member in table.place_first) for station in stations),
+        tuple(
+            tuple(at[Output("station", link, member, station)] for member in table.place_first)
+            for station in stations
+        ),
         tuple(density["breaks"]),
         max(len(cell) for cell in density["cells"]),
         tuple(spreads),
@@ -141,14 +165,26 @@ def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
 
 
 def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
-    """What a graph's columns must keep to, as the emitted C takes it; last are the sizes of the terms of rows."""
-    found = [(bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton)) for bound in graph.bounds]
-    return [*found, *((bound.size, "ROWSIZE", 0.0) for bound in graph.bounds if bound.kind == "ROW")]
+    """What a graph's columns must keep to, as the emitted C takes it; last are the sizes of the
+    terms of rows.
+    """
+    found = [
+        (bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton))
+        for bound in graph.bounds
+    ]
+    return [
+        *found,
+        *((bound.size, "ROWSIZE", 0.0) for bound in graph.bounds if bound.kind == "ROW"),
+    ]
 
 
 @symbolic
-def _matter(data: ModelData, links: list[str], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
-    """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
+def _matter(
+    data: ModelData, links: list[str], along: tuple[Along, ...], precision: Precision
+) -> tuple[ca.Function, int, int]:
+    """What the reduction takes of the parts, and how many numbers must be positive, and not
+    negative.
+    """
     symbols = data.symbols
     positive, others = data.margins[precision].in_order(symbols)
     positive = [data.extent(symbols), *positive]
@@ -156,5 +192,11 @@ def _matter(data: ModelData, links: list[str], along: tuple[Along, ...], precisi
     for link, part in zip(links, along, strict=True):
         length, density = data.matter(link, symbols)
         rest += matter_of(part, length, density.cells)
-    out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
-    return ca.Function("matter_of", [symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)
+    out = ca.densify(
+        ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest)))
+    )
+    return (
+        ca.Function("matter_of", [symbols], [out], {"cse": True}),
+        len(positive),
+        len(positive) + len(others),
+    )

@@ -20,7 +20,9 @@ _LOOKS = 65
 
 @dataclass(frozen=True, eq=False)
 class DesignTimes:
-    """How the instants of designs are asked for, whose motions are ``laws`` and whose default parameters are ``values``."""
+    """How the instants of designs are asked for, whose motions are ``laws`` and whose default
+    parameters are ``values``.
+    """
 
     laws: Laws
     values: Mapping[str, float]
@@ -41,7 +43,8 @@ class DesignTimes:
 
     @symbolic_property
     def default(self) -> tuple[Array, Array]:
-        """Those of the parameters' defaults as they are asked for, and as many in equal steps of time, each (t,).
+        """Those of the parameters' defaults as they are asked for, and as many in equal steps of
+        time, each (t,).
 
         Raises :class:`.DeclarationError` where there are none.
         """
@@ -49,10 +52,12 @@ class DesignTimes:
         return asked, asked if are_even(asked) else np.linspace(asked[0], asked[-1], asked.size)
 
     def of(self, p: Array, *, asked: bool = True) -> tuple[Array, Array]:
-        """The instants of designs ``p`` (n, parameters), (n, t), one row where all have the same; NaN of those that have none.
+        """The instants of designs ``p`` (n, parameters), (n, t), one row where all have the same;
+        NaN of those that have none.
 
-        First as many as are asked for in equal steps of time, between which peaks are sought; then those that are asked for
-        themselves, the same array where they are no others, or are not wanted (``asked``).
+        First as many as are asked for in equal steps of time, between which peaks are sought; then
+        those that are asked for themselves, the same array where they are no others, or are not
+        wanted (``asked``).
         """
         if self.common:
             instants, even = (row[None] for row in self.default)
@@ -70,9 +75,13 @@ class DesignTimes:
         return even, found
 
     def _possible(self, start: Array, stop: Array) -> tuple[Array, Array]:
-        """The first and last instants; NaN where they are none, or samples of a motion end before."""
+        """The first and last instants; NaN where they are none, or samples
+        of a motion end before.
+        """
         with np.errstate(invalid="ignore"):
-            there = np.isfinite(stop - start) & ((stop == start) if self.timing.count == 1 else (stop > start))
+            there = np.isfinite(stop - start) & (
+                (stop == start) if self.timing.count == 1 else (stop > start)
+            )
             for low, high in self.laws.spans:
                 there &= (start >= low) & (stop <= high)
         return np.where(there, start, np.nan), np.where(there, stop, np.nan)

@@ -1,4 +1,6 @@
-"""Designs whose motion cannot be though all their instants have numbers: by what is beyond a curve's ends, and by kinks."""
+"""Designs whose motion cannot be though all their instants have numbers: by what is beyond a
+curve's ends, and by kinks.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ _OK = int(Status.OK)
 
 @dataclass(frozen=True, eq=False)
 class Watch:
-    """What motions and constraints of a graph must hold to for the values that parameters have in each design."""
+    """What motions and constraints of a graph must hold to for the values that parameters have in
+    each design.
+    """
 
     graph: Program
 
@@ -46,8 +50,11 @@ class Watch:
         """Whether the columns of every design are needed, for what constraints see."""
         return bool(self._corners.constraints)
 
-    def statuses(self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None) -> npt.NDArray[np.int8]:
-        """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1 or n, t).
+    def statuses(
+        self, p: Array, t: Array, status: npt.NDArray[np.int8], columns: Array | None
+    ) -> npt.NDArray[np.int8]:
+        """The statuses of designs ``p`` (n, parameters) that had ``status``, at instants ``t`` (1
+        or n, t).
 
         ``columns`` (n, columns, t) are theirs at these instants, if :attr:`columns` are needed.
         """

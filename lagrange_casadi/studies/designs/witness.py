@@ -1,7 +1,9 @@
-"""One design of many, looked at as closely as a scene is: all its outputs at some instants, and their certificate.
+"""One design of many, looked at as closely as a scene is: all its outputs at some instants, and
+their certificate.
 
-What a sweep keeps of its designs cannot balance a body. So a few of them are evaluated once more, with every output and by CasADi's
-virtual machine. The certificate judges that, and what the compiled code has made of the same design must agree with it.
+What a sweep keeps of its designs cannot balance a body. So a few of them are evaluated once more,
+with every output and by CasADi's virtual machine. The certificate judges that, and what the
+compiled code has made of the same design must agree with it.
 """
 
 from __future__ import annotations
@@ -30,19 +32,28 @@ _WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflectio
 
 _ROUNDINGS = 10.0
 _AGREES = 1e-6
-"""Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
+"""Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single
+precision more.
+"""
 
 
 def wanted_whole(names: Iterable[str]) -> list[str]:
     """Return what is to be wanted for a graph of all outputs, those of ``names`` among them."""
     outputs = map(Output.of, names)
-    return ["all", *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED)]
+    return [
+        "all",
+        *dict.fromkeys(f"{_WANTED[o.group]}:{o.part}" for o in outputs if o.group in _WANTED),
+    ]
 
 
-def failures(graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
-    """What fails of a design, and by how much: residuals of its certificate, and under ``agreement`` how far ``out`` is off.
+def failures(
+    graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array
+) -> dict[str, float]:
+    """What fails of a design, and by how much: residuals of its certificate, and under
+    ``agreement`` how far ``out`` is off.
 
-    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph`` has all outputs.
+    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph``
+    has all outputs.
     """
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
     followed = t if graph.newton is not None else t[some]
@@ -52,7 +63,10 @@ def failures(graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[O
     found_there, description = outputs_of(graph, rows), graph.data.at(p)
     whole = Solution(graph.data.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if rung.newton is None else LOOSE
-    found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
+    found = {
+        name: float(np.max(gaps))
+        for name, gaps in residuals_of(whole, graph, rows, p, within).items()
+    }
     failed = {name: gap for name, gap in found.items() if not gap <= limit}
     allowed = max(_AGREES, limit) if rung.precision == "double" else LOOSE
     compiled = dict(zip(outputs, out[:, some], strict=True))
@@ -61,22 +75,36 @@ def failures(graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[O
         # What is nothing but rounding has no size of its own to be compared with.
         looked_at = table
         if graph.newton is not None:
-            looked_at = replace(table, out=rows, status=table.status[some], iterated=table.iterated[:, some])
+            looked_at = replace(
+                table, out=rows, status=table.status[some], iterated=table.iterated[:, some]
+            )
         rounded = estimate(graph, looked_at, whole, p)
         coarser = ROUNDING[rung.precision] / ROUNDING["double"]
-        agreement = _agreement(whole, compiled, {output: _ROUNDINGS * coarser * error for output, error in rounded.items()})
+        agreement = _agreement(
+            whole,
+            compiled,
+            {output: _ROUNDINGS * coarser * error for output, error in rounded.items()},
+        )
     return failed if agreement <= allowed else failed | {"agreement": agreement}
 
 
-def _agreement(whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]) -> float:
-    """How far outputs are from those of a solution, beyond what is ``rounded``, over the largest of their unit."""
+def _agreement(
+    whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]
+) -> float:
+    """How far outputs are from those of a solution, beyond what is ``rounded``, over the largest of
+    their unit.
+    """
     largest: dict[str, float] = {}
     for name, values in whole.outputs.items():
         unit = whole.unit(name)
-        largest[unit] = max(largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0)))
+        largest[unit] = max(
+            largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0))
+        )
     worst = 0.0
     for name, values in found.items():
-        there = ~np.isnan(values)  # no number is what equilibrium leaves open, or friction at rest does
+        there = ~np.isnan(
+            values
+        )  # no number is what equilibrium leaves open, or friction at rest does
         gaps, unit = values[there] - whole.outputs[name][there], whole.unit(name)
         if unit == "rad":
             gaps = gaps - math.tau * np.rint(gaps / math.tau)

@@ -5,4 +5,14 @@ from .optimum import Limit, LocalOptimum, Optimum, Start
 from .search import optimise
 from .terms import Constraint, Term
 
-__all__ = ["Constraint", "Front", "FrontPoint", "Limit", "LocalOptimum", "Optimum", "Start", "Term", "optimise"]
+__all__ = [
+    "Constraint",
+    "Front",
+    "FrontPoint",
+    "Limit",
+    "LocalOptimum",
+    "Optimum",
+    "Start",
+    "Term",
+    "optimise",
+]

@@ -1,4 +1,5 @@
-"""The conditions of an optimum: of the first order by Karush, Kuhn and Tucker, and of the second order.
+"""The conditions of an optimum: of the first order by Karush, Kuhn and Tucker, and of the second
+order.
 
 Nocedal and Wright, Numerical Optimization, 2nd edition, theorems 12.1, 12.5 and 12.6.
 """
@@ -14,23 +15,28 @@ import numpy as np
 from ...base.arrays import Array
 
 _ACTIVE, _COUNTS = 1e-7, 1e-6
-"""How near to zero a row is that is active; and of the largest term, or the objective, a multiplier that counts."""
+"""How near to zero a row is that is active; and of the largest term, or the objective, a multiplier
+that counts.
+"""
 
 _STEP = 1e-5
 """Of the bounds: the step of differences of slopes."""
 
 DOWN = -1e-6
-"""Of the objective, over the square of the bounds: a curvature that is negative, and not for rounding."""
+"""Of the objective, over the square of the bounds: a curvature that is negative, and not for
+rounding.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
     """How good a solution is.
 
-    ``residual`` is what is left of the first-order conditions, over the largest of their terms, or the objective. ``curvature`` is
-    the least second derivative of the Lagrangian along what limits with a multiplier leave free: infinite where that is nothing,
-    NaN where it has none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum, which
-    is left along ``way``.
+    ``residual`` is what is left of the first-order conditions, over the largest of their terms, or
+    the objective. ``curvature`` is the least second derivative of the Lagrangian along what limits
+    with a multiplier leave free: infinite where that is nothing, NaN where it has none. ``least``
+    is the same along what all active limits leave free: below zero at what is no minimum, which is
+    left along ``way``.
     """
 
     residual: float
@@ -40,22 +46,40 @@ class Conditions:
 
     @property
     def turns_down(self) -> bool:
-        """Whether the objective falls from here to the second order, within all limits: at a saddle, or a maximum."""
+        """Whether the objective falls from here to the second order, within all limits: at a
+        saddle, or a maximum.
+        """
         return self.least < DOWN
 
 
 def conditions(
-    slopes: Any, at: Array, objective: float, by_g: Array, by_x: Array, given: Array, chosen: int, *, formed: bool
+    slopes: Any,
+    at: Array,
+    objective: float,
+    by_g: Array,
+    by_x: Array,
+    given: Array,
+    chosen: int,
+    *,
+    formed: bool,
 ) -> Conditions:
-    """Those of a program's solution ``at``, with the multipliers of its rows, and of bounds, of which ``chosen`` has some.
+    """Those of a program's solution ``at``, with the multipliers of its rows, and of bounds, of
+    which ``chosen`` has some.
 
-    Where nothing is active all terms of the first-order conditions are nearly zero: then the ``objective`` is what is large.
+    Where nothing is active all terms of the first-order conditions are nearly zero: then the
+    ``objective`` is what is large.
 
-    ``slopes(at, by_g, given)`` has the Lagrangian's gradient without bounds, its parts, the rows and their Jacobian, and the
-    Lagrangian's second derivatives where these are ``formed``; elsewhere they are differences of the gradient.
+    ``slopes(at, by_g, given)`` has the Lagrangian's gradient without bounds, its parts, the rows
+    and their Jacobian, and the Lagrangian's second derivatives where these are ``formed``;
+    elsewhere they are differences of the gradient.
     """
     slope, parts, rows, jacobian, hessian = (part.full() for part in slopes(at, by_g, given))
-    size = max(float(np.abs(parts).max()), float(np.abs(by_x).max(initial=0.0)), abs(objective), np.finfo(float).tiny)
+    size = max(
+        float(np.abs(parts).max()),
+        float(np.abs(by_x).max(initial=0.0)),
+        abs(objective),
+        np.finfo(float).tiny,
+    )
     residual = float(np.abs(slope.ravel() + by_x).max()) / size
     if not formed:
         hessian = _differences(lambda x: slopes(x, by_g, given)[0].full().ravel(), at, chosen)
@@ -66,7 +90,10 @@ def conditions(
     found = []
     for active, bound in (
         (np.abs(by_g) > _COUNTS * size, np.abs(by_x) > _COUNTS * size),
-        ((rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * size), bounded | (np.abs(by_x) > _COUNTS * size)),
+        (
+            (rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * size),
+            bounded | (np.abs(by_x) > _COUNTS * size),
+        ),
     ):
         found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
     (curvature, _), (least, way) = found
@@ -86,7 +113,9 @@ def _least(hessian: Array, active: Array) -> tuple[float, Array]:
 
 
 def _differences(slope: Any, at: Array, chosen: int) -> Array:
-    """Second derivatives by differences of first ones, within the bounds; what is no parameter enters linearly."""
+    """Second derivatives by differences of first ones, within the bounds; what is no parameter
+    enters linearly.
+    """
     hessian = np.zeros((at.size, at.size))
     for k in range(chosen):
         ends = np.tile(at, (2, 1))

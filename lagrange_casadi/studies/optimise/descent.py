@@ -1,4 +1,6 @@
-"""The way from one design to the best near it, by programs whose points grow until no peak between them exceeds a limit."""
+"""The way from one design to the best near it, by programs whose points grow until no peak between
+them exceeds a limit.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ from .program import Found, Held, NonlinearProgram
 from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
 
 _ROUNDS, _HALVINGS = 40, 12
-"""Programs that are solved at most; and how often a step is halved that leads to where loops do not close."""
+"""Programs that are solved at most; and how often a step is halved that leads to where loops do not
+close.
+"""
 
 _CONDITIONS = 1e-6
 """What may be left of the first-order conditions of an optimum."""
@@ -53,7 +57,10 @@ class _Seen:
 
 @dataclass(eq=False)
 class Descent:
-    """A way from a start. Nothing of it depends on other ways, so that it is the same wherever it is gone."""
+    """A way from a start.
+
+    Nothing of it depends on other ways, so that it is the same wherever it is gone.
+    """
 
     judge: Judge
     program: NonlinearProgram
@@ -91,33 +98,52 @@ class Descent:
         )
 
     def _best(self) -> _Seen:
-        """The best design on the way; of those that are as good, as far as limits that hold tell, the one that converged."""
+        """The best design on the way; of those that are as good, as far as limits that hold tell,
+        the one that converged.
+        """
         best = min(reversed(self.seen), key=lambda one: self._merit(one.judged))
         excess, objective = self._merit(best.judged)
         for one in reversed(self.seen):
             if one.ending == CONVERGED and one.by is not None:
                 # Another one may seem better by a violation that passes as none.
-                gains = sum(abs(gain) * scale for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True))
-                if self._merit(one.judged) <= (excess, objective + HOLDS * (self.scales[0] + gains)):
+                gains = sum(
+                    abs(gain) * scale
+                    for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True)
+                )
+                if self._merit(one.judged) <= (
+                    excess,
+                    objective + HOLDS * (self.scales[0] + gains),
+                ):
                     return one
         return best
 
     def _merit(self, judged: Judged) -> tuple[float, float]:
-        """A merit less its last digits, so that of designs as good the one that converged is taken."""
+        """A merit less its last digits, so that of designs as good the
+        one that converged is taken.
+        """
         excess, objective = self.problem.merit(judged)
         return excess, rounded(objective, self.scales[0])
 
     def _note(self, judged: Judged) -> None:
         """Keep a design in the history, and tell of it."""
         objective, excess = judged.value(self.problem.objective), self.problem.excess(judged)
-        row = (objective, excess, float(judged.has_result), *judged.p[list(self.box.places)].tolist())
+        row = (
+            objective,
+            excess,
+            float(judged.has_result),
+            *judged.p[list(self.box.places)].tolist(),
+        )
         self.history.append(row)
         self.told(objective, excess)
 
     def _better(self, judged: Judged, by: Found | None, ending: str) -> None:
         """Keep a design that is no worse than those before."""
         converged = by is not None and ending == CONVERGED
-        if not self.seen or converged or self.problem.merit(judged) <= self.problem.merit(self.seen[-1].judged):
+        if (
+            not self.seen
+            or converged
+            or self.problem.merit(judged) <= self.problem.merit(self.seen[-1].judged)
+        ):
             self.seen.append(_Seen(judged, by, ending))
 
     def _descend(self, first: Judged) -> None:
@@ -133,17 +159,22 @@ class Descent:
         self._learn(held, closures, first, everything=True)
         current, tried = first, 0
         for _ in range(_ROUNDS):
-            every = current.look.instants if self.program.averaged and current.look is not None else []
+            every = (
+                current.look.instants if self.program.averaged and current.look is not None else []
+            )
             found = self.program.solve(box.share(current.p), held, closures, every)
             x = found.x
             if not np.isfinite(x).all():
-                self._better(current, None, "the program has no solution: no derivative where it looked")
+                self._better(
+                    current, None, "the program has no solution: no derivative where it looked"
+                )
                 return
             following = self.judge.look(box.all(x))
             self._note(following)
             back = 0
             while following.look is None and back < _HALVINGS:
-                # Loops do not close somewhere between the points: go back until they do, and look there from then on.
+                # Loops do not close somewhere between the points: go back until they do, and look
+                # there from then on.
                 back += 1
                 x = (x + box.share(current.p)) / 2
                 following = self.judge.look(box.all(x))
@@ -159,7 +190,9 @@ class Descent:
                 self._learn(held, closures, lower, everything=True)
                 current = lower
                 continue
-            self._better(following, found if not back else None, CONVERGED if done else _unsettled(found))
+            self._better(
+                following, found if not back else None, CONVERGED if done else _unsettled(found)
+            )
             if done and found.status == _SOLVED:
                 return
             tried = tried + 1 if moved <= 1e-9 and not added else 0
@@ -168,9 +201,11 @@ class Descent:
                 return
 
     def _lower(self, found: Found, judged: Judged) -> Judged | None:
-        """A better design beside one that seems to be no minimum, along the way that it is left; None where it is one after all.
+        """A better design beside one that seems to be no minimum, along the way that it is left;
+        None where it is one after all.
 
-        A program holds some peaks where they are, so that its second derivatives may be less than those of the peaks.
+        A program holds some peaks where they are, so that its second derivatives may be less than
+        those of the peaks.
         """
         way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
         excess, objective = self._merit(judged)
@@ -184,9 +219,15 @@ class Descent:
         """Whether a program's solution is what it says, with all peaks that it did not know."""
         value = judged.value(self.problem.objective)
         gap = abs(value - found.objective) / (abs(value) or 1.0)
-        return self.problem.excess(judged) <= HOLDS and gap <= HOLDS and found.conditions.residual <= _CONDITIONS
+        return (
+            self.problem.excess(judged) <= HOLDS
+            and gap <= HOLDS
+            and found.conditions.residual <= _CONDITIONS
+        )
 
-    def _learn(self, held: Sequence[Held], closures: list[Point], judged: Judged, *, everything: bool) -> bool:
+    def _learn(
+        self, held: Sequence[Held], closures: list[Point], judged: Judged, *, everything: bool
+    ) -> bool:
         """Hold terms at the peaks of a design that programs do not know; whether there were any."""
         added, look = False, judged.look
         assert look is not None
@@ -204,7 +245,12 @@ class Descent:
             high = [(point, sign) for point, sign in points if sign * point.value >= least]
             found = self.judge.following(term.term, high or points[:1], look)
             first, sign = found[0]
-            if term.term.kind == "peak" and not tired_link(term.term.output) and not any(first.turn) and 0.0 < first.share < 1.0:
+            if (
+                term.term.kind == "peak"
+                and not tired_link(term.term.output)
+                and not any(first.turn)
+                and 0.0 < first.share < 1.0
+            ):
                 # Where it is, a kink has no derivative; along its way it has one.
                 found[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
             for point, sign in found if high else ():
@@ -214,7 +260,9 @@ class Descent:
         for row in look.closures():
             k = int(np.argmin(row))
             point = look.instant(k)
-            if row[k] < 4 * self.program.least_closure and all(abs(point.share - other.share) > near for other in closures):
+            if row[k] < 4 * self.program.least_closure and all(
+                abs(point.share - other.share) > near for other in closures
+            ):
                 closures.append(point)
                 added = True
         return added
@@ -222,4 +270,8 @@ class Descent:
 
 def _unsettled(found: Found) -> str:
     """Why a program's solution is none of the problem."""
-    return "the peaks of its last design are not those of the program" if found.status == _SOLVED else f"IPOPT: {found.status}"
+    return (
+        "the peaks of its last design are not those of the program"
+        if found.status == _SOLVED
+        else f"IPOPT: {found.status}"
+    )

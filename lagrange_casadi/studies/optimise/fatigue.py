@@ -1,9 +1,11 @@
-"""Fatigue as a limit of a search: the worst swings of a design, and what each is as a function of the parameters.
+"""Fatigue as a limit of a search: the worst swings of a design, and what each is as a function of
+the parameters.
 
-By Goodman's rule a place of a link is used by a/S_e + m/S_u of its worst swing, which goes from one instant to another. These are
-found by counting, as sweeps do it, at the same places. As parameters change the two instants stay; where another swing or another
-place becomes the worst, the search adds it, as it adds peaks. So the derivatives are those of the swing that is the worst: where
-two are as bad, there is a kink.
+By Goodman's rule a place of a link is used by a/S_e + m/S_u of its worst swing, which goes from one
+instant to another. These are found by counting, as sweeps do it, at the same places. As parameters
+change the two instants stay; where another swing or another place becomes the worst, the search
+adds it, as it adds peaks. So the derivatives are those of the swing that is the worst: where two
+are as bad, there is a kink.
 """
 
 from __future__ import annotations
@@ -31,7 +33,10 @@ _FEW = 8
 
 @dataclass(frozen=True, eq=False)
 class Tired:
-    """A link whose utilisation against fatigue is a term. Raises :class:`.DeclarationError` where its material lacks a number."""
+    """A link whose utilisation against fatigue is a term.
+
+    Raises :class:`.DeclarationError` where its material lacks a number.
+    """
 
     graph: Program
     link: str
@@ -47,11 +52,14 @@ class Tired:
     @cached_property
     def fatigue(self) -> FibreStresses:
         """Its stresses by what its law is made of."""
-        members = [output for output in self.graph.outputs if output.along and output.part == self.link]
+        members = [
+            output for output in self.graph.outputs if output.along and output.part == self.link
+        ]
         return FibreStresses.of(self.graph.data, self.link, members)
 
     def points(self, look: Look) -> list[Point]:
-        """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share of the swing's other instant.
+        """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share
+        of the swing's other instant.
 
         Raises :class:`.DeclarationError` where a load travels along the link.
         """
@@ -62,7 +70,9 @@ class Tired:
         if not instants.size:
             return []
         if not fatigue.stands(members[None])[0]:
-            raise DeclarationError(f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone")
+            raise DeclarationError(
+                f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone"
+            )
         histories = fatigue.histories(members[None], look.p[None])
         bound, _ = histories.bounds(self.material)
         found: list[Point] = []
@@ -74,33 +84,53 @@ class Tired:
             shares = used(swings.amplitude, swings.mean, self.material)
             worst = int(np.argmax(shares))
             first, last = (look.instant(int(instants[i])) for i in swings.instants[worst])
-            found.append(Point(first.share, last.share, k, float(shares[worst]), first.guess, second=last.guess))
+            found.append(
+                Point(
+                    first.share, last.share, k, float(shares[worst]), first.guess, second=last.guess
+                )
+            )
             best = max(best, float(shares[worst]))
         return sorted(found, key=lambda point: -point.value)
 
     def stresses(self, out: Any, p: Any) -> Any:
-        """Normal stresses of all places, then their shear stresses along y and along z, of columns at an instant: expressions."""
+        """Normal stresses of all places, then their shear stresses along y and along z, of columns
+        at an instant: expressions.
+        """
         fatigue, count = self.fatigue, self.fatigue.places
         members = ca.vertcat(*(out[self.graph.outputs[member]] for member in fatigue.members))
         found = ca.mtimes(ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members)
         shears = ca.SX(2 * count, 1)
         for number, axis in enumerate(fatigue.axes):
             first = count + number * fatigue.sheared.size
-            shears[[axis * count + k for k in fatigue.sheared.tolist()]] = found[first : first + fatigue.sheared.size]
+            shears[[axis * count + k for k in fatigue.sheared.tolist()]] = found[
+                first : first + fatigue.sheared.size
+            ]
         return ca.densify(ca.vertcat(found[:count], shears))
 
     def swing(self, at_time: Any) -> Any:
-        """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time; ``place`` names the place by a 1."""
+        """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time;
+        ``place`` names the place by a 1.
+        """
         kind = ca.SX if at_time.is_a("SXFunction") else ca.MX
         nz, count = at_time.numel_in(1), self.fatigue.places
         sizes: Sequence[int] = (1, nz, at_time.numel_in(2), 1, count + nz)
-        given: list[Any] = [kind.sym(name, n) for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)]
+        given: list[Any] = [
+            kind.sym(name, n)
+            for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)
+        ]
         share, guess, p, xi, place = given
         chosen, other = place[:count], place[count:]
         ends = [at_time(*when, p, 0.0, 0.0) for when in ((share, guess), (xi, other))]
-        a, b = ([ca.dot(chosen, end[k * count : (k + 1) * count]) for k in range(3)] for end in ends)
+        a, b = (
+            [ca.dot(chosen, end[k * count : (k + 1) * count]) for k in range(3)] for end in ends
+        )
         amplitude, mean = (_root(square) for square in swing_squares(a, b))
-        return ca.Function("swing", given, [used(amplitude, mean, self.material)], {"cse": True} if kind is ca.SX else {})
+        return ca.Function(
+            "swing",
+            given,
+            [used(amplitude, mean, self.material)],
+            {"cse": True} if kind is ca.SX else {},
+        )
 
 
 def tired_link(output: Output | None) -> str | None:

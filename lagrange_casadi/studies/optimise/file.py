@@ -24,9 +24,11 @@ _COLUMNS = ("start", "objective", "excess", "result")
 
 
 def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
-    """Write the history and the result of a search, replacing the file at ``path`` whole or not at all.
+    """Write the history and the result of a search, replacing the file at ``path`` whole or not at
+    all.
 
-    Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot be written.
+    Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot
+    be written.
     """
     with replacing(Path(path), hdf5=True) as draft:
         with PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
@@ -45,9 +47,11 @@ def is_optimum(path: str | os.PathLike[str]) -> bool:
 
 
 def check_optimum(path: str | os.PathLike[str]) -> list[str]:
-    """What is wrong with a search's file, one line each; nothing where it is whole, and what it holds is known to be an optimum.
+    """What is wrong with a search's file, one line each; nothing where it is whole, and what it
+    holds is known to be an optimum.
 
-    Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
+    Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for
+    none.
     """
     found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
@@ -66,7 +70,11 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
-    """Read all of a part. Raises what HDF5 does for one that is damaged, and ``ValueError`` for a text that cannot be shown."""
+    """Read all of a part.
+
+    Raises what HDF5 does for one that is damaged, and ``ValueError`` for a text that cannot be
+    shown.
+    """
     for value in item.attrs.values():
         for text in np.ravel(value):
             if not isinstance(text, np.generic) or isinstance(text, np.character):
@@ -76,11 +84,15 @@ def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
 
 
 def _contradictions(group: h5py.Group) -> Iterator[str]:
-    """What of an optimum is told twice, and not alike: starts, ends and optima are rows of the history.
+    """What of an optimum is told twice, and not alike: starts, ends and optima are rows of the
+    history.
 
     Raises ``KeyError``, ``ValueError`` and others where it is not what a search writes.
     """
-    place, names = group.name.rstrip("/"), [name for name, item in group["parameters"].items() if item.attrs["chosen"]]
+    place, names = (
+        group.name.rstrip("/"),
+        [name for name, item in group["parameters"].items() if item.attrs["chosen"]],
+    )
     history, optima = group["history"], group["optima"]
     check_dataset(history, (len(history), len(_COLUMNS) + len(names)))
     if list(history.attrs["columns"]) != [*_COLUMNS, *names]:
@@ -92,7 +104,9 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
             check_dataset(start[end], (len(names),))
         came = np.array([start.attrs["objective"], start.attrs["excess"], *start["end"]])
         begins = len(rows) == 0 or _alike(rows[0, len(_COLUMNS) :], start["start"])
-        if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)):
+        if not begins or (
+            len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)
+        ):
             yield f"{start.name}: is not the way that the history tells"
         shown(start.attrs["ending"])
         ways.append(np.delete(came, 1))
@@ -100,11 +114,15 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
             ends.append(ways[-1])
     chosen = [group.attrs["objective"], *(group["parameters"][name][()] for name in names)]
     if not any(_alike(chosen, way) for way in ways):
-        yield f"{place}/parameters: are not the design at which a start has ended, with its objective"
+        yield (
+            f"{place}/parameters: are not the design at which a start has ended, with its objective"
+        )
     check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
     check_dataset(optima["starts"], (len(optima["objective"]),))
     best = np.column_stack([optima["objective"], optima["designs"]])
-    if int(np.sum(optima["starts"])) != len(ends) or not all(any(_alike(row, end) for end in ends) for row in best):
+    if int(np.sum(optima["starts"])) != len(ends) or not all(
+        any(_alike(row, end) for end in ends) for row in best
+    ):
         yield f"{optima.name}: are not the designs at which starts have converged"
 
 
@@ -117,10 +135,18 @@ def _write_front(file: h5py.File, front: Front) -> None:
         file.attrs[name] = getattr(front, name)
     names = list(front.points[0].optimum.values)
     own = file.create_group("front", track_order=True)
-    own.attrs.update({"minimised": list(map(str, front.minimised)), "units": list(front.units), "parameters": names})
+    own.attrs.update(
+        {
+            "minimised": list(map(str, front.minimised)),
+            "units": list(front.units),
+            "parameters": names,
+        }
+    )
     own["objectives"] = front.objectives
     own["trades"] = np.array([point.trades for point in front.points])
-    own["designs"] = np.array([[point.optimum.values[name] for name in names] for point in front.points])
+    own["designs"] = np.array(
+        [[point.optimum.values[name] for name in names] for point in front.points]
+    )
     own["converged"] = np.array([point.optimum.converged for point in front.points])
     points = file.create_group("points", track_order=True)
     for number, point in enumerate(front.points):
@@ -129,8 +155,18 @@ def _write_front(file: h5py.File, front: Front) -> None:
 
 def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
     names = list(optimum.values)
-    file.attrs.update({"minimised": str(optimum.minimised), "unit": optimum.unit, "objective": optimum.objective})
-    for name in ("feasible", "converged", "stopped", "residual", "curvature", "transmission", "evaluations"):
+    file.attrs.update(
+        {"minimised": str(optimum.minimised), "unit": optimum.unit, "objective": optimum.objective}
+    )
+    for name in (
+        "feasible",
+        "converged",
+        "stopped",
+        "residual",
+        "curvature",
+        "transmission",
+        "evaluations",
+    ):
         file.attrs[name] = getattr(optimum, name)
     parameters = file.create_group("parameters", track_order=True)
     for name, value in optimum.parameters.items():
@@ -141,15 +177,27 @@ def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
     limits = file.create_group("limits", track_order=True)
     for number, limit in enumerate(optimum.limits):
         group = limits.create_group(f"{number}")
-        group.attrs.update({"constraint": str(limit.constraint), "value": limit.value, "limit": limit.constraint.limit})
+        group.attrs.update(
+            {
+                "constraint": str(limit.constraint),
+                "value": limit.value,
+                "limit": limit.constraint.limit,
+            }
+        )
         group.attrs.update({"active": limit.active, "multiplier": limit.multiplier})
     starts = file.create_group("starts", track_order=True)
     for number, start in enumerate(optimum.starts):
         group = starts.create_group(f"{number}")
-        group["start"], group["end"] = (np.array([values[name] for name in names]) for values in (start.values, start.end))
-        group.attrs.update({"objective": start.objective, "excess": start.excess, "ending": start.ending})
+        group["start"], group["end"] = (
+            np.array([values[name] for name in names]) for values in (start.values, start.end)
+        )
+        group.attrs.update(
+            {"objective": start.objective, "excess": start.excess, "ending": start.ending}
+        )
     optima = file.create_group("optima", track_order=True)
-    optima["designs"] = np.array([[one.values[name] for name in names] for one in optimum.optima]).reshape(-1, len(names))
+    optima["designs"] = np.array(
+        [[one.values[name] for name in names] for one in optimum.optima]
+    ).reshape(-1, len(names))
     optima["objective"] = np.array([one.objective for one in optimum.optima])
     optima["starts"] = np.array([one.starts for one in optimum.optima], int)
     history = file.create_dataset("history", data=optimum.history)

@@ -1,8 +1,10 @@
-"""Several objectives: designs of which none is better in all of them, by the epsilon-constraint method.
+"""Several objectives: designs of which none is better in all of them, by the epsilon-constraint
+method.
 
-One objective is made small while the others are limits (Haimes, Lasdon and Wismer 1971; Chankong and Haimes 1983). The ends of the
-front are found in the order of the objectives' ranks, so that they are not dominated (Mavrotas 2009). Of two objectives, limits are
-halved where points are farthest apart; of more they are those of a grid.
+One objective is made small while the others are limits (Haimes, Lasdon and Wismer 1971; Chankong
+and Haimes 1983). The ends of the front are found in the order of the objectives' ranks, so that
+they are not dominated (Mavrotas 2009). Of two objectives, limits are halved where points are
+farthest apart; of more they are those of a grid.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ _BETTER = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FrontPoint:
-    """A design of a front: its ``objectives``, and what the first one gains for a unit of each other one, ``trades``.
+    """A design of a front: its ``objectives``, and what the first one gains for a unit of each
+    other one, ``trades``.
 
     ``optimum`` is the search that led there, in which the other objectives are limits.
     """
@@ -47,7 +50,8 @@ class FrontPoint:
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Designs of which none is better in all ``minimised`` terms, from the least of the first one on.
+    """Designs of which none is better in all ``minimised`` terms, from the least of the first one
+    on.
 
     ``notes`` say what is worth a word. ``stopped`` tells that the search was ended before its end.
     """
@@ -63,7 +67,9 @@ class Front:
     @cached_property
     def objectives(self) -> Array:
         """The objectives of all points, (points, terms)."""
-        return np.array([point.objectives for point in self.points]).reshape(len(self.points), len(self.minimised))
+        return np.array([point.objectives for point in self.points]).reshape(
+            len(self.points), len(self.minimised)
+        )
 
     @property
     def feasible(self) -> bool:
@@ -99,7 +105,10 @@ class _Fronts:
         self.kept: list[_Found] = []
 
     def front(self) -> Front:
-        """The front, as far as an interrupt lets it grow. Raises :class:`NoDesignError` where that came before the first point."""
+        """The front, as far as an interrupt lets it grow.
+
+        Raises :class:`NoDesignError` where that came before the first point.
+        """
         try:
             self._grow()
         except KeyboardInterrupt:
@@ -112,11 +121,25 @@ class _Fronts:
         points = [self._told(one) for one in _efficient(self.kept)]
         data = self.search.finder.engine.graph.data
         case, units = data.name, tuple(term.unit(data) for term in self.terms)
-        told = tuple(dict.fromkeys([*self.notes, *(note for point in points for note in point.optimum.notes)]))
-        return Front(case, self.terms, units, tuple(points), self.search.stopped, self.search.evaluations, told)
+        told = tuple(
+            dict.fromkeys(
+                [*self.notes, *(note for point in points for note in point.optimum.notes)]
+            )
+        )
+        return Front(
+            case,
+            self.terms,
+            units,
+            tuple(points),
+            self.search.stopped,
+            self.search.evaluations,
+            told,
+        )
 
     def _grow(self) -> None:
-        """Find points, and keep those that are found; it ends early after an interrupt, or where limits hold nowhere."""
+        """Find points, and keep those that are found; it ends early after an interrupt, or where
+        limits hold nowhere.
+        """
         least = self.kept
         for term in self.terms:
             problem = Problem(term, self.limits)
@@ -137,7 +160,8 @@ class _Fronts:
         """A front of two objectives: its ends, and limits of the second one between them."""
         ends: list[_Found] = []
         for k, one in ((1, least[1]), (0, least[0])):
-            # The least of one objective may be had by many designs: of those the best in the other one.
+            # The least of one objective may be had by many designs: of those the best in the other
+            # one.
             largest = max(end.values[k] for end in (*least, *ends))
             ends.insert(0, self._end(1 - k, k, one.values[k], largest, one))
             if self.search.stopped:
@@ -147,7 +171,9 @@ class _Fronts:
         while len(row) < self.count and not self.search.stopped:
             size = np.ptp([one.values for one in row], axis=0)
             gaps = [
-                -1.0 if id(a) in closed else float(np.hypot(*((a.values - b.values) / np.where(size > 0.0, size, 1.0))))
+                -1.0
+                if id(a) in closed
+                else float(np.hypot(*((a.values - b.values) / np.where(size > 0.0, size, 1.0))))
                 for a, b in itertools.pairwise(row)
             ]
             k = int(np.argmax(gaps))
@@ -157,7 +183,11 @@ class _Fronts:
             limit = float(left.values[1] + right.values[1]) / 2
             one = self._solved(self._limited(0, {1: limit}), [left.judged, right.judged])
             width = abs(float(left.values[1] - right.values[1]))
-            if not one.optimum.feasible or one.values[1] > left.values[1] or one.values[1] <= right.values[1] + _BETTER * width:
+            if (
+                not one.optimum.feasible
+                or one.values[1] > left.values[1]
+                or one.values[1] <= right.values[1] + _BETTER * width
+            ):
                 # Nothing is between limit and right: the front jumps there.
                 closed.add(id(left))
                 continue
@@ -166,9 +196,14 @@ class _Fronts:
             row.insert(k + 1, one)
 
     def _grid(self, least: Sequence[_Found], low: Array, high: Array) -> None:
-        """A front of more objectives: the limits of a grid between their least values and the largest of the least designs'."""
+        """A front of more objectives: the limits of a grid between their least values and the
+        largest of the least designs'.
+        """
         others = range(1, len(self.terms))
-        self.kept = known = [least[0], *(self._end(0, k, low[k], high[k], least[k]) for k in others)]
+        self.kept = known = [
+            least[0],
+            *(self._end(0, k, low[k], high[k], least[k]) for k in others),
+        ]
         many = max(2, math.ceil(self.count ** (1.0 / len(others))))
         axes = [np.linspace(high[k], low[k], many + 1)[:-1].tolist() for k in others]
         for limits in itertools.product(*axes):
@@ -177,13 +212,19 @@ class _Fronts:
             wanted = np.array([low[0], *limits])
             size = np.where(high > low, high - low, 1.0)
             near = min(known, key=lambda one: float(np.abs((one.values - wanted) / size).max()))
-            one = self._solved(self._limited(0, dict(zip(others, limits, strict=True))), [near.judged])
+            one = self._solved(
+                self._limited(0, dict(zip(others, limits, strict=True))), [near.judged]
+            )
             if one.optimum.feasible:
                 known.append(one)
 
     def _end(self, objective: int, other: int, low: float, high: float, one: _Found) -> _Found:
-        """The best for an objective where another one is within a little of its least, at which ``one`` is."""
-        best = self._solved(self._limited(objective, {other: low + _END * (high - low)}), [one.judged])
+        """The best for an objective where another one is within a little of its least, at which
+        ``one`` is.
+        """
+        best = self._solved(
+            self._limited(objective, {other: low + _END * (high - low)}), [one.judged]
+        )
         return best if best.optimum.feasible else one
 
     def _limited(self, objective: int, limits: dict[int, float]) -> Problem:
@@ -194,9 +235,15 @@ class _Fronts:
     def _solved(self, problem: Problem, starts: Sequence[Judged]) -> _Found:
         """A problem solved from some starts, and from the best of what was screened for it."""
         box = self.search.finder.question.box
-        if isinstance(self.search.starts, int) and self.search.screened and len(starts) < self.search.starts:
+        if (
+            isinstance(self.search.starts, int)
+            and self.search.screened
+            and len(starts) < self.search.starts
+        ):
             for one in self.search.begin(problem, 1):
-                if all(np.abs(box.share(one.p) - box.share(other.p)).max() > 1e-3 for other in starts):
+                if all(
+                    np.abs(box.share(one.p) - box.share(other.p)).max() > 1e-3 for other in starts
+                ):
                     starts = [*starts, one]
         optimum = self.search.solve(problem, starts)
         judged = self.search.look(tuple(optimum.parameters.values()))
@@ -205,12 +252,17 @@ class _Fronts:
     def _told(self, one: _Found) -> FrontPoint:
         # Where the first objective is the limit it is at its least: nothing is gained any more.
         limits = one.optimum.limits if one.optimum.minimised == self.terms[0] else ()
-        trades = [sum(limit.multiplier for limit in limits if limit.constraint.term == term) for term in self.terms[1:]]
+        trades = [
+            sum(limit.multiplier for limit in limits if limit.constraint.term == term)
+            for term in self.terms[1:]
+        ]
         return FrontPoint(tuple(one.values.tolist()), tuple(trades), one.optimum)
 
 
 def _efficient(found: Sequence[_Found]) -> list[_Found]:
-    """Those than which no other one is better in all objectives, from the least of the first one on; of equal ones the first."""
+    """Those than which no other one is better in all objectives, from the least of the first one
+    on; of equal ones the first.
+    """
     if not found:
         return []
     values = np.array([one.values for one in found])

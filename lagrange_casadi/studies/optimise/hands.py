@@ -16,14 +16,21 @@ Told = Callable[[int, float, float], None]
 class Hands(Protocol):
     """Whoever goes ways."""
 
-    def go(self, finder: Finder, errands: Sequence[Errand], told: Told) -> Iterator[tuple[int, Trail]]:
-        """The ways of errands with their numbers, in any order. One that was interrupted says so, and is the last."""
+    def go(
+        self, finder: Finder, errands: Sequence[Errand], told: Told
+    ) -> Iterator[tuple[int, Trail]]:
+        """The ways of errands with their numbers, in any order.
+
+        One that was interrupted says so, and is the last.
+        """
 
 
 class Here:
     """This process, one way after another."""
 
-    def go(self, finder: Finder, errands: Sequence[Errand], told: Told) -> Iterator[tuple[int, Trail]]:
+    def go(
+        self, finder: Finder, errands: Sequence[Errand], told: Told
+    ) -> Iterator[tuple[int, Trail]]:
         """The ways of errands."""
         for number, errand in enumerate(errands):
             yield number, finder.descend(errand, partial(told, number))

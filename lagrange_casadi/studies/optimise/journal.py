@@ -1,4 +1,5 @@
-"""What a search has done so far: a file beside its result, a line for every way that was gone, each whole or not there.
+"""What a search has done so far: a file beside its result, a line for every way that was gone, each
+whole or not there.
 
 The first line tells what they are of. Every line begins with the CRC-32 of the rest.
 """
@@ -39,7 +40,10 @@ def journal_of(target: Path) -> Path:
 
 @dataclass(eq=False)
 class Journal:
-    """The ways that were gone, by what they are of. One without a ``file`` keeps them in memory alone."""
+    """The ways that were gone, by what they are of.
+
+    One without a ``file`` keeps them in memory alone.
+    """
 
     target: Path | None = None
     file: IO[bytes] | None = None
@@ -50,7 +54,10 @@ class Journal:
         return self.known.get(_key(errand))
 
     def put(self, errand: Errand, trail: Trail) -> None:
-        """Keep a way: on return it outlives a kill. Raises :class:`StoreError` where it cannot be written."""
+        """Keep a way: on return it outlives a kill.
+
+        Raises :class:`StoreError` where it cannot be written.
+        """
         key = _key(errand)
         self.known[key] = trail
         if self.file is not None and self.target is not None:
@@ -65,12 +72,15 @@ class Journal:
 
 
 @contextmanager
-def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, force: bool) -> Iterator[Journal]:
+def kept(
+    target: Path | None, identity: Mapping[str, Any], *, resume: bool, force: bool
+) -> Iterator[Journal]:
     """The journal of a search into ``target``, locked; nothing is kept on disk where that is None.
 
-    It is removed where nothing is in it. One whose first line a kill cut short holds nothing, and a new one takes its place. Raises
-    :class:`PathError` where one is there and neither ``resume`` nor ``force`` is
-    asked for, :class:`StoreError` where it is of another search, :class:`BusyError` where another process writes it.
+    It is removed where nothing is in it. One whose first line a kill cut short holds nothing, and a
+    new one takes its place. Raises :class:`PathError` where one is there and neither ``resume`` nor
+    ``force`` is asked for, :class:`StoreError` where it is of another search, :class:`BusyError`
+    where another process writes it.
     """
     if target is None:
         yield Journal()
@@ -80,7 +90,10 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
     with telling(path):
         begun = path.exists() and not (path.is_file() and _holds_nothing(path.read_bytes()))
     if begun and not (resume or force):
-        raise PathError(f"{path} is of an unfinished search: go on with resume=True, or start anew with force=True")
+        raise PathError(
+            f"{path} is of an unfinished search: go on with resume=True, or start anew with"
+            " force=True"
+        )
     journal, own = Journal(target), False
     try:
         with telling(path), path.open("a+b") as file:
@@ -88,7 +101,9 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
                 try:
                     fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
-                    raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
+                    raise BusyError(
+                        f"another search is writing {target}: wait for it, or write another file"
+                    ) from None
             journal.file = file
             file.seek(0)
             own = force or _holds_nothing(file.read())
@@ -104,7 +119,10 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
 
 
 def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
-    """Read what is there; whether it is of anything. Raises :class:`StoreError` where it is of another search."""
+    """Read what is there; whether it is of anything.
+
+    Raises :class:`StoreError` where it is of another search.
+    """
     assert journal.file is not None
     journal.file.seek(0)
     content = journal.file.read()
@@ -113,18 +131,25 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
         journal.file.write(b"\n")  # a line that a kill cut short is none
     if not lines or "identity" not in lines[0]:
         if not _holds_nothing(content):
-            raise StoreError(f"{path} holds what no search wrote, or is damaged: force=True starts anew")
+            raise StoreError(
+                f"{path} holds what no search wrote, or is damaged: force=True starts anew"
+            )
         return False
     for words in lines:
         if "trail" in words:
             journal.known[words["of"]] = Trail.read(words["trail"])
         elif found := difference(words["identity"], identity):
-            raise StoreError(f"{path} is of another search: {found}; start anew with force=True, or write another file")
+            raise StoreError(
+                f"{path} is of another search: {found}; start anew with force=True, or write"
+                " another file"
+            )
     return True
 
 
 def _holds_nothing(content: bytes) -> bool:
-    """Whether a journal is empty, or has the beginning of its first line alone, which a kill cut short."""
+    """Whether a journal is empty, or has the beginning of its first line alone, which a kill cut
+    short.
+    """
     checksum, said = content[:8], content[8:]
     cut = said.startswith(_FIRST) or _FIRST.startswith(said)
     return b"\n" not in content and cut and all(digit in b"0123456789abcdef" for digit in checksum)
@@ -142,7 +167,9 @@ def _words(line: bytes) -> Any:
         return None
     try:
         words = json.loads(text)
-        check_shape(words, {"identity": {}} if "identity" in words else {"of": str, "trail": WORDS}, "line")
+        check_shape(
+            words, {"identity": {}} if "identity" in words else {"of": str, "trail": WORDS}, "line"
+        )
     except (ValueError, RecursionError, TypeError):
         return None
     return words
@@ -150,5 +177,10 @@ def _words(line: bytes) -> Any:
 
 def _key(errand: Errand) -> str:
     problem = errand.problem
-    told = [str(problem.objective), [c.words for c in problem.constraints], errand.start, errand.scales]
+    told = [
+        str(problem.objective),
+        [c.words for c in problem.constraints],
+        errand.start,
+        errand.scales,
+    ]
     return json.dumps(told)

@@ -1,4 +1,6 @@
-"""A design as it is: the terms of a search by the engine of sweeps, with all that lies between instants."""
+"""A design as it is: the terms of a search by the engine of sweeps, with all that lies between
+instants.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,16 @@ from .terms import Term
 from .values import PointValues
 
 _BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8
-"""Of the bounds: how far designs are beside one; and of the time, how far a peak goes there at most, and what is no way at all."""
+"""Of the bounds: how far designs are beside one; and of the time, how far a peak goes there at
+most, and what is no way at all.
+"""
 
 
 @dataclass(eq=False)
 class Judge:
-    """What judges designs by ``terms``, with an engine that keeps their quantities, and counts them."""
+    """What judges designs by ``terms``, with an engine that keeps their quantities, and counts
+    them.
+    """
 
     engine: DesignEngine
     values: PointValues
@@ -34,19 +40,26 @@ class Judge:
     evaluations: int = 0
 
     def look(self, p: Array) -> Judged:
-        """A design's terms, by the engine of sweeps; largest and smallest values by their local peaks."""
+        """A design's terms, by the engine of sweeps; largest and smallest values by their local
+        peaks.
+        """
         self.evaluations += 1
         look = Look.at(self.engine, p)
         return self._judged(p, look.history.outcome, 0, look)
 
     def screen(self, rows: Array) -> list[Judged]:
-        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is enough."""
+        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is
+        enough.
+        """
         self.evaluations += len(rows)
         found = self.engine.evaluate(rows)
         if not any(term.kind in ("max", "min") or tired_link(term.output) for term in self.terms):
             return [self._judged(p, found, k, None) for k, p in enumerate(rows)]
         there = found.status == Status.OK
-        return [self._judged(p, found, k, Look.at(self.engine, p) if there[k] else None) for k, p in enumerate(rows)]
+        return [
+            self._judged(p, found, k, Look.at(self.engine, p) if there[k] else None)
+            for k, p in enumerate(rows)
+        ]
 
     def _judged(self, p: Array, found: Outcome, row: int, look: Look | None) -> Judged:
         nothing = Judged(p, dict.fromkeys(self.terms, math.nan))
@@ -69,12 +82,22 @@ class Judge:
             if term.output is None:
                 values[term] = float(term.of_parameters(self.engine.graph.data)(p))
             elif link := tired_link(term.output):
-                forces = [k for k, name in enumerate(self.engine.quantities) if name.startswith(f"section:{link}:")]
-                values[term] = own[0][0].value if own and np.isfinite(found.value[row, forces]).all() else math.nan
+                forces = [
+                    k
+                    for k, name in enumerate(self.engine.quantities)
+                    if name.startswith(f"section:{link}:")
+                ]
+                values[term] = (
+                    own[0][0].value
+                    if own and np.isfinite(found.value[row, forces]).all()
+                    else math.nan
+                )
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:
-                values[term] = float(getattr(found, term.kind)[row, self.engine.efforts.index(term.name)])
+                values[term] = float(
+                    getattr(found, term.kind)[row, self.engine.efforts.index(term.name)]
+                )
             else:
                 values[term] = own[0][0].value if own else math.nan
         judged = Judged(p, values, look, closure, closing, points)
@@ -86,16 +109,23 @@ class Judge:
         if link := tired_link(term.output):
             return [(point, 1.0) for point in self.values.tired(link).points(look.as_asked())]
         way = {"min": -1, "max": 1}.get(term.kind, 0)
-        return [(point, float(way or math.copysign(1.0, point.value))) for point in look.points(term.output, way)]
+        return [
+            (point, float(way or math.copysign(1.0, point.value)))
+            for point in look.points(term.output, way)
+        ]
 
     def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
-        """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside this one.
+        """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside
+        this one.
 
-        The told peak of each is by the same switch where it is near. What does not move is the point itself.
+        The told peak of each is by the same switch where it is near. What does not move is the
+        point itself.
         """
         x, size = box.share(p), len(box.names)
         ways = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
-        rows = np.array([box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)])
+        rows = np.array(
+            [box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)]
+        )
         self.evaluations += size
         found = self.engine.evaluate(rows, threads=1)
         k = self.engine.quantities.index(term.name)

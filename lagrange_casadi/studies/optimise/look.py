@@ -1,4 +1,6 @@
-"""A design looked at over its whole motion: where its quantities have peaks, and how near its loops are to a dead centre."""
+"""A design looked at over its whole motion: where its quantities have peaks, and how near its loops
+are to a dead centre.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +23,14 @@ _ALL = 0.51
 
 @dataclass(frozen=True)
 class Point:
-    """A moment and a place of a quantity: a ratio ``xi``, and which of the places of :meth:`.PointValues.of` is meant.
+    """A moment and a place of a quantity: a ratio ``xi``, and which of the places of
+    :meth:`.PointValues.of` is meant.
 
-    ``share`` is the moment's share of the time from the first instant to the last: these may go with the parameters. ``value`` is
-    the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak: see
-    :class:`.Followed`. ``drift`` is by how much the share changes with that of each chosen parameter, counted from zero. Of a
-    swing ``xi`` is the share of its other instant, and ``second`` the iterated coordinates there.
+    ``share`` is the moment's share of the time from the first instant to the last: these may go
+    with the parameters. ``value`` is the quantity there, ``guess`` the iterated coordinates.
+    ``turn`` and ``reach`` say how the point follows its peak: see :class:`.Followed`. ``drift`` is
+    by how much the share changes with that of each chosen parameter, counted from zero. Of a swing
+    ``xi`` is the share of its other instant, and ``second`` the iterated coordinates there.
     """
 
     share: float
@@ -49,7 +53,9 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """A design by an ``engine``: its parameters (parameters,), and its history over instants in equal steps of time."""
+    """A design by an ``engine``: its parameters (parameters,), and its history over instants in
+    equal steps of time.
+    """
 
     engine: DesignEngine
     p: Array
@@ -61,9 +67,15 @@ class Look:
         return cls(engine, p, engine.history(p, Listed(KEEP)))
 
     def as_asked(self) -> Look:
-        """The same over the instants that are asked for, where these are not in equal steps of time."""
+        """The same over the instants that are asked for, where these are not in equal steps of
+        time.
+        """
         asked = self.engine.times.of(self.p[None])[1][0]
-        return self if np.array_equal(asked, self.t) else replace(self, history=self.engine.history(self.p))
+        return (
+            self
+            if np.array_equal(asked, self.t)
+            else replace(self, history=self.engine.history(self.p))
+        )
 
     @property
     def t(self) -> Array:
@@ -85,22 +97,37 @@ class Look:
         return float(self.t[0] + point.share * (self.t[-1] - self.t[0]))
 
     def points(self, output: Output, way: int) -> list[Point]:
-        """The local peaks over time of a quantity times ``way``, or of its size where that is 0, the largest first."""
+        """The local peaks over time of a quantity times ``way``, or of its size where that is 0,
+        the largest first.
+        """
         history = self.engine.history(self.p, Listed(_ALL, way)) if way else self.history
         found: list[Point] = []
         for curve, t, xi, value in history.tops[self.engine.quantities.index(str(output))].tolist():
             if curve == curve:
                 near = self.instant(int(np.argmin(np.abs(self.t - t))))
                 place = self._place(output, int(curve))
-                found.append(replace(near, share=self.share(t), xi=0.0 if xi != xi else xi, place=place, value=value))
+                found.append(
+                    replace(
+                        near,
+                        share=self.share(t),
+                        xi=0.0 if xi != xi else xi,
+                        place=place,
+                        value=value,
+                    )
+                )
         return sorted(found, key=lambda point: -(way * point.value if way else abs(point.value)))
 
     def closures(self) -> Array:
-        """The squares of the sines of the transmission angles (loops, t), NaN or below zero where loops do not close."""
+        """The squares of the sines of the transmission angles (loops, t), NaN or below zero where
+        loops do not close.
+        """
         graph = self.engine.graph
         names = graph.checks("closure")
         rows = [self.history.columns[k] for k in names.values()]
-        rows = [row * np.abs(row) if graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
+        rows = [
+            row * np.abs(row) if graph.iterates(name) else row
+            for name, row in zip(names, rows, strict=True)
+        ]
         return np.array(rows).reshape(len(rows), self.t.size)
 
     @property
@@ -110,10 +137,18 @@ class Look:
 
     def instant(self, k: int) -> Point:
         """An instant by its number, as a point."""
-        return Point(self.share(float(self.t[k])), 0.0, 0, 0.0, tuple(self.history.iterated[:, k].tolist()))
+        return Point(
+            self.share(float(self.t[k])), 0.0, 0, 0.0, tuple(self.history.iterated[:, k].tolist())
+        )
 
     def _place(self, output: Output, curve: int) -> int:
-        """Which place of :meth:`.PointValues.of` a curve of :meth:`.SectionLaw.curves` is at: after the ends come the stations."""
+        """Which place of :meth:`.PointValues.of` a curve of :meth:`.SectionLaw.curves` is at: after
+        the ends come the stations.
+        """
         outputs = self.engine.graph.outputs
-        stations = sum(1 for o in outputs if o.group == "station" and o.part == output.part and o.member == "station")
+        stations = sum(
+            1
+            for o in outputs
+            if o.group == "station" and o.part == output.part and o.member == "station"
+        )
         return curve - 1 if output.group == "section" and 2 <= curve < 2 + 2 * stations else 0

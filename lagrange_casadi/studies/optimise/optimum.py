@@ -28,9 +28,11 @@ _STEEP = 1e-4
 
 @dataclass(frozen=True)
 class Limit:
-    """A constraint at the optimum: the ``value`` of its term, whether it is ``active``, and what its ``multiplier`` is.
+    """A constraint at the optimum: the ``value`` of its term, whether it is ``active``, and what
+    its ``multiplier`` is.
 
-    That is by how much the objective falls for each unit by which the limit is relaxed, in the objective's unit over the term's.
+    That is by how much the objective falls for each unit by which the limit is relaxed, in the
+    objective's unit over the term's.
     """
 
     constraint: Constraint
@@ -43,7 +45,8 @@ class Limit:
 class Start:
     """One start of a search: values of the parameters, the design it ended at, and how.
 
-    ``excess`` is by how much the worst constraint is violated there, over its limit; ``ending`` says why it ended.
+    ``excess`` is by how much the worst constraint is violated there, over its limit; ``ending``
+    says why it ended.
     """
 
     values: Mapping[str, float]
@@ -66,17 +69,20 @@ class LocalOptimum:
 class Optimum:
     """The best design of a search.
 
-    ``values`` are those of the parameters that were chosen, ``parameters`` those of all. ``objective`` is the value of
-    ``minimised`` there. ``start`` is the start that led there, ``starts`` are all, ``optima`` where they have converged, the best
-    first. ``transmission`` is the least sine of a loop's transmission angle, of an iterated loop the least volume; NaN without
-    loops. ``feasible`` tells whether every constraint holds, that of the transmission angle too, ``converged`` whether the
-    conditions for an optimum do. ``residual`` is what is left of those of Karush, Kuhn and Tucker, over the largest of their terms
-    or the objective. ``curvature`` is the least second derivative of the Lagrangian along what the active constraints leave free,
-    over the bounds' widths: above zero at a strict minimum, infinite where nothing is left free, NaN where there is none.
-    ``bounds`` are multipliers of the parameters' own bounds, by name: below zero at the low one. ``history`` (k, 4 + parameters)
-    has a row for every step: number of the start, objective, excess, 1 where that design has a result, and the values. ``stopped``
-    tells that the search was ended before its end, ``evaluations`` how many designs were looked at. ``unit`` is the objective's,
-    ``notes`` what is worth a word.
+    ``values`` are those of the parameters that were chosen, ``parameters`` those of all.
+    ``objective`` is the value of ``minimised`` there. ``start`` is the start that led there,
+    ``starts`` are all, ``optima`` where they have converged, the best first. ``transmission`` is
+    the least sine of a loop's transmission angle, of an iterated loop the least volume; NaN without
+    loops. ``feasible`` tells whether every constraint holds, that of the transmission angle too,
+    ``converged`` whether the conditions for an optimum do. ``residual`` is what is left of those of
+    Karush, Kuhn and Tucker, over the largest of their terms or the objective. ``curvature`` is the
+    least second derivative of the Lagrangian along what the active constraints leave free, over the
+    bounds' widths: above zero at a strict minimum, infinite where nothing is left free, NaN where
+    there is none. ``bounds`` are multipliers of the parameters' own bounds, by name: below zero at
+    the low one. ``history`` (k, 4 + parameters) has a row for every step: number of the start,
+    objective, excess, 1 where that design has a result, and the values. ``stopped`` tells that the
+    search was ended before its end, ``evaluations`` how many designs were looked at. ``unit`` is
+    the objective's, ``notes`` what is worth a word.
     """
 
     case: str
@@ -102,9 +108,17 @@ class Optimum:
 
 
 def optimum_of(
-    finder: Finder, problem: Problem, trails: Sequence[Trail], judged: Judged, evaluations: int, *, stopped: bool
+    finder: Finder,
+    problem: Problem,
+    trails: Sequence[Trail],
+    judged: Judged,
+    evaluations: int,
+    *,
+    stopped: bool,
 ) -> Optimum:
-    """What ways from starts come to; ``judged`` is the end of the best of them, looked at closely."""
+    """What ways from starts come to; ``judged`` is the end of the best
+    of them, looked at closely.
+    """
     best = min(trails, key=lambda trail: trail.merit)
     box, engine = finder.question.box, finder.engine
     limits = []
@@ -139,7 +153,9 @@ def optimum_of(
         stopped=stopped,
         residual=best.residual,
         curvature=best.curvature,
-        history=np.array([[k, *row] for k, trail in enumerate(trails) for row in trail.history]).reshape(-1, 4 + len(box.names)),
+        history=np.array(
+            [[k, *row] for k, trail in enumerate(trails) for row in trail.history]
+        ).reshape(-1, 4 + len(box.names)),
         evaluations=evaluations,
         notes=tuple(_notes(finder, problem, judged)),
     )
@@ -158,7 +174,9 @@ def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]
     """Where ways have converged."""
     box = finder.question.box
     found: list[list[Trail]] = []
-    for trail in sorted((trail for trail in trails if trail.ending == CONVERGED), key=lambda trail: trail.merit):
+    for trail in sorted(
+        (trail for trail in trails if trail.ending == CONVERGED), key=lambda trail: trail.merit
+    ):
         share = box.share(np.array(trail.end))
         for known in found:
             if np.abs(share - box.share(np.array(known[0].end))).max() <= _SAME:
@@ -166,17 +184,31 @@ def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]
                 break
         else:
             found.append([trail])
-    return tuple(LocalOptimum(_start(finder, known[0]).end, known[0].objective, len(known)) for known in found)
+    return tuple(
+        LocalOptimum(_start(finder, known[0]).end, known[0].objective, len(known))
+        for known in found
+    )
 
 
 def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
     """Which active peaks are at a kink or a jump, whose way the program has by differences."""
     look = judged.look
     assert look is not None
-    values = [None, *(c.excess(judged.value(c.term)) / c.scale(judged.value(c.term)) for c in problem.constraints)]
+    values = [
+        None,
+        *(
+            c.excess(judged.value(c.term)) / c.scale(judged.value(c.term))
+            for c in problem.constraints
+        ),
+    ]
     for term, excess in zip(problem.terms, values, strict=True):
         points = judged.points[term]
-        if not points or term.output is None or tired_link(term.output) or (excess is not None and abs(excess) > _NEAR):
+        if (
+            not points
+            or term.output is None
+            or tired_link(term.output)
+            or (excess is not None and abs(excess) > _NEAR)
+        ):
             continue
         point, _ = points[0]
         followed = finder.judge.values.of(term.output)
@@ -184,4 +216,7 @@ def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
         rate = float(followed.slopes(point.share, list(point.guess), judged.p, point.xi, place)[0])
         if abs(rate) * look.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
             time = look.time(point)
-            yield f"{term} is at a kink or a jump, at t = {time:.6g} s: how that time changes is told by differences"
+            yield (
+                f"{term} is at a kink or a jump, at t = {time:.6g} s: how that time changes is told"
+                " by differences"
+            )

@@ -1,4 +1,6 @@
-"""What is asked of a search: terms, limits, the parameters to choose, and how designs are evaluated."""
+"""What is asked of a search: terms, limits, the parameters to choose, and how designs are
+evaluated.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ from .trail import HOLDS
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """The parameters that are chosen: their ``places`` among all, bounds, and the values ``p`` of all others."""
+    """The parameters that are chosen: their ``places`` among all, bounds, and the values ``p`` of
+    all others.
+    """
 
     names: tuple[str, ...]
     places: tuple[int, ...]
@@ -37,33 +41,52 @@ class Box:
     p: Array
 
     @classmethod
-    def of(cls, scene: Scene, over: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, float] | None) -> Box:
-        """Bounds by parameter. Raises :class:`DeclarationError` for what is no pair of bounds, or out of a parameter's range."""
+    def of(
+        cls,
+        scene: Scene,
+        over: Mapping[str, tuple[Any, Any]],
+        parameters: Mapping[str, float] | None,
+    ) -> Box:
+        """Bounds by parameter.
+
+        Raises :class:`DeclarationError` for what is no pair of bounds, or out of a parameter's
+        range.
+        """
         declared = scene.parameters
         if not isinstance(over, Mapping) or not over:
-            raise DeclarationError(f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}")
+            raise DeclarationError(
+                f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}"
+            )
         check_kind("parameters", parameters or {}, "values by name, as {'l': 0.25}", Mapping)
         names, low, high = tuple(over), [], []
         for name, bounds in over.items():
             if name not in declared:
                 raise UnknownNameError("parameter", name, declared)
             if not isinstance(bounds, (tuple, list)) or len(bounds) != 2:
-                raise DeclarationError(f"over: expected (least, largest) for '{name}', got {bounds!r}")
+                raise DeclarationError(
+                    f"over: expected (least, largest) for '{name}', got {bounds!r}"
+                )
             for bound in bounds:
                 declared[name].check(bound)
             a, b = (declared[name].number(bound) for bound in bounds)
             if not a < b:
-                raise DeclarationError(f"over: of '{name}' the least value {a:g} must be below the largest, {b:g}")
+                raise DeclarationError(
+                    f"over: of '{name}' the least value {a:g} must be below the largest, {b:g}"
+                )
             low.append(a)
             high.append(b)
             if name in (parameters or {}):
-                raise DeclarationError(f"over: parameter '{name}' is chosen, and set to a value as well")
+                raise DeclarationError(
+                    f"over: parameter '{name}' is chosen, and set to a value as well"
+                )
         values = scene.values(parameters)
         places = tuple(list(declared).index(name) for name in names)
         return cls(names, places, np.array(low), np.array(high), np.array(list(values.values())))
 
     def all(self, x: Array) -> Array:
-        """The values of all parameters, for shares ``x`` (n,) of the way from the low bounds to the high ones."""
+        """The values of all parameters, for shares ``x`` (n,) of the way from the low bounds to the
+        high ones.
+        """
         p: Array = self.p.copy()
         p[list(self.places)] = np.clip(self.low + x * (self.high - self.low), self.low, self.high)
         return p
@@ -113,7 +136,10 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A search before it begins. All that its result follows from, but the scene and the starts, is in it; it can be sent."""
+    """A search before it begins.
+
+    All that its result follows from, but the scene and the starts, is in it; it can be sent.
+    """
 
     objectives: tuple[Term, ...]
     constraints: tuple[Constraint, ...]
@@ -139,19 +165,30 @@ class Question:
         declared = scene.parameters
         texts = [minimise] if isinstance(minimise, str) else minimise
         if not isinstance(texts, (list, tuple)) or not texts:
-            raise DeclarationError(f"minimise: expected a text such as 'peak:effort:O', or several, got {minimise!r}")
+            raise DeclarationError(
+                f"minimise: expected a text such as 'peak:effort:O', or several, got {minimise!r}"
+            )
         objectives = tuple(Term.parse(text, declared) for text in texts)
         for objective in objectives:
             if objective.kind == "min":
-                raise DeclarationError(f"minimise: a smallest value has no least one that could be told; use max:{objective.name}")
+                raise DeclarationError(
+                    "minimise: a smallest value has no least one that could be told; use"
+                    f" max:{objective.name}"
+                )
         if len(set(objectives)) < len(objectives):
-            raise DeclarationError(f"minimise: a term is there twice: {', '.join(map(str, objectives))}")
+            raise DeclarationError(
+                f"minimise: a term is there twice: {', '.join(map(str, objectives))}"
+            )
         if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
-            raise DeclarationError(f"subject_to: expected a list of constraints, got {subject_to!r}")
+            raise DeclarationError(
+                f"subject_to: expected a list of constraints, got {subject_to!r}"
+            )
         constraints = tuple(found for text in subject_to for found in constraints_of(text, scene))
         box = Box.of(scene, over, parameters)
         if not isinstance(transmission, float) or not 0.0 < transmission < 1.0:
-            raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
+            raise DeclarationError(
+                f"transmission: expected a sine between 0 and 1, got {transmission!r}"
+            )
         return cls(objectives, constraints, box, scene.timing(t), Rung(backend), transmission)
 
     @property
@@ -163,7 +200,10 @@ class Question:
     def wanted(self) -> list[str]:
         """The outputs that the terms are of."""
         outputs = [term.output for term in self.terms if term.output is not None]
-        wants = [f"section:{link}" if (link := tired_link(output)) else wanted_for(output) for output in outputs]
+        wants = [
+            f"section:{link}" if (link := tired_link(output)) else wanted_for(output)
+            for output in outputs
+        ]
         return list(dict.fromkeys(wants)) or ["motion"]
 
     def engine(self, scene: Scene) -> DesignEngine:
@@ -181,7 +221,9 @@ class Question:
         return engine
 
     def words(self, engine: DesignEngine) -> dict[str, Any]:
-        """What every number of a search follows from beside its starts, for JSON: no clock, no path."""
+        """What every number of a search follows from beside its starts, for JSON: no clock, no
+        path.
+        """
         made, graph, box = engine.provenance, engine.graph, self.box
         told = {
             "case": graph.data.name,
@@ -193,8 +235,15 @@ class Question:
             "t": self.timing.words(graph.data.symbols),
             "minimise": list(map(str, self.objectives)),
             "subject_to": [c.words for c in self.constraints],
-            "over": {name: [float(a), float(b)] for name, a, b in zip(box.names, box.low, box.high, strict=True)},
-            "parameters": {name: float(x) for name, x in zip(engine.parameters, box.p, strict=True) if name not in box.names},
+            "over": {
+                name: [float(a), float(b)]
+                for name, a, b in zip(box.names, box.low, box.high, strict=True)
+            },
+            "parameters": {
+                name: float(x)
+                for name, x in zip(engine.parameters, box.p, strict=True)
+                if name not in box.names
+            },
             "transmission": self.transmission,
         }
         plain: dict[str, Any] = json.loads(json.dumps(told))

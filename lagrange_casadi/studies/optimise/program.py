@@ -1,7 +1,9 @@
-"""The nonlinear program of a search: a design's terms held at some points, solved by IPOPT with exact derivatives.
+"""The nonlinear program of a search: a design's terms held at some points, solved by IPOPT with
+exact derivatives.
 
-A peak is the largest of what a quantity is at all times and places. The program knows some of these points; the search adds those
-at which its solution exceeds a limit, until there are none. The points are parameters of the program, so it is built once.
+A peak is the largest of what a quantity is at all times and places. The program knows some of these
+points; the search adds those at which its solution exceeds a limit, until there are none. The
+points are parameters of the program, so it is built once.
 """
 
 from __future__ import annotations
@@ -26,12 +28,15 @@ _NUMBERS = 8
 """Of a point, beside its place and its guess."""
 
 _FEW, _LARGE = 8, 4000
-"""Points of a term for which there is room at first; and instructions beyond which second derivatives are not formed."""
+"""Points of a term for which there is room at first; and instructions beyond which second
+derivatives are not formed.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A term that is held at points: not more than ``limit``, or less where ``least``; the objective has none.
+    """A term that is held at points: not more than ``limit``, or less where ``least``; the
+    objective has none.
 
     ``scale`` is about how large it is. ``points`` are those that are known.
     """
@@ -49,7 +54,9 @@ class Held:
         return -self.limit if self.least else self.limit
 
     def add(self, point: Point, sign: float, near: float) -> bool:
-        """Hold the term at one point more, times ``sign``, unless it is as ``near`` one; whether it was added."""
+        """Hold the term at one point more, times ``sign``, unless it is as ``near`` one; whether it
+        was added.
+        """
         for other, its in self.points:
             same = its == sign and other.place == point.place
             if same and abs(other.share - point.share) <= near and abs(other.xi - point.xi) <= 1e-9:
@@ -60,10 +67,11 @@ class Held:
 
 @dataclass(frozen=True)
 class Found:
-    """A solution of the program: shares ``x``, the largest ``objective`` at the points, multipliers, and how good it is.
+    """A solution of the program: shares ``x``, the largest ``objective`` at the points,
+    multipliers, and how good it is.
 
-    ``multipliers`` are by constraint what the objective gains for a unit of its limit, ``bounds`` those of the shares.
-    ``conditions`` are those of an optimum, ``status`` is what IPOPT says.
+    ``multipliers`` are by constraint what the objective gains for a unit of its limit, ``bounds``
+    those of the shares. ``conditions`` are those of an optimum, ``status`` is what IPOPT says.
     """
 
     x: Array
@@ -76,7 +84,9 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class _Built:
-    """A program with ``room`` for so many points of each term; ``rows`` are those of the constraints, objective first."""
+    """A program with ``room`` for so many points of each term; ``rows`` are those of the
+    constraints, objective first.
+    """
 
     room: int
     solver: Any
@@ -85,20 +95,37 @@ class _Built:
 
 
 class NonlinearProgram:
-    """The program of a problem, whose limits are numbers that it is given; it is built once for each size."""
+    """The program of a problem, whose limits are numbers that it is given; it is built once for
+    each size.
+    """
 
     @symbolic
-    def __init__(self, values: PointValues, box: Box, problem: Problem, instants: int, least_closure: float) -> None:
+    def __init__(
+        self, values: PointValues, box: Box, problem: Problem, instants: int, least_closure: float
+    ) -> None:
         if not ca.has_nlpsol("ipopt"):
-            raise DeclarationError("optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel contains it")
-        self.values, self.box, self.instants, self.least_closure = values, box, instants, least_closure
+            raise DeclarationError(
+                "optimise: the CasADi at hand has no IPOPT; install CasADi from PyPI, whose wheel"
+                " contains it"
+            )
+        self.values, self.box, self.instants, self.least_closure = (
+            values,
+            box,
+            instants,
+            least_closure,
+        )
         self.objective, self.terms = problem.objective, problem.terms
         self.closures = values.closures()
-        self.large = values.graph.instant.n_instructions() > _LARGE or values.graph.instant.size1_in("z") > 0
+        self.large = (
+            values.graph.instant.n_instructions() > _LARGE or values.graph.instant.size1_in("z") > 0
+        )
         self.built: dict[int, _Built] = {}
 
-    def solve(self, x: Array, held: Sequence[Held], closures: Sequence[Point], averages: Sequence[Point]) -> Found:
-        """The best design near shares ``x``, as far as points tell: those of ``held`` terms, objective first, and of ``closures``.
+    def solve(
+        self, x: Array, held: Sequence[Held], closures: Sequence[Point], averages: Sequence[Point]
+    ) -> Found:
+        """The best design near shares ``x``, as far as points tell: those of ``held`` terms,
+        objective first, and of ``closures``.
 
         ``averages`` are all instants, for means.
         """
@@ -109,9 +136,23 @@ class NonlinearProgram:
             self.built[room] = self._build(held, room)
         built = self.built[room]
         given = np.concatenate(
-            [np.array([(0.0 if term.limit is None else term.bound / term.scale, 1.0 / term.scale) for term in held]).ravel()]
+            [
+                np.array(
+                    [
+                        (0.0 if term.limit is None else term.bound / term.scale, 1.0 / term.scale)
+                        for term in held
+                    ]
+                ).ravel()
+            ]
             + [self._packed(term, room) for term in held if term.points]
-            + [self._packed(Held(self.objective, None, 1.0, points=[(point, 1.0) for point in closures]), room, 1)] * self.closed
+            + [
+                self._packed(
+                    Held(self.objective, None, 1.0, points=[(point, 1.0) for point in closures]),
+                    room,
+                    1,
+                )
+            ]
+            * self.closed
             + [np.array([point.guess for point in averages]).ravel()] * bool(self.averaged)
         )
         start = np.append(x, self._level(held)) if self.levelled else x
@@ -124,15 +165,20 @@ class NonlinearProgram:
         at, by_g, by_x = (found[name].full().ravel() for name in ("x", "lam_g", "lam_x"))
         scale = held[0].scale
         multipliers = tuple(
-            float(np.sum(by_g[rows])) * scale / term.scale for rows, term in zip(built.rows[1:], held[1:], strict=True)
+            float(np.sum(by_g[rows])) * scale / term.scale
+            for rows, term in zip(built.rows[1:], held[1:], strict=True)
         )
         shares = np.clip(at[:n], 0.0, 1.0)
-        told = conditions(built.slopes, at, float(found["f"]), by_g, by_x, given, n, formed=not self.large)
+        told = conditions(
+            built.slopes, at, float(found["f"]), by_g, by_x, given, n, formed=not self.large
+        )
         return Found(shares, float(found["f"]) * scale, multipliers, by_x[:n] * scale, told, status)
 
     @property
     def levelled(self) -> bool:
-        """Whether the objective is the largest of several values, which a variable of its own is above."""
+        """Whether the objective is the largest of several values, which a variable of its own is
+        above.
+        """
         return self.objective.kind in ("peak", "max")
 
     def _level(self, held: Sequence[Held]) -> float:
@@ -149,7 +195,9 @@ class NonlinearProgram:
         return any(term.averaged for term in self.terms)
 
     def _packed(self, held: Held, room: int, places: int | None = None) -> Array:
-        """The points of a term, as many as there is room for; the first one stands for those that lack."""
+        """The points of a term, as many as there is room for; the first one stands for those that
+        lack.
+        """
         output = held.term.output
         size = self.values.of(output).size if places is None and output is not None else 1
         n = len(self.box.names)
@@ -158,7 +206,14 @@ class NonlinearProgram:
             point, sign = held.points[k if k < len(held.points) else 0]
             where = point.where(size)
             rows[k] = np.concatenate(
-                [[point.share, point.xi, sign], point.turn, point.reach, point.drift or np.zeros(n), where, point.guess]
+                [
+                    [point.share, point.xi, sign],
+                    point.turn,
+                    point.reach,
+                    point.drift or np.zeros(n),
+                    where,
+                    point.guess,
+                ]
             )
         return rows.ravel()
 
@@ -185,15 +240,24 @@ class NonlinearProgram:
             share, xi, sign, turn, reach, drift, place, guess = ca.vertsplit(symbol, ends)
             share = ca.fmin(ca.fmax(share + ca.mtimes(x.T, drift), 0.0), 1.0)
             further = [turn, reach] if moved else []
-            return function.map(room)(share, guess, ca.repmat(p, 1, room), xi, place, *further), sign
+            return (
+                function.map(room)(share, guess, ca.repmat(p, 1, room), xi, place, *further),
+                sign,
+            )
 
         guesses = ca.MX.sym("guesses", nz, self.instants)
         best: Any = level
         for number, term in enumerate(held):
             output, (limit, over) = term.term.output, (limits[0, number], limits[1, number])
             if output is None or term.term.averaged:
-                of_parameters = term.term.of_parameters(self.values.graph.data) if output is None else None
-                value = self._average(term.term, p, guesses) if of_parameters is None else of_parameters(p)
+                of_parameters = (
+                    term.term.of_parameters(self.values.graph.data) if output is None else None
+                )
+                value = (
+                    self._average(term.term, p, guesses)
+                    if of_parameters is None
+                    else of_parameters(p)
+                )
                 row = (-value if term.least else value) * over - limit
                 best = value * over if number == 0 else best
                 held_rows = ca.MX(0, 1) if number == 0 else row
@@ -210,16 +274,30 @@ class NonlinearProgram:
         if self.averaged:
             given.append(ca.vec(guesses))
         variables, parameters, g = ca.vertcat(x, level), ca.vertcat(*given), ca.vertcat(*rows)
-        options: dict[str, Any] = {"print_time": False, "error_on_fail": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
-        options |= {"ipopt.tol": 1e-10, "ipopt.max_iter": 200, "ipopt.bound_relax_factor": 0.0, "show_eval_warnings": False}
+        options: dict[str, Any] = {
+            "print_time": False,
+            "error_on_fail": False,
+            "ipopt.print_level": 0,
+            "ipopt.sb": "yes",
+        }
+        options |= {
+            "ipopt.tol": 1e-10,
+            "ipopt.max_iter": 200,
+            "ipopt.bound_relax_factor": 0.0,
+            "show_eval_warnings": False,
+        }
         options |= {"ipopt.hessian_approximation": "limited-memory"} if self.large else {}
-        solver = ca.nlpsol("solver", "ipopt", {"x": variables, "p": parameters, "f": best, "g": g}, options)
+        solver = ca.nlpsol(
+            "solver", "ipopt", {"x": variables, "p": parameters, "f": best, "g": g}, options
+        )
         by_g = ca.MX.sym("by_g", g.numel())
         slope = ca.gradient(best + ca.dot(by_g, g), variables)
         parts = ca.horzcat(ca.gradient(best, variables), ca.jtimes(g, variables, by_g, True))
         hessian = ca.MX(0, 0) if self.large else ca.densify(ca.jacobian(slope, variables))
         told = [slope, parts, g, ca.jacobian(g, variables), hessian]
-        return _Built(room, solver, ca.Function("slopes", [variables, by_g, parameters], told), places)
+        return _Built(
+            room, solver, ca.Function("slopes", [variables, by_g, parameters], told), places
+        )
 
     def _average(self, term: Term, p: Any, guesses: Any) -> Any:
         """A mean over time, by trapezia, as sweeps have it."""
@@ -230,6 +308,12 @@ class NonlinearProgram:
         place = ca.DM.zeros(followed.size, n)
         place[0, :] = 1
         shares = ca.DM(np.linspace(0.0, 1.0, n)).T
-        values = followed.value.map(n)(shares, guesses, ca.repmat(p, 1, n), ca.DM.zeros(1, n), place)
+        values = followed.value.map(n)(
+            shares, guesses, ca.repmat(p, 1, n), ca.DM.zeros(1, n), place
+        )
         weighted = ca.DM(weights / weights.sum())
-        return ca.mtimes(values, weighted) if term.kind == "mean" else ca.sqrt(ca.mtimes(values * values, weighted))
+        return (
+            ca.mtimes(values, weighted)
+            if term.kind == "mean"
+            else ca.sqrt(ca.mtimes(values * values, weighted))
+        )

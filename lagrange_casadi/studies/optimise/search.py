@@ -94,24 +94,26 @@ def optimise(
     force: bool = False,
     progress: Progress | None = None,
 ) -> Optimum | Front:
-    """Find the values of parameters for which a peak, or a mean, is least; of several terms, their front.
+    """Find the values of parameters for which a peak, or a mean, is least; of several terms, their
+    front.
 
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they are sent what is derived.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they
+        are sent what is derived.
     minimise
-        ``peak:QUANTITY``, the largest size of a quantity over the whole motion; ``max:QUANTITY``, its largest value; ``mean:`` or
-        ``rms:`` of an effort or an output; or a parameter's name. A list of them asks for a :class:`.Front`: designs of which none
-        is better in all of them.
+        ``peak:QUANTITY``, the largest size of a quantity over the whole motion; ``max:QUANTITY``,
+        its largest value; ``mean:`` or ``rms:`` of an effort or an output; or a parameter's name. A
+        list of them asks for a :class:`.Front`: designs of which none is better in all of them.
     over
         The parameters to choose, and of each its least and its largest value.
     subject_to
-        Constraints, as ``"peak:effort:O <= 12"``; ``min:QUANTITY`` is for those from below. They hold at all times of the motion,
-        and along the whole link.
+        Constraints, as ``"peak:effort:O <= 12"``; ``min:QUANTITY`` is for those from below. They
+        hold at all times of the motion, and along the whole link.
     starts
-        How many designs the search starts from: the best of designs spread evenly over the bounds, with the parameters' own values
-        among them. Or values of parameters for each start.
+        How many designs the search starts from: the best of designs spread evenly over the bounds,
+        with the parameters' own values among them. Or values of parameters for each start.
     screen
         Among how many designs the starts are chosen.
     points
@@ -125,25 +127,37 @@ def optimise(
     dask
         The address of a Dask scheduler, whose workers go the ways from the starts.
     out
-        The file to write. Beside it a journal keeps what is done, until all is: a search that was stopped, or killed, goes on with
-        ``resume``; ``force`` starts it anew.
+        The file to write. Beside it a journal keeps what is done, until all is: a search that was
+        stopped, or killed, goes on with ``resume``; ``force`` starts it anew.
     progress
-        Is called after each step with the number of the start, the objective and the worst excess over a limit.
+        Is called after each step with the number of the start, the objective and the worst excess
+        over a limit.
 
-    Notes
-    -----
-    Programs with some points of every quantity are solved by IPOPT with exact derivatives. What exceeds a limit elsewhere is added
-    to them, until nothing does. An interrupt ends the search; the best design so far is given. One that violates a constraint is
-    marked: it is not ``feasible``.
+    Notes ----- Programs with some points of every quantity are solved by IPOPT with exact
+    derivatives. What exceeds a limit elsewhere is added to them, until nothing does. An interrupt
+    ends the search; the best design so far is given. One that violates a constraint is marked: it
+    is not ``feasible``.
 
-    Raises :class:`DeclarationError`, :class:`UnknownNameError` and :class:`ParameterError` for mistakes in the arguments,
-    :class:`NoDesignError` where no design has a result, :class:`PathError`, :class:`StoreError` or :class:`BusyError` where the
-    file or its journal is another search's or cannot be written, :class:`ClusterError` where a cluster cannot serve.
+    Raises :class:`DeclarationError`, :class:`UnknownNameError` and :class:`ParameterError` for
+    mistakes in the arguments, :class:`NoDesignError` where no design has a result,
+    :class:`PathError`, :class:`StoreError` or :class:`BusyError` where the file or its journal is
+    another search's or cannot be written, :class:`ClusterError` where a cluster cannot serve.
     """
     own = scene_of(scene)
-    question = Question.of(own, minimise, over, subject_to, transmission=transmission, t=t, parameters=parameters, backend=backend)
+    question = Question.of(
+        own,
+        minimise,
+        over,
+        subject_to,
+        transmission=transmission,
+        t=t,
+        parameters=parameters,
+        backend=backend,
+    )
     if resume and force:
-        raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
+        raise DeclarationError(
+            "resume and force exclude each other: go on with what is there, or start anew"
+        )
     if resume and out is None:
         raise DeclarationError("resume: expected out, the file of the search that was stopped")
     hands: Hands = Here() if dask is None else method("optimise.dask")(dask)
@@ -151,8 +165,13 @@ def optimise(
     target = None if out is None else Path(out)
     if target is not None:
         check_target(target, SCHEMA)
-    told = {"starts": starts if isinstance(starts, int) else [dict(start) for start in starts], "screen": screen}
-    with kept(target, {**question.words(finder.engine), **told}, resume=resume, force=force) as journal:
+    told = {
+        "starts": starts if isinstance(starts, int) else [dict(start) for start in starts],
+        "screen": screen,
+    }
+    with kept(
+        target, {**question.words(finder.engine), **told}, resume=resume, force=force
+    ) as journal:
         search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):

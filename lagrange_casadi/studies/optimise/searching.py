@@ -22,12 +22,16 @@ from .trail import STOPPED, Trail
 _T = TypeVar("_T")
 
 Progress = Callable[[int, float, float], None]
-"""Hears the number of the way, and the objective and the worst excess over a limit of a design on it."""
+"""Hears the number of the way, and the objective and the worst excess over a limit of a design on
+it.
+"""
 
 
 @dataclass(eq=False)
 class Search:
-    """A finder, what is known of its ways, and who goes the others; ``stopped`` tells that an interrupt came."""
+    """A finder, what is known of its ways, and who goes the others; ``stopped`` tells that an
+    interrupt came.
+    """
 
     finder: Finder
     journal: Journal
@@ -41,28 +45,42 @@ class Search:
     stopped: bool = False
 
     def begin(self, problem: Problem, count: int | None = None) -> list[Judged]:
-        """The designs to start from: those that are named, or the best of many; ``count`` of them, or as many as were asked for."""
+        """The designs to start from: those that are named, or the best of many; ``count`` of them,
+        or as many as were asked for.
+        """
         before = self.finder.judge.evaluations
         if not isinstance(self.starts, int):
             found = named(self.finder, self.starts)
         else:
             self.screened = self.screened or screen(self.finder, self.many)
-            found = chosen(self.finder, problem, self.screened, self.starts if count is None else count)
+            found = chosen(
+                self.finder, problem, self.screened, self.starts if count is None else count
+            )
         self.evaluations += self.finder.judge.evaluations - before
         return found
 
     def solve(self, problem: Problem, starts: Sequence[Judged]) -> Optimum:
-        """The best that ways from some starts lead to. Raises :class:`NoDesignError` where an interrupt came before the first."""
+        """The best that ways from some starts lead to.
+
+        Raises :class:`NoDesignError` where an interrupt came before the first.
+        """
         trails = self._ways(problem, starts)
         if not trails:
             raise NoDesignError("optimise: stopped before a design was looked at")
         self.evaluations += sum(trail.evaluations + 1 for trail in trails)
         best = min(trails, key=lambda trail: trail.merit)
         stopped = self.stopped
-        return self.whole(lambda: optimum_of(self.finder, problem, trails, self.look(best.end), self.evaluations, stopped=stopped))
+        return self.whole(
+            lambda: optimum_of(
+                self.finder, problem, trails, self.look(best.end), self.evaluations, stopped=stopped
+            )
+        )
 
     def whole(self, action: Callable[[], _T]) -> _T:
-        """What an action gives, which no interrupt ends. One that came meanwhile ends what follows."""
+        """What an action gives, which no interrupt ends.
+
+        One that came meanwhile ends what follows.
+        """
         found: list[_T] = []
         try:
             with uninterrupted():
@@ -81,7 +99,9 @@ class Search:
         """The ways from starts, in their order; after an interrupt those that were begun."""
         scales = problem.scales(starts[0])
         errands = [Errand(problem, tuple(start.p.tolist()), scales) for start in starts]
-        found: dict[int, Trail] = {k: trail for k, errand in enumerate(errands) if (trail := self.journal.get(errand))}
+        found: dict[int, Trail] = {
+            k: trail for k, errand in enumerate(errands) if (trail := self.journal.get(errand))
+        }
         missing = [k for k in range(len(errands)) if k not in found]
         first, self.gone = self.gone, self.gone + len(errands)
 

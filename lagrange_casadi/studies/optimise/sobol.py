@@ -1,7 +1,9 @@
-"""Points spread evenly over the unit cube: the sequence of Sobol, by the direction numbers of Joe and Kuo.
+"""Points spread evenly over the unit cube: the sequence of Sobol, by the direction numbers of Joe
+and Kuo.
 
-S. Joe and F. Y. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM Journal on Scientific Computing 30
-(2008) 2635-2654; the numbers are the first of their file new-joe-kuo-6.
+S. Joe and F. Y. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM
+Journal on Scientific Computing 30 (2008) 2635-2654; the numbers are the first of their file
+new-joe-kuo-6.
 """
 
 from __future__ import annotations
@@ -46,19 +48,23 @@ _DIRECTIONS = (
     (41, (1, 3, 5, 13, 23, 1, 55)),
     (42, (1, 3, 7, 3, 13, 59, 17)),
 )
-"""Of each dimension but the first: the inner coefficients of its primitive polynomial as bits, and its first direction numbers."""
+"""Of each dimension but the first: the inner coefficients of its primitive polynomial as bits, and
+its first direction numbers.
+"""
 
 MOST_DIMENSIONS = len(_DIRECTIONS) + 1
 
 
 def sobol(count: int, dimensions: int) -> Array:
-    """The first points of the sequence after the origin, (count, dimensions), each of them between 0 and 1.
+    """The first points of the sequence after the origin, (count, dimensions), each of them between
+    0 and 1.
 
     Raises :class:`.DeclarationError` for more dimensions than there are direction numbers for.
     """
     if dimensions > MOST_DIMENSIONS:
         raise DeclarationError(
-            f"over: starts are spread over {MOST_DIMENSIONS} parameters at most, got {dimensions}; name the designs to start from"
+            f"over: starts are spread over {MOST_DIMENSIONS} parameters at most, got {dimensions};"
+            " name the designs to start from"
         )
     directions = np.array([_binary(k) for k in range(dimensions)], np.uint64)
     numbers = np.arange(1, count + 1, dtype=np.uint64)

@@ -28,8 +28,8 @@ Starts: TypeAlias = Annotated[int, Within(1, MOST)] | Sequence[Mapping[str, floa
 def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:
     """Starts by their values; parameters that a start lacks have their own.
 
-    Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not within bounds, and
-    :class:`NoDesignError` where none has a result.
+    Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not
+    within bounds, and :class:`NoDesignError` where none has a result.
     """
     box, declared = finder.question.box, finder.engine.parameters
     rows = []
@@ -52,7 +52,9 @@ def screen(finder: Finder, count: int) -> list[Judged]:
     return finder.judge.screen(np.array([box.all(x) for x in shares]))
 
 
-def chosen(finder: Finder, problem: Problem, screened: Sequence[Judged], count: int) -> list[Judged]:
+def chosen(
+    finder: Finder, problem: Problem, screened: Sequence[Judged], count: int
+) -> list[Judged]:
     """The best of screened designs for a problem that are apart from each other, looked at closely.
 
     Raises :class:`NoDesignError` where none has a result.
@@ -70,13 +72,17 @@ def chosen(finder: Finder, problem: Problem, screened: Sequence[Judged], count: 
     return _with_results(finder, found, screened)
 
 
-def _with_results(finder: Finder, judged: Sequence[Judged], screened: Sequence[Judged]) -> list[Judged]:
+def _with_results(
+    finder: Finder, judged: Sequence[Judged], screened: Sequence[Judged]
+) -> list[Judged]:
     found = [one for one in judged if one.has_result]
     if not found:
         outcome = finder.engine.evaluate(np.array([one.p for one in screened]))
         values = outcome.value[outcome.status == Status.OK]
         open_ = np.isnan(values).all(axis=0) & bool(len(values))
-        names = ", ".join(name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open)
+        names = ", ".join(
+            name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open
+        )
         why = f": {names} is open for all of them" if names else "; evaluate one to see why"
         raise NoDesignError(f"optimise: no design within the bounds has a result{why}")
     return found

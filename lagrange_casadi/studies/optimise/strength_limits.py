@@ -13,13 +13,17 @@ from ...strength.fatigue import lacking, strengths
 from ..sweep.meanings import WAYS
 from .terms import Constraint
 
-_LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
+_LEAST = re.compile(
+    r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*"
+)
 
 
 def constraints_of(text: str, scene: Scene) -> list[Constraint]:
-    """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to fail, any other text one.
+    """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to
+    fail, any other text one.
 
-    Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a material that lacks a number.
+    Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a
+    material that lacks a number.
     """
     found = _LEAST.fullmatch(text) if isinstance(text, str) else None
     if found is None:
@@ -31,9 +35,18 @@ def constraints_of(text: str, scene: Scene) -> list[Constraint]:
     except ValueError:
         factor = math.nan
     if not (0.0 < factor < math.inf and relation.startswith(">")):
-        raise DeclarationError(f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2")
+        raise DeclarationError(
+            f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2"
+        )
     material = materials_of(template(scene).content)[link]
     if way == "fatigue":
         strengths(material, "goodman")
-    ways = tuple(w for w in WAYS if w != "fatigue" or not lacking(material)) if way == "safety" else (way,)
-    return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters) for each in ways]
+    ways = (
+        tuple(w for w in WAYS if w != "fatigue" or not lacking(material))
+        if way == "safety"
+        else (way,)
+    )
+    return [
+        Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", scene.parameters)
+        for each in ways
+    ]

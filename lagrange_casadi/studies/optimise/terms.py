@@ -1,4 +1,6 @@
-"""What is made small, and what is held within limits: a peak, a largest or smallest value, a mean, or a parameter."""
+"""What is made small, and what is held within limits: a peak, a largest or smallest value, a mean,
+or a parameter.
+"""
 
 from __future__ import annotations
 
@@ -40,14 +42,19 @@ _EXAMPLE = "peak:section:rod:bending <= 12"
 @public
 @dataclass(frozen=True)
 class Term:
-    """A number that a design has: a ``kind``, and the quantity it is of by full name, or the parameter."""
+    """A number that a design has: a ``kind``, and the quantity it is of by full name, or the
+    parameter.
+    """
 
     kind: Kind
     name: str
 
     @classmethod
     def parse(cls, text: str, parameters: Mapping[str, object]) -> Term:
-        """Read ``peak:effort:O``, ``rms:effort:O`` or the like, or a parameter's name. Raises :class:`DeclarationError`."""
+        """Read ``peak:effort:O``, ``rms:effort:O`` or the like, or a parameter's name.
+
+        Raises :class:`DeclarationError`.
+        """
         if not isinstance(text, str):
             raise DeclarationError(f"expected a text such as 'peak:effort:O', got {text!r}")
         word, _, name = text.strip().partition(":")
@@ -58,14 +65,18 @@ class Term:
                 except KeyError:
                     break
                 if kind in _AVERAGES and output.group not in AVERAGED:
-                    raise DeclarationError(f"'{text}': means are of {', '.join(AVERAGED)} alone; of '{name}' there is peak:{name}")
+                    raise DeclarationError(
+                        f"'{text}': means are of {', '.join(AVERAGED)} alone; of '{name}' there is"
+                        f" peak:{name}"
+                    )
                 return cls(kind, str(output))
         if text.strip() in parameters:
             return cls("parameter", text.strip())
         if word == MASS and name:
             return cls(MASS, name)
         raise DeclarationError(
-            f"'{text}' is neither a parameter nor {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
+            f"'{text}' is neither a parameter nor"
+            f" {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
         )
 
     @property
@@ -79,8 +90,15 @@ class Term:
         return None if self.kind in ("parameter", MASS) else Output.of(self.name)
 
     def of_parameters(self, data: ModelData) -> Any:
-        """A parameter or a mass as a function of all parameters. Raises :class:`.UnknownNameError` for what is none."""
-        found = data.mass(self.name, data.symbols) if self.kind == MASS else data.parameters[self.name].symbol
+        """A parameter or a mass as a function of all parameters.
+
+        Raises :class:`.UnknownNameError` for what is none.
+        """
+        found = (
+            data.mass(self.name, data.symbols)
+            if self.kind == MASS
+            else data.parameters[self.name].symbol
+        )
         return ca.Function("of_parameters", [data.symbols], [found])
 
     def unit(self, data: ModelData) -> str:
@@ -89,7 +107,9 @@ class Term:
             return "kg"
         if tired_link(self.output):
             return "1"
-        return data.parameters[self.name].unit if self.output is None else self.output.unit(data.kinds)
+        return (
+            data.parameters[self.name].unit if self.output is None else self.output.unit(data.kinds)
+        )
 
     def __str__(self) -> str:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"
@@ -112,13 +132,22 @@ class Constraint:
             if found is None or not math.isfinite(limit := real(found[3])):
                 raise ValueError
         except ValueError:
-            raise DeclarationError(f"expected a constraint such as '{_EXAMPLE}', got {text!r}") from None
+            raise DeclarationError(
+                f"expected a constraint such as '{_EXAMPLE}', got {text!r}"
+            ) from None
         term, least = Term.parse(found[1], parameters), found[2].startswith(">")
         if least and term.kind in _UPPER:
-            advice = f"use min:{term.name}" if term.kind == "max" else "it can be limited from above only"
+            advice = (
+                f"use min:{term.name}"
+                if term.kind == "max"
+                else "it can be limited from above only"
+            )
             raise DeclarationError(f"'{text}': {advice}")
         if not least and term.kind == "min":
-            raise DeclarationError(f"'{text}': use max:{term.name}, for a smallest value can be limited from below only")
+            raise DeclarationError(
+                f"'{text}': use max:{term.name}, for a smallest value can be limited from below"
+                " only"
+            )
         if term.kind == "peak" and limit < 0.0:
             raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")
         return cls(term, limit, least)

@@ -34,10 +34,11 @@ CONVERGED, STOPPED = "converged", "stopped"
 class Trail:
     """From a ``start`` to its ``end``, values of all parameters each.
 
-    ``objective`` and ``excess`` are those of the end, ``scale`` is about how large the objective is, ``ending`` says why it ended.
-    ``history`` has a row for every design on the way: objective, excess, 1 where it has a result, and the values that were chosen.
-    ``multipliers`` are of the constraints, ``bounds`` of the chosen parameters' bounds as shares; both are empty where no program
-    led there. See :class:`.Conditions` for ``residual`` and ``curvature``.
+    ``objective`` and ``excess`` are those of the end, ``scale`` is about how large the objective
+    is, ``ending`` says why it ended. ``history`` has a row for every design on the way: objective,
+    excess, 1 where it has a result, and the values that were chosen. ``multipliers`` are of the
+    constraints, ``bounds`` of the chosen parameters' bounds as shares; both are empty where no
+    program led there. See :class:`.Conditions` for ``residual`` and ``curvature``.
     """
 
     start: tuple[float, ...]
@@ -73,5 +74,7 @@ class Trail:
 
 
 def rounded(objective: float, scale: float) -> float:
-    """An objective less its last digits, so that of designs as good the one that converged is taken."""
+    """An objective less its last digits, so that of designs as good the one that converged is
+    taken.
+    """
     return round(objective / scale, 8) * scale if math.isfinite(objective) else objective

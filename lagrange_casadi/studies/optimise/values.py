@@ -1,9 +1,11 @@
-"""Quantities of a graph at a point as CasADi functions of the parameters, with derivatives of any order.
+"""Quantities of a graph at a point as CasADi functions of the parameters, with derivatives of any
+order.
 
-A moment is told by its share of the time from the first instant to the last, so that instants may go with the parameters.
+A moment is told by its share of the time from the first instant to the last, so that instants may
+go with the parameters.
 
-Iterated coordinates are the solution of the loops there, by ``casadi.rootfinder``: its derivatives are those of the implicit
-function theorem.
+Iterated coordinates are the solution of the loops there, by ``casadi.rootfinder``: its derivatives
+are those of the implicit function theorem.
 """
 
 from __future__ import annotations
@@ -31,20 +33,22 @@ from .fatigue import Tired, tired_link
 from .look import Point
 
 _NUDGE, _NEAR, _REACH = 1e-2, 1e-2, 8.0
-"""Steps between instants: of which second derivatives are taken, in which a smooth peak is where it was found, and which it follows
-at most."""
+"""Steps between instants: of which second derivatives are taken, in which a smooth peak is where it
+was found, and which it follows at most."""
 
 
 @dataclass(frozen=True, eq=False)
 class Followed:
     """A quantity at a point, which may follow its peak as parameters change.
 
-    ``value(share, guess, p, xi, place)``; ``slopes`` of the same are its derivatives by share and xi (2,); ``moved`` is the value
-    where one step of Newton's method leads, which takes ``turn`` and ``reach`` too: less the inverse of the second derivatives,
-    three numbers, and how far to go in share and in xi at most. ``place`` has ``size`` numbers.
+    ``value(share, guess, p, xi, place)``; ``slopes`` of the same are its derivatives by share and
+    xi (2,); ``moved`` is the value where one step of Newton's method leads, which takes ``turn``
+    and ``reach`` too: less the inverse of the second derivatives, three numbers, and how far to go
+    in share and in xi at most. ``place`` has ``size`` numbers.
 
-    A peak of F(s, p) is at F_s = 0. With F_ss of the parameters that are known, s - F_s(s, p)/F_ss is there but for the square of
-    what the parameters change, and F is the peak's value but for the fourth power.
+    A peak of F(s, p) is at F_s = 0. With F_ss of the parameters that are known, s - F_s(s, p)/F_ss
+    is there but for the square of what the parameters change, and F is the peak's value but for the
+    fourth power.
     """
 
     value: Any
@@ -59,11 +63,16 @@ class Followed:
         return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
 
     def following(self, point: Point, p: Array, sign: float, step: float, *, free: bool) -> Point:
-        """A local peak of the value times ``sign``, and how it follows as parameters change, unless it is at a kink or an end.
+        """A local peak of the value times ``sign``, and how it follows as parameters change, unless
+        it is at a kink or an end.
 
         ``free`` may xi be; ``step`` is that between instants.
         """
-        at, nudges, size = np.array([point.share, point.xi]), np.array([_NUDGE * step, _NUDGE]), 1 + free
+        at, nudges, size = (
+            np.array([point.share, point.xi]),
+            np.array([_NUDGE * step, _NUDGE]),
+            1 + free,
+        )
         if not (at[:size] > 0.0).all() or not (at[:size] < 1.0).all():
             return point
         guess, place = list(point.guess), point.where(self.size)
@@ -83,7 +92,13 @@ class Followed:
             return point
         reach = (_REACH * step, 0.1 if free else 0.0)
         turns = (float(turn[0, 0]), float(turn[0, 1]), float(turn[1, 1]))
-        return replace(point, share=float(point.share + away[0]), xi=float(point.xi + away[1]), turn=turns, reach=reach)
+        return replace(
+            point,
+            share=float(point.share + away[0]),
+            xi=float(point.xi + away[1]),
+            turn=turns,
+            reach=reach,
+        )
 
     @classmethod
     def of(cls, value: Any, size: int) -> Followed:
@@ -99,7 +114,10 @@ class Followed:
             at = ca.vertcat(*(ca.densify(ca.gradient(value(*given), x)) for x in (share, xi)))
         away: list[Any] = [turn[0] * at[0] + turn[1] * at[1], turn[1] * at[0] + turn[2] * at[1]]
         limits: list[Any] = [reach[0], reach[1]]
-        there = [x + ca.fmin(ca.fmax(far, -most), most) for x, far, most in zip((share, xi), away, limits, strict=True)]
+        there = [
+            x + ca.fmin(ca.fmax(far, -most), most)
+            for x, far, most in zip((share, xi), away, limits, strict=True)
+        ]
         options = {"cse": True} if smooth else {}
         slopes = ca.Function("slopes", given, [at], options)
         moved = value(there[0], guess, p, there[1], place)
@@ -119,7 +137,8 @@ class PointValues:
     def of(self, quantity: Output) -> Followed:
         """A quantity at a point; it is made once.
 
-        ``place`` has a 1 where a section force is meant, and 0 elsewhere: first at ``xi``, then at each side of each station.
+        ``place`` has a 1 where a section force is meant, and 0 elsewhere: first at ``xi``, then at
+        each side of each station.
         """
         if quantity not in self.known:
             self.known[quantity] = self._made(quantity)
@@ -131,7 +150,9 @@ class PointValues:
         out = self._instant(*inputs)
         if name := tired_link(quantity):
             tired = self.tired(name)
-            value = tired.swing(self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p)))
+            value = tired.swing(
+                self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p))
+            )
             return Followed.of(value, value.numel_in(4))
         table = table_of(self.graph.data.space)
         columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
@@ -139,13 +160,20 @@ class PointValues:
             link = self.graph.data.section(quantity.part, columns, p)
             places = [Place(xi), *(mark for mark in link.marks if mark.station)]
             names = table.parts("section", quantity.member)
-            sizes = [resultant([link.at(name, place, END["double"]) for name in names]) for place in places]
+            sizes = [
+                resultant([link.at(name, place, END["double"]) for name in names])
+                for place in places
+            ]
         else:
-            sizes = [resultant([columns[part] for part in quantity.components(table) if part in columns])]
+            sizes = [
+                resultant([columns[part] for part in quantity.components(table) if part in columns])
+            ]
         place = ca.SX.sym("place", len(sizes))
         # What is not meant may have no value, as a size at zero has no slope.
         value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
-        return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(value)), len(sizes))
+        return Followed.of(
+            self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(value)), len(sizes)
+        )
 
     def tired(self, link: str) -> Tired:
         """A link whose utilisation against fatigue is a term; it is made once."""
@@ -155,7 +183,8 @@ class PointValues:
 
     @symbolic
     def closures(self) -> Any | None:
-        """``value(share, guess, p, xi, place)``: the squares of the sines of all loops' transmission angles, None without loops.
+        """``value(share, guess, p, xi, place)``: the squares of the sines of all loops'
+        transmission angles, None without loops.
 
         Of an iterated loop it is the square of its volume.
         """
@@ -164,7 +193,10 @@ class PointValues:
             return None
         inputs = self._instant.sx_in()
         out = self._instant(*inputs)
-        found = [out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k] for name, k in names.items()]
+        found = [
+            out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k]
+            for name, k in names.items()
+        ]
         return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
 
     @symbolic_property
@@ -178,7 +210,10 @@ class PointValues:
         smooth = graph.newton is None
         kind = ca.SX if smooth else ca.MX
         sizes = [1, graph.instant.size1_in("z"), graph.instant.size1_in("p"), 1, inputs[-1].numel()]
-        given: list[Any] = [kind.sym(name, n) for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)]
+        given: list[Any] = [
+            kind.sym(name, n)
+            for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)
+        ]
         share, guess, p, xi, place = given
         first, last = self._span(p)
         t = first + share * (last - first)
@@ -193,7 +228,8 @@ class PointValues:
     def _span(self) -> Any:
         """The first and the last instant as functions of the parameters.
 
-        Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be inverted for numbers alone.
+        Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be
+        inverted for numbers alone.
         """
         times, symbols = self.times, ca.SX.sym("p", len(self.graph.data.parameters))
         if times.common:
@@ -203,8 +239,9 @@ class PointValues:
         if times.law is not None:
             if not times.law.steady:
                 raise DeclarationError(
-                    f"optimise: the motion of joint '{times.timing.joint}', which says when the instants are, goes with parameters "
-                    "and is not steady; give t as expressions of the parameters"
+                    f"optimise: the motion of joint '{times.timing.joint}', which says when the"
+                    " instants are, goes with parameters and is not steady; give t as expressions"
+                    " of the parameters"
                 )
             d, rate, _ = times.law.law(0.0, symbols)
             ends = [(bound - d) / rate for bound in ends]

@@ -1,4 +1,6 @@
-"""Sweeps: one scene over many designs, in blocks that survive, into one file; ``docs/sweeps.md`` says how."""
+"""Sweeps: one scene over many designs, in blocks that survive, into one file; ``docs/sweeps.md``
+says how.
+"""
 
 from ...base.vocabulary import KEEPS, Keep
 from .axes import Axis, Grid, Listed, Range, Values

@@ -1,4 +1,6 @@
-"""What is swept: axes of parameter values, their product as a grid, or a list of designs; a design is a number."""
+"""What is swept: axes of parameter values, their product as a grid, or a list of designs; a design
+is a number.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,14 @@ from ...base.units import number, typed
 from ...declare.even_points import points
 from ...declare.limits import parameter_faults
 from ...declare.parts import Parameter
-from ...errors import DeclarationError, NumberError, ParameterError, UnknownNameError, check_kind, shown
+from ...errors import (
+    DeclarationError,
+    NumberError,
+    ParameterError,
+    UnknownNameError,
+    check_kind,
+    shown,
+)
 
 Numbers = npt.NDArray[np.int64]
 
@@ -36,11 +45,13 @@ _SHOWN = 20
 @public
 @dataclass(frozen=True)
 class Range:
-    """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
+    """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in
+    equal ratios.
 
     Ends may be texts, as ``"30 deg"`` or ``"100 mm"``; ``unit`` is then what they are in.
 
-    Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
+    Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log
+    range that does not begin above 0.
     """
 
     start: Annotated[float, LATER]
@@ -60,11 +71,17 @@ class Range:
             if type(self.count) is not int:
                 raise TypeError
         except (TypeError, NumberError):
-            told = ":".join(shown(part) if not isinstance(part, str) else part for part in (self.start, self.stop, self.count))
-            raise DeclarationError(f"expected numbers for START and STOP and a whole COUNT, got {told}") from None
+            told = ":".join(
+                shown(part) if not isinstance(part, str) else part
+                for part in (self.start, self.stop, self.count)
+            )
+            raise DeclarationError(
+                f"expected numbers for START and STOP and a whole COUNT, got {told}"
+            ) from None
         if type(self.log) is not bool:
             raise DeclarationError(
-                f"expected True or False after (start, stop, count), for equal ratios or not, got {shown(self.log)}"
+                "expected True or False after (start, stop, count), for equal ratios or not, got"
+                f" {shown(self.log)}"
             )
         if not (math.isfinite(self.start) and math.isfinite(self.stop)):
             raise DeclarationError(f"START and STOP must be finite, got {self}")
@@ -73,12 +90,17 @@ class Range:
         if self.stop < self.start:
             raise DeclarationError(f"STOP must be after START, got {self}: the range is reversed")
         if (self.stop == self.start) != (self.count == 1):
-            raise DeclarationError(f"START and STOP must differ, and COUNT be 2 or more, got {self}; one value is written alone")
+            raise DeclarationError(
+                f"START and STOP must differ, and COUNT be 2 or more, got {self}; one value is"
+                " written alone"
+            )
         if self.log and self.start <= 0.0:
             raise DeclarationError(f"a log range must begin above 0, got {self}")
 
     def __str__(self) -> str:
-        return f"{float(self.start)!r}:{float(self.stop)!r}:{self.count}" + (":log" if self.log else "")
+        return f"{float(self.start)!r}:{float(self.stop)!r}:{self.count}" + (
+            ":log" if self.log else ""
+        )
 
     def at(self, numbers: Numbers) -> Array:
         """Values by number: those of :func:`.points`, or start (stop/start)^(i/(count - 1))."""
@@ -89,15 +111,21 @@ class Range:
 
     def outside(self, low: float, high: float) -> str:
         """What of it leaves a range, in words; nothing where none does."""
-        return "" if low <= self.start and self.stop <= high else f"{self.start:.10g} to {self.stop:.10g}"
+        return (
+            ""
+            if low <= self.start and self.stop <= high
+            else f"{self.start:.10g} to {self.stop:.10g}"
+        )
 
 
 @public
 @dataclass(frozen=True)
 class Values:
-    """Values one by one; some may be texts, as ``"30 deg"`` or ``"100 mm"``, and ``unit`` is then what they are in.
+    """Values one by one; some may be texts, as ``"30 deg"`` or ``"100 mm"``, and ``unit`` is then
+    what they are in.
 
-    Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
+    Raises :class:`DeclarationError` for none, for what is no finite number, and for one given
+    twice.
     """
 
     values: Annotated[tuple[float, ...], LATER]
@@ -130,7 +158,10 @@ class Values:
                 return str(same)
         if len(self.values) <= _SHOWN:
             return ",".join(map(repr, self.values))
-        return f"{len(self.values)} values, SHA-256 {hashlib.sha256(self._array.tobytes()).hexdigest()}"
+        return (
+            f"{len(self.values)} values, SHA-256"
+            f" {hashlib.sha256(self._array.tobytes()).hexdigest()}"
+        )
 
     @property
     def count(self) -> int:
@@ -156,15 +187,24 @@ Axis = Range | Values
 @public
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """The product of axes by the names of parameters; the last axis runs fastest. Raises :class:`DeclarationError` for none."""
+    """The product of axes by the names of parameters; the last axis runs fastest.
+
+    Raises :class:`DeclarationError` for none.
+    """
 
     axes: Mapping[str, Axis]
     source: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.axes, Mapping) or not self.axes:
-            raise DeclarationError(f"grid: expected at least one axis, as in l=0.1:0.2:11, got {shown(self.axes)}")
-        object.__setattr__(self, "axes", MappingProxyType({name: _axis(name, axis) for name, axis in self.axes.items()}))
+            raise DeclarationError(
+                f"grid: expected at least one axis, as in l=0.1:0.2:11, got {shown(self.axes)}"
+            )
+        object.__setattr__(
+            self,
+            "axes",
+            MappingProxyType({name: _axis(name, axis) for name, axis in self.axes.items()}),
+        )
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -211,11 +251,13 @@ class Grid:
 @public
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.
+    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood
+    in a file ``source``.
 
     ``units`` are those of parameters that have some values told in one, as 30 deg in rad.
 
-    Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
+    Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not
+    finite.
     """
 
     names: tuple[str, ...]
@@ -227,12 +269,19 @@ class Listed:
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
         if rows.ndim != 2 or rows.shape[1] != len(self.names) or not rows.size:
-            raise DeclarationError(f"designs: expected values of shape (designs, {len(self.names)}), got {rows.shape}")
+            raise DeclarationError(
+                f"designs: expected values of shape (designs, {len(self.names)}), got {rows.shape}"
+            )
         if len(set(self.names)) < len(self.names):
-            raise DeclarationError(f"designs: a parameter is named twice in {', '.join(self.names)}")
+            raise DeclarationError(
+                f"designs: a parameter is named twice in {', '.join(self.names)}"
+            )
         if not np.isfinite(rows).all():
             row, column = (int(i) for i in np.argwhere(~np.isfinite(rows))[0])
-            raise DeclarationError(f"designs: {self._where(row)}: {self.names[column]} must be finite, got {rows[row, column]}")
+            raise DeclarationError(
+                f"designs: {self._where(row)}: {self.names[column]} must be finite, got"
+                f" {rows[row, column]}"
+            )
         object.__setattr__(self, "rows", rows)
 
     @property
@@ -272,12 +321,18 @@ Designs = Grid | Listed
 
 
 def designs_of(given: Any) -> Designs:
-    """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as tuples, or values."""
+    """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as
+    tuples, or values.
+    """
     return given if isinstance(given, (Grid, Listed)) else Grid(given)
 
 
-def check_designs(designs: Designs, parameters: Mapping[str, Parameter], fixed: Mapping[str, float]) -> None:
-    """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
+def check_designs(
+    designs: Designs, parameters: Mapping[str, Parameter], fixed: Mapping[str, float]
+) -> None:
+    """Raise for parameters that are none or set twice, and for values out of their ranges, all of
+    them at once.
+    """
     check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
     if designs.source:
         check_known(designs.names, parameters, f"{designs.source}, head")
@@ -288,12 +343,17 @@ def check_designs(designs: Designs, parameters: Mapping[str, Parameter], fixed: 
     for name, told in designs.units.items():
         if (unit := parameters[name].unit) != told:
             where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
-            raise DeclarationError(f"{where}: expected numbers [{unit}], not {'angles' if told == 'rad' else f'numbers [{told}]'}")
+            raise DeclarationError(
+                f"{where}: expected numbers [{unit}], not"
+                f" {'angles' if told == 'rad' else f'numbers [{told}]'}"
+            )
     wrong = []
     for name in designs.names:
         parameter = parameters[name]
         if found := designs.outside(name, parameter.low, parameter.high):
-            wrong.append(f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]")
+            wrong.append(
+                f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]"
+            )
     if wrong and designs.source:
         wrong[0] = f"{designs.source}: {wrong[0]}"
     wrong += parameter_faults(parameters, fixed)
@@ -309,19 +369,27 @@ def check_known(names: Sequence[str], parameters: Collection[str], head_of: str 
     unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
 
     def place(columns: Collection[int]) -> str:
-        return f"{head_of}, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}" if head_of else ""
+        return (
+            f"{head_of}, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}"
+            if head_of
+            else ""
+        )
 
     for column, name in unknown.items():
         if _is_result(name):
             raise DeclarationError(": ".join(filter(None, (place([column]), not_parameter(name)))))
     if unknown:
-        raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place(unknown))
+        raise UnknownNameError(
+            "parameter", list(unknown.values()), parameters, place=place(unknown)
+        )
 
 
 def are_described(described: Mapping[str, str], values: Mapping[str, Array]) -> bool:
     """Whether values of parameters are those that ``describe`` told."""
     if list(described) != list(values):
-        return Listed(tuple(values), np.stack(list(values.values()), axis=1)).describe() == described
+        return (
+            Listed(tuple(values), np.stack(list(values.values()), axis=1)).describe() == described
+        )
     return all(_are_along(words, values[name]) for name, words in described.items())
 
 
@@ -335,7 +403,10 @@ def _are_along(words: str, values: Array) -> bool:
 
 
 def size_of(described: Mapping[str, str]) -> int:
-    """How many designs there are, from what ``describe`` said of them. Raises ``ValueError`` for other words."""
+    """How many designs there are, from what ``describe`` said of them.
+
+    Raises ``ValueError`` for other words.
+    """
     return math.prod(_length(words) for words in described.values())
 
 
@@ -351,7 +422,10 @@ def grouped(count: int) -> str:
 
 def not_parameter(name: str) -> str:
     """Say of a column's name that it is no parameter's."""
-    return f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi table` writes what it is told"
+    return (
+        f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi"
+        " table` writes what it is told"
+    )
 
 
 def _is_result(name: str) -> bool:
@@ -373,23 +447,35 @@ def _one_unit(*units: str) -> str:
     """The unit that texts tell. Raises :class:`DeclarationError` for several."""
     found = dict.fromkeys(unit for unit in units if unit)
     if len(found) > 1:
-        raise DeclarationError(f"expected values of one unit, got some in {' and some in '.join(found)}")
+        raise DeclarationError(
+            f"expected values of one unit, got some in {' and some in '.join(found)}"
+        )
     return next(iter(found), "")
 
 
 def _axis(name: str, given: Any) -> Axis:
-    """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values; errors name the parameter."""
+    """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values;
+    errors name the parameter.
+    """
     try:
         if isinstance(given, (Range, Values)):
             return given
         if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
             return Range(*given)
         if isinstance(given, (tuple, list)):
-            return Values(tuple(value if typed(value)[1] else number(value, finite=False) for value in given))
+            return Values(
+                tuple(value if typed(value)[1] else number(value, finite=False) for value in given)
+            )
         if isinstance(given, np.ndarray) and given.dtype.kind in "iuf":
             return Values(tuple(np.atleast_1d(given).astype(float).tolist()))
-        return Values((number(given),) if not isinstance(given, Iterable) or isinstance(given, str) else tuple(given))
+        return Values(
+            (number(given),)
+            if not isinstance(given, Iterable) or isinstance(given, str)
+            else tuple(given)
+        )
     except (TypeError, NumberError):
-        raise DeclarationError(f"grid of {name}: expected (start, stop, count) or numbers, got {shown(given)}") from None
+        raise DeclarationError(
+            f"grid of {name}: expected (start, stop, count) or numbers, got {shown(given)}"
+        ) from None
     except DeclarationError as error:
         raise DeclarationError(f"grid of {name}: {error}") from None

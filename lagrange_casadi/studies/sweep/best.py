@@ -1,4 +1,6 @@
-"""The best designs of a sweep: least or largest in one column, or the front of two, among those that meet conditions."""
+"""The best designs of a sweep: least or largest in one column, or the front of two, among those
+that meet conditions.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,8 @@ _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*"
 class Condition:
     """A parameter or a column against a number; peaks by their size, whatever their sign.
 
-    What differs from the number by a billionth of it is equal to it, for what is computed is rounded. ``unit`` is that of a text.
+    What differs from the number by a billionth of it is equal to it, for what is computed is
+    rounded. ``unit`` is that of a text.
     """
 
     name: str
@@ -48,7 +51,8 @@ class Condition:
 
     @classmethod
     def parse(cls, text: str) -> Condition:
-        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; a number may have a unit, as ``30deg``.
+        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; a number may have
+        a unit, as ``30deg``.
 
         Raises :class:`DeclarationError`.
         """
@@ -64,12 +68,16 @@ class Condition:
                 raise ValueError
             return cls(found[1], found[2], value, unit)
         except ValueError:
-            raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
+            raise DeclarationError(
+                f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'"
+            ) from None
 
     def holds(self, values: Array) -> npt.NDArray[np.bool_]:
         """Where it holds; nowhere where there is no number."""
         sized = size(self.name, values)
-        return np.asarray(_RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized))
+        return np.asarray(
+            _RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized)
+        )
 
 
 @dataclass(frozen=True)
@@ -95,28 +103,44 @@ def best(
     count: int | None = None,
     columns: str | Sequence[str] = (),
 ) -> list[Design]:
-    """The ``count`` best designs that have a result and meet all conditions, the best first; by default one.
+    """The ``count`` best designs that have a result and meet all conditions, the best first; by
+    default one.
 
-    With two objectives it is their front, in the order of the first one, by default all of it: a design is on the front where no
-    other is at least as good in both and better in one. Each :class:`Design` comes with its number, its parameters, the objectives
-    and ``columns``, in the columns' units. Peaks are compared by size. A single name or condition may stand without a list.
+    With two objectives it is their front, in the order of the first one, by default all of it: a
+    design is on the front where no other is at least as good in both and better in one. Each
+    :class:`Design` comes with its number, its parameters, the objectives and ``columns``, in the
+    columns' units. Peaks are compared by size. A single name or condition may stand without a list.
 
-    Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
+    Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for
+    no objective or more than two.
     """
-    objectives = [*((name, 1.0) for name in names_in(minimise)), *((name, -1.0) for name in names_in(maximise))]
+    objectives = [
+        *((name, 1.0) for name in names_in(minimise)),
+        *((name, -1.0) for name in names_in(maximise)),
+    ]
     if len(objectives) not in (1, 2):
-        raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
+        raise DeclarationError(
+            "expected one column to minimise or maximise, or two for their front, got"
+            f" {len(objectives)}"
+        )
     if count is not None and (not isinstance(count, int) or count < 1):
         raise DeclarationError(f"count: expected a whole number of at least 1, got {count!r}")
     names = tuple(dict.fromkeys(name for name, _ in objectives))
-    sweep.check_columns([*names, *names_in(columns), *(condition.name for condition in conditions_in(where))])
+    sweep.check_columns(
+        [*names, *names_in(columns), *(condition.name for condition in conditions_in(where))]
+    )
     kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
     costs = np.zeros((len(objectives), 0))
     for numbers, values in chosen(sweep, (*names, STATUS), where):
         cost = np.stack([sign * size(name, values[name]) for name, sign in objectives])
         there = ~np.isnan(cost).any(axis=0) & (values[STATUS] == 0)
-        kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
-        order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
+        kept, costs = (
+            np.concatenate([kept, numbers[there]]),
+            np.concatenate([costs, cost[:, there]], axis=1),
+        )
+        order = (
+            _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
+        )
         kept, costs = kept[order], costs[:, order]
     asked = tuple(dict.fromkeys([*sweep.parameters, *names, *names_in(columns)]))
     return [row(sweep, int(number), asked) for number in kept[:count]]
@@ -124,16 +148,23 @@ def best(
 
 @public
 def chosen(
-    sweep: Sweep, names: str | Sequence[str], where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
+    sweep: Sweep,
+    names: str | Sequence[str],
+    where: str | Condition | Sequence[str | Condition] = (),
+    along: Sequence[str] = (),
 ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:
-    """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
+    """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as
+    :meth:`.Sweep.blocks` gives them.
+    """
     names, conditions = names_in(names), conditions_in(where)
     asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
     for condition in conditions:
         if condition.unit and (unit := sweep.unit(condition.name)) != condition.unit:
             raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
 
-    def met(numbers: npt.NDArray[np.int64], values: dict[str, Any]) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
+    def met(
+        numbers: npt.NDArray[np.int64], values: dict[str, Any]
+    ) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
         there = np.ones(numbers.size, bool)
         for condition in conditions:
             there &= condition.holds(values[condition.name])
@@ -143,16 +174,25 @@ def chosen(
 
 
 def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:
-    """Conditions, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
-    check_kind("where", where, "a condition as 'l<0.3', or a list of them", str, Condition, list, tuple)
+    """Conditions, of which one may stand alone.
+
+    Raises :class:`DeclarationError` for what is none.
+    """
+    check_kind(
+        "where", where, "a condition as 'l<0.3', or a list of them", str, Condition, list, tuple
+    )
     given = [where] if isinstance(where, (str, Condition)) else where
     for one in given:
         check_kind("where", one, "a condition as 'l<0.3'", str, Condition)
     return [Condition.parse(text) if isinstance(text, str) else text for text in given]
 
 
-def tally(sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()) -> tuple[int, int]:
-    """How many designs, or rows ``along`` axes, meet all conditions, and how many of these have a result."""
+def tally(
+    sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
+) -> tuple[int, int]:
+    """How many designs, or rows ``along`` axes, meet all conditions, and how many of these have a
+    result.
+    """
     met = with_result = 0
     for numbers, values in chosen(sweep, [STATUS], where, along):
         met += numbers.size
@@ -160,17 +200,32 @@ def tally(sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (),
     return met, with_result
 
 
-def missed(sweep: Sweep, where: str | Condition | Sequence[str | Condition], along: Sequence[str] = ()) -> str:
-    """Of conditions that nothing meets, which ask a parameter or an axis for a value that it never has, with the nearest it has."""
-    asked = [c for c in conditions_in(where) if c.relation in ("==", "=") and c.name in (*sweep.parameters, *along)]
-    return "".join(f"; {absent(c.name, sweep[c.name], c.value)}" for c in asked if not near(sweep[c.name], c.value).any())
+def missed(
+    sweep: Sweep, where: str | Condition | Sequence[str | Condition], along: Sequence[str] = ()
+) -> str:
+    """Of conditions that nothing meets, which ask a parameter or an axis for a value that it never
+    has, with the nearest it has.
+    """
+    asked = [
+        c
+        for c in conditions_in(where)
+        if c.relation in ("==", "=") and c.name in (*sweep.parameters, *along)
+    ]
+    return "".join(
+        f"; {absent(c.name, sweep[c.name], c.value)}"
+        for c in asked
+        if not near(sweep[c.name], c.value).any()
+    )
 
 
 def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:
     """A design with values of parameters and columns."""
     values = sweep.design(number)
     columns = [name for name in names if name not in values]
-    return Design(number, {name: values[name] for name in names if name in values} | sweep.values(number, columns))
+    return Design(
+        number,
+        {name: values[name] for name in names if name in values} | sweep.values(number, columns),
+    )
 
 
 def _front(costs: Array) -> npt.NDArray[np.intp]:

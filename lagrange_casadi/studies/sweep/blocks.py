@@ -1,4 +1,6 @@
-"""Blocks: runs of design numbers that are evaluated, committed and kept in the file as one; the plan alone sets them."""
+"""Blocks: runs of design numbers that are evaluated, committed and kept in the file as one; the
+plan alone sets them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ Slab = tuple[int, int, tuple[Any, ...]]
 
 
 def chunk_of(dims: Sequence[int], target: int) -> tuple[int, ...]:
-    """The shape of chunks of about ``target`` designs that are runs of design numbers, each axis cut into equal lengths."""
+    """The shape of chunks of about ``target`` designs that are runs of design numbers, each axis
+    cut into equal lengths.
+    """
     chunk: list[int] = []
     room = max(target, 1)
     for length in reversed(dims):
@@ -32,7 +36,11 @@ def slabs(dims: Sequence[int], chunk: Sequence[int]) -> Iterator[Slab]:
         for start in range(0, dims[cut], chunk[cut]):
             stop = min(start + chunk[cut], dims[cut])
             before = count * dims[cut]
-            yield (before + start) * inner, (before + stop) * inner, (*outer, slice(start, stop), *whole)
+            yield (
+                (before + start) * inner,
+                (before + stop) * inner,
+                (*outer, slice(start, stop), *whole),
+            )
 
 
 class Queue:

@@ -1,4 +1,6 @@
-"""A plan carried out: begin or go on, commit what workers give, join, and leave nothing half-written whatever happens."""
+"""A plan carried out: begin or go on, commit what workers give, join, and leave nothing
+half-written whatever happens.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,15 @@ from pathlib import Path
 
 from ...base.publish import check_writable, telling, uninterrupted
 from ...base.seal import Seen, seal
-from ...errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError, warn
+from ...errors import (
+    ClusterError,
+    DeclarationError,
+    PathError,
+    SizeError,
+    StoppedError,
+    StoreError,
+    warn,
+)
 from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining
@@ -20,20 +30,28 @@ from .reading import identity_of
 from .workers import Workers
 
 Progress = Callable[[str, float, float], None]
-"""Hears what is being done (``designs``, ``stopping`` them, ``file``), how much of it is done, and of how much."""
+"""Hears what is being done (``designs``, ``stopping`` them, ``file``), how much of it is done, and
+of how much.
+"""
 
 _CATCHING_UP = 4
 """Parts joined for each that is committed, where there are more."""
 
 
-def carry_out(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> Seen | None:
-    """Carry out a plan into the file ``target``; what was seen of that, unless it was there already.
+def carry_out(
+    plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress
+) -> Seen | None:
+    """Carry out a plan into the file ``target``; what was seen of that, unless it was there
+    already.
 
-    ``resume`` goes on with what an earlier sweep left, ``force`` starts anew whatever is there. Raises :class:`BusyError`,
-    :class:`PathError` or :class:`StoreError` where the file is another sweep's, :class:`StoppedError` after an interrupt.
+    ``resume`` goes on with what an earlier sweep left, ``force`` starts anew whatever is there.
+    Raises :class:`BusyError`, :class:`PathError` or :class:`StoreError` where the file is another
+    sweep's, :class:`StoppedError` after an interrupt.
     """
     if resume and force:
-        raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
+        raise DeclarationError(
+            "resume and force exclude each other: go on with what is there, or start anew"
+        )
     check_names(plan.designs, plan.harvest.axis, plan.columns)
     check_writable(target, hdf5=True)
     folder = Folder.of(target)
@@ -52,7 +70,9 @@ def carry_out(plan: Plan, target: Path, workers: Workers, *, resume: bool, force
         except (StoreError, ClusterError, SizeError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
         except MemoryError as error:
-            raise SizeError(f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}") from None
+            raise SizeError(
+                f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}"
+            ) from None
         return seen
 
 
@@ -66,21 +86,35 @@ def _kept(folder: Folder, plan: Plan) -> str:
 
 
 def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
-    """Whether the file is there already; else the folder is ready to be filled, and what is another sweep's was refused."""
+    """Whether the file is there already; else the folder is ready to be filled, and what is another
+    sweep's was refused.
+    """
     there = folder.target.exists()
     if folder.begun and not (resume or force):
-        raise PathError(f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with force=True")
+        raise PathError(
+            f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with"
+            " force=True"
+        )
     if there and not (resume or force):
-        raise PathError(f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that was not finished")
+        raise PathError(
+            f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that"
+            " was not finished"
+        )
     if not (folder.begun or force) and folder.done():
-        raise PathError(f"{folder.path} holds parts, and no plan.json that tells what they are of: force=True starts anew")
+        raise PathError(
+            f"{folder.path} holds parts, and no plan.json that tells what they are of: force=True"
+            " starts anew"
+        )
     if force or not (folder.begun or there):
         folder.begin(plan.identity, forced=force)
         return False
     if folder.begun:
         _refuse_other(folder.path, difference(folder.identity, plan.identity))
         if there and not folder.forced and not _is_whole(folder.target, plan):
-            raise PathError(f"{folder.target} has appeared since the sweep began: move it, or force=True starts anew")
+            raise PathError(
+                f"{folder.target} has appeared since the sweep began: move it, or force=True starts"
+                " anew"
+            )
         return there and _is_whole(folder.target, plan)
     _refuse_other(folder.target, difference(identity_of(folder.target), plan.identity))
     return True
@@ -96,17 +130,29 @@ def _is_whole(target: Path, plan: Plan) -> bool:
 
 def _refuse_other(place: Path, found: str | None) -> None:
     if found:
-        raise StoreError(f"{place} is of another sweep: {found}; start anew with force=True, or write another file")
+        raise StoreError(
+            f"{place} is of another sweep: {found}; start anew with force=True, or write another"
+            " file"
+        )
 
 
-def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> Seen:
+def _fill(
+    folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress
+) -> Seen:
     """Commit what is missing, and meanwhile join what is there; then seal and publish it."""
     parts = {part.start: part for part in _fitting(folder, plan)}
-    done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
+    done, size = (
+        sum(part.stop - part.start for part in parts.values()),
+        sum(part.size for part in parts.values()),
+    )
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
     append: Callable[[Sequence[bytes]], None] | None = None
     joined = 0
-    with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
+    with (
+        telling(folder.target),
+        closing(workers.results(plan, queue)) as blocks,
+        ExitStack() as stack,
+    ):
         _require_room(folder, plan.axes_size)
         if words := plan.takes(done):
             warn(words)
@@ -141,7 +187,9 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
             breathe()
             progress("file", joined, plan.size)
         if joined != plan.size:
-            raise StoreError(f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}")
+            raise StoreError(
+                f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}"
+            )
     with telling(folder.target):
         seen = seal(folder.joined, SCHEMA)
     folder.publish()
@@ -168,10 +216,12 @@ def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:
 
 
 def _require_room(folder: Folder, size: float) -> None:
-    """Raise :class:`StoreError` where the disk has less room than is still to be written, as parts are so far."""
+    """Raise :class:`StoreError` where the disk has less room than is still to be written, as parts
+    are so far.
+    """
     free = shutil.disk_usage(folder.target.parent).free
     if size > free:
         raise StoreError(
-            f"cannot write {folder.target}: what is still to be written takes about {size / 1e9:.3g} GB, and the disk has "
-            f"{free / 1e9:.3g} GB left"
+            f"cannot write {folder.target}: what is still to be written takes about"
+            f" {size / 1e9:.3g} GB, and the disk has {free / 1e9:.3g} GB left"
         )

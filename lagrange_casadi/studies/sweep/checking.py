@@ -25,9 +25,10 @@ from .reading import Sweep
 def check_sweep(path: str | Path) -> list[str]:
     """What is wrong with a file, one line each; nothing where it is whole and consistent.
 
-    Every dataset is read, so every checksum is verified; every unit, sign and status must be the schema's, every axis have its
-    scale and the values that were asked for; where a design has a result, and only there, its columns must have numbers, but for
-    what equilibrium leaves open; and no design may fail its certificate.
+    Every dataset is read, so every checksum is verified; every unit, sign and status must be the
+    schema's, every axis have its scale and the values that were asked for; where a design has a
+    result, and only there, its columns must have numbers, but for what equilibrium leaves open; and
+    no design may fail its certificate.
 
     Raises :class:`StoreError` for what is not a whole file of a sweep, :class:`PathError` for none.
     """
@@ -46,19 +47,27 @@ def check_sweep(path: str | Path) -> list[str]:
 
 
 def unfinished(path: Path) -> Folder | None:
-    """The folder of an unfinished sweep, by its own path, or by that of the file that is not there yet; else None."""
+    """The folder of an unfinished sweep, by its own path, or by that of the file that is not there
+    yet; else None.
+    """
     folder = Folder.of(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
-    return folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
+    return (
+        folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
+    )
 
 
 def progress(folder: Folder) -> str:
-    """How far an unfinished sweep is, and how it goes on; it may be at work meanwhile, for nothing is touched.
+    """How far an unfinished sweep is, and how it goes on; it may be at work meanwhile, for nothing
+    is touched.
 
     Raises :class:`StoreError` where its plan cannot be read.
     """
     with told_as("damaged", folder.path):
         size = size_of(folder.identity["grid"])
-    return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
+    return (
+        f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when"
+        " it is resumed"
+    )
 
 
 def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
@@ -80,16 +89,25 @@ def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
 
 
 def _check_asked(file: h5py.File, sweep: Sweep) -> Iterator[str]:
-    """Compare what a file tells twice: the case and its parameters, and the axes with what was asked for."""
+    """Compare what a file tells twice: the case and its parameters, and the axes with what was
+    asked for.
+    """
     identity, description = sweep.identity, sweep.description
     told = values_of(description)
-    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told or sweep.case != description["name"]:
+    if (
+        parsed(file.attrs["parameters"], {str: float}, "parameters") != told
+        or sweep.case != description["name"]
+    ):
         yield "case or parameters: differ from those of the mechanism"
     values = {name: file["grid"][name][()] for name in sweep.parameters}
     if not are_described(identity["grid"], values):
         yield "grid: is not what was asked for"
     for axis in ("t", "xi"):
-        if axis in file and axis not in sweep.dimensions and not np.array_equal(file[axis][()], points(identity[axis])):
+        if (
+            axis in file
+            and axis not in sweep.dimensions
+            and not np.array_equal(file[axis][()], points(identity[axis]))
+        ):
             yield f"{axis}: is not what was asked for"
 
 
@@ -115,7 +133,10 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[s
     if unknown:
         yield f"{kept.name}: {unknown} of the designs have a status that is none"
     if wrong:
-        yield f"{counted(wrong)}, of those that were checked in full, without a certificate: others may be wrong as well"
+        yield (
+            f"{counted(wrong)}, of those that were checked in full, without a certificate: others"
+            " may be wrong as well"
+        )
     if missing and "missing" not in dataset.attrs:
         yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:

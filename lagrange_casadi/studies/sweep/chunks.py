@@ -1,7 +1,9 @@
-"""Chunks as HDF5 keeps them, made here: shuffled, deflated and summed by several threads, where the library has one.
+"""Chunks as HDF5 keeps them, made here: shuffled, deflated and summed by several threads, where the
+library has one.
 
-The low bytes of measured numbers are noise, on which a compressor spends its time in vain. So the bytes of a chunk, the lowest ones
-of all numbers first, are deflated where a sample shrinks, and stored as they are elsewhere; any zlib reads both.
+The low bytes of measured numbers are noise, on which a compressor spends its time in vain. So the
+bytes of a chunk, the lowest ones of all numbers first, are deflated where a sample shrinks, and
+stored as they are elsewhere; any zlib reads both.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ _HEAD, _LAST = b"\x78\x01", b"\x03\x00"
 
 
 def encoded(values: Any) -> bytes:
-    """A chunk's numbers shuffled, deflated, and with a Fletcher-32 after them, as :data:`FILTERS` say."""
+    """A chunk's numbers shuffled, deflated, and with a Fletcher-32 after them, as :data:`FILTERS`
+    say.
+    """
     content = deflated(np.ascontiguousarray(values.view(np.uint8).reshape(values.size, -1).T))
     return content + struct.pack("<I", fletcher32(content))
 
@@ -40,7 +44,8 @@ def deflated(planes: Any) -> bytes:
         first += count
         if shrinks:
             compressor = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
-            # It ends on a whole byte; what follows is another compressor's, which looks back to nothing.
+            # It ends on a whole byte; what follows is another compressor's, which looks back to
+            # nothing.
             pieces += [compressor.compress(content), compressor.flush(zlib.Z_SYNC_FLUSH)]
         else:
             pieces += _stored(content)
@@ -48,7 +53,8 @@ def deflated(planes: Any) -> bytes:
 
 
 def fletcher32(content: bytes) -> int:
-    """HDF5's checksum: over 16-bit words, most significant byte first, their sum and the sum of their running sums, modulo 65535.
+    """HDF5's checksum: over 16-bit words, most significant byte first, their sum and the sum of
+    their running sums, modulo 65535.
 
     A sum that is not zero is one of 1 to 65535, as repeated folding leaves it.
     """
@@ -58,7 +64,9 @@ def fletcher32(content: bytes) -> int:
         some = words[first : first + _ROWS]
         rows, places = (some.sum(axis=axis, dtype=np.uint32).astype(np.int64) for axis in (1, 0))
         total += int(rows.sum())
-        before += _ROW * int(np.arange(first, first + rows.size) @ rows) + int(np.arange(_ROW) @ places)
+        before += _ROW * int(np.arange(first, first + rows.size) @ rows) + int(
+            np.arange(_ROW) @ places
+        )
     running = -(-len(content) // 2) * total - before
     # Modulo 65535 the bytes of a word change places when it is multiplied by 256.
     return _folded(256 * running) << 16 | _folded(256 * total)
@@ -69,13 +77,21 @@ def _folded(total: int) -> int:
 
 
 def _shrink(planes: Any) -> list[bool]:
-    """In which rows neighbours repeat, or some bytes come much more often than others; to ask zlib takes as long as to deflate."""
+    """In which rows neighbours repeat, or some bytes come much more often than others; to ask zlib
+    takes as long as to deflate.
+    """
     some = planes[:, :_NEIGHBOURS]
     repeats = np.count_nonzero(some[:, 1:] == some[:, :-1], axis=1)
     some = planes[:, :: max(1, planes.shape[1] // _SAMPLE)]
     count, size = some.shape
-    often = np.bincount((some + (np.arange(count) << 8)[:, None]).ravel(), minlength=count << 8).reshape(count, -1).max(axis=1)
-    worth: list[bool] = ((repeats > _REPEATS * _NEIGHBOURS) | (often > _OFTEN * (1.0 + size / 256))).tolist()
+    often = (
+        np.bincount((some + (np.arange(count) << 8)[:, None]).ravel(), minlength=count << 8)
+        .reshape(count, -1)
+        .max(axis=1)
+    )
+    worth: list[bool] = (
+        (repeats > _REPEATS * _NEIGHBOURS) | (often > _OFTEN * (1.0 + size / 256))
+    ).tolist()
     return worth
 
 

@@ -8,13 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MISSING = "NaN for designs of which it is open: equilibrium does not determine it, or friction at rest does not"
+MISSING = (
+    "NaN for designs of which it is open: equilibrium does not determine it, or friction at rest"
+    " does not"
+)
 """What a file says, as ``missing``, of a column that may lack a number where there is a result."""
 
 
 @dataclass(frozen=True)
 class Column:
-    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type, and what a file says of it."""
+    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type,
+    and what a file says of it.
+    """
 
     name: str
     unit: str

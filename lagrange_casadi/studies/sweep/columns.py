@@ -1,7 +1,8 @@
-"""What a sweep keeps of each design: columns, their names, units and axes, and how they are taken from an engine's outcome.
+"""What a sweep keeps of each design: columns, their names, units and axes, and how they are taken
+from an engine's outcome.
 
-A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``, ``rms:effort:O``), the quantity named
-as everywhere; the same with slashes is its place in the file.
+A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``,
+``rms:effort:O``), the quantity named as everywhere; the same with slashes is its place in the file.
 """
 
 from __future__ import annotations
@@ -32,7 +33,21 @@ from .matter import Matter
 from .meanings import LEAST, LIFE, MASS, STATUS, TIMES, Meanings
 from .strength import Kept
 
-KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSITIVITY, "peak_at", "history", LEAST, LIFE, MASS)
+KINDS = (
+    STATUS,
+    "peak",
+    "peak_t",
+    "peak_over",
+    "peak_xi",
+    "mean",
+    "rms",
+    SENSITIVITY,
+    "peak_at",
+    "history",
+    LEAST,
+    LIFE,
+    MASS,
+)
 """What columns are of, in the order in which they are listed."""
 
 _MEANS = ("mean", "rms")
@@ -54,11 +69,13 @@ def check_keep(keep: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Harvest:
-    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty.
+    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the
+    ratios kept, none where empty.
 
     ``data`` are those of the mechanism; by the ``whole`` graph designs are looked at closely.
 
-    ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the derivatives of peaks are kept too.
+    ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the
+    derivatives of peaks are kept too.
     """
 
     engine: Engine
@@ -76,19 +93,34 @@ class Harvest:
         if self.xi.size and not self._links:
             raise DeclarationError("xi: ratios are kept of section forces, and none is wanted")
         if self.keep == "laws" and not self._links:
-            raise DeclarationError("keep laws: the laws are those of section forces, and none is wanted")
+            raise DeclarationError(
+                "keep laws: the laws are those of section forces, and none is wanted"
+            )
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All columns, in the order of :meth:`evaluate`."""
         engine, over = self.engine, self.axis.name
         names = {STATUS: tuple[str, ...]()}
-        names |= {f"{kind}:{quantity}": () for quantity in self._quantities for kind in self._of_peaks(quantity)}
+        names |= {
+            f"{kind}:{quantity}": ()
+            for quantity in self._quantities
+            for kind in self._of_peaks(quantity)
+        }
         names |= {f"{kind}:{name}": () for name in engine.efforts for kind in _MEANS}
         for parameter in self.by:
             names |= {f"{SENSITIVITY}:{parameter}:peak:{name}": () for name in engine.quantities}
-            names |= {f"{SENSITIVITY}:{parameter}:{kind}:{name}": () for kind in _MEANS for name in engine.efforts}
-        sections = [f"section:{link}:{force}" for link in self._links for force in self._table.forces if self.xi.size]
+            names |= {
+                f"{SENSITIVITY}:{parameter}:{kind}:{name}": ()
+                for kind in _MEANS
+                for name in engine.efforts
+            }
+        sections = [
+            f"section:{link}:{force}"
+            for link in self._links
+            for force in self._table.forces
+            if self.xi.size
+        ]
         names |= {f"peak_at:{name}": ("xi",) for name in sections}
         names |= {f"history:{name}": (over,) for name in self._series}
         if self._own_times:
@@ -102,24 +134,51 @@ class Harvest:
             unit, words = meanings.of_column(name, names)
             open_ = self.strength.columns.get(name, name.partition(":")[2] in engine.doubtful)
             words |= {"missing": MISSING} if open_ else {}
-            found.append(Column(name, unit, words, axes, tuple(lengths[axis] for axis in axes), "|i1" if name == STATUS else "<f8"))
+            found.append(
+                Column(
+                    name,
+                    unit,
+                    words,
+                    axes,
+                    tuple(lengths[axis] for axis in axes),
+                    "|i1" if name == STATUS else "<f8",
+                )
+            )
         return tuple(found)
 
     @property
     def meanings(self) -> Meanings:
         """What columns and axes mean."""
         units = {name: parameter.unit for name, parameter in self.data.parameters.items()}
-        return Meanings(self._table, self.data.kinds, units, self.axis.name, self.axis.joint, self.axis.drive_unit)
+        return Meanings(
+            self._table,
+            self.data.kinds,
+            units,
+            self.axis.name,
+            self.axis.joint,
+            self.axis.drive_unit,
+        )
 
     @property
     def block(self) -> int:
-        """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
+        """How many designs make a block: what a core does in about a second, no more than memory
+        and a reader's chunk allow.
+        """
         grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
-        return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
+        return max(
+            1,
+            min(
+                _MOST,
+                int(_SECONDS / seconds),
+                _BYTES // sum(column.width for column in self.columns),
+            ),
+        )
 
     def chunks(self, p: Array, room: int) -> list[bytes]:
-        """The columns of designs ``p`` (designs, parameters) as chunks of the file that have room for so many."""
+        """The columns of designs ``p`` (designs, parameters) as chunks of the file that have room
+        for so many.
+        """
         whole = [np.zeros((room, *column.lengths), column.dtype) for column in self.columns]
         for start in range(0, len(p), self._piece):
             some = slice(start, min(start + self._piece, len(p)))
@@ -129,7 +188,9 @@ class Harvest:
         return [encoded(values) for values in whole]
 
     def _look_closely(self, p: Array, whole: Sequence[Any]) -> None:
-        """Take one of the designs that have a result, and mark it where it fails its certificate."""
+        """Take one of the designs that have a result, and mark it
+        where it fails its certificate.
+        """
         there = np.flatnonzero(whole[0][: len(p)] == Status.OK)
         if not there.size:
             return
@@ -140,7 +201,9 @@ class Harvest:
                 column[chosen] = np.nan
 
     def evaluate(self, p: Array) -> list[Any]:
-        """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
+        """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own
+        axes).
+        """
         outcome = self.engine.evaluate(p, threads=1, histories=self._histories)
         found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
         for k, output in enumerate(self._quantities):
@@ -156,7 +219,11 @@ class Harvest:
             peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
             for number in map(list(self.data.parameters).index, self.by):
                 found += [*np.moveaxis(peaks[:, :, number], 1, 0)]
-                found += [means[:, k, e, number] for k in range(len(_MEANS)) for e in range(len(self.engine.efforts))]
+                found += [
+                    means[:, k, e, number]
+                    for k in range(len(_MEANS))
+                    for e in range(len(self.engine.efforts))
+                ]
         largest, whole = self._along_links(outcome, p)
         found += largest
         if self._series:
@@ -181,7 +248,9 @@ class Harvest:
     def strength(self) -> Kept:
         """What is kept of the strength of links."""
         engine = self.engine
-        doubtful = {output.part for output in map(Output.of, engine.doubtful) if output.group == "section"}
+        doubtful = {
+            output.part for output in map(Output.of, engine.doubtful) if output.group == "section"
+        }
         made = (engine.quantities, engine.columns, engine.provenance.precision)
         return Kept(self.data, self.safety, self.life, *made, doubtful)
 
@@ -192,7 +261,9 @@ class Harvest:
 
     @property
     def _piece(self) -> int:
-        """How many designs are evaluated at once: so few that their outcome is still at hand when it is taken apart."""
+        """How many designs are evaluated at once: so few that their outcome is still at hand when
+        it is taken apart.
+        """
         series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
         room = _BYTES if self._histories else _AT_HAND
         return max(1, room // (series + sum(column.width for column in self.columns)))
@@ -208,14 +279,20 @@ class Harvest:
 
     @cached_property
     def _links(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(output.part for output in self._quantities if output.group == "section"))
+        return tuple(
+            dict.fromkeys(output.part for output in self._quantities if output.group == "section")
+        )
 
     @cached_property
     def _series(self) -> tuple[str, ...]:
         """The engine's columns that are kept whole."""
         if self.keep == "peaks":
             return ()
-        return tuple(name for name in self.engine.columns if self.keep == "histories" or Output.of(name).along)
+        return tuple(
+            name
+            for name in self.engine.columns
+            if self.keep == "histories" or Output.of(name).along
+        )
 
     def _of_peaks(self, quantity: Output) -> list[str]:
         """The kinds of columns of the peak of a quantity."""
@@ -223,7 +300,9 @@ class Harvest:
         return ["peak", "peak_t", *over, *(["peak_xi"] if quantity.group == "section" else [])]
 
     def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
-        """Of each link and force what is largest over the instants, (designs, xi), and, where it is kept, all, (designs, t, xi)."""
+        """Of each link and force what is largest over the instants, (designs, xi), and, where it is
+        kept, all, (designs, t, xi).
+        """
         if not self.xi.size:
             return [], []
         series = outcome.series
@@ -238,9 +317,13 @@ class Harvest:
                 laws = matter.law({output: moving[:, k] for k, output in enumerate(rows)}, p)
                 basis = laws.basis(self.xi)
                 found = (laws.largest(force, basis) for force in self._table.forces)
-                largest += [np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found]
+                largest += [
+                    np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found
+                ]
             if self.keep == "histories":
-                grids = np.full((len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan)
+                grids = np.full(
+                    (len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan
+                )
                 for i in np.flatnonzero(outcome.status == Status.OK):
                     law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)

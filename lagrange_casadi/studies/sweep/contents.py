@@ -1,4 +1,6 @@
-"""What a sweep's file says of itself, looked at before it is believed: what it is of, its axes, its columns, its statuses."""
+"""What a sweep's file says of itself, looked at before it is believed: what it is of, its axes, its
+columns, its statuses.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,18 @@ from .file import WORDS
 from .meanings import STATUS
 from .plan import IDENTITY
 
-_NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
+_NAMED = (
+    "backend",
+    "precision",
+    "compiler",
+    "flags",
+    "rung",
+    "sources",
+    "keep",
+    "scene",
+    "case",
+    "schema_version",
+)
 
 
 @dataclass(frozen=True)
@@ -36,7 +49,9 @@ def contents(file: h5py.File) -> dict[str, Any]:
     """
     check_links(file)
     attributes = file.attrs
-    identity = {key: json.loads(attributes[key]) for key in WORDS} | {key: _plain(attributes[key]) for key in _NAMED}
+    identity = {key: json.loads(attributes[key]) for key in WORDS} | {
+        key: _plain(attributes[key]) for key in _NAMED
+    }
     check_shape(identity, IDENTITY, "attributes")
     columns: dict[str, KeptColumn] = {}
     status = file[STATUS]
@@ -52,14 +67,21 @@ def contents(file: h5py.File) -> dict[str, Any]:
             if item.is_scale or folder == "grid":
                 check_dataset(item, [length(own if item.is_scale else DESIGN)])
             else:
-                axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
+                axes = tuple(
+                    item.dims[axis][0].name.rpartition("/")[2]
+                    for axis in range(len(names), item.ndim)
+                )
                 check_dataset(item, [*status.shape, *map(length, axes)])
                 name = place.replace("/", ":")
-                columns[name] = KeptColumn(name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes)
+                columns[name] = KeptColumn(
+                    name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes
+                )
 
     file.visititems(visit)
     if list(dimensions) not in ([DESIGN], list(file["grid"])):
-        raise ValueError(f"it is over {', '.join(dimensions)}, and has values of {', '.join(file['grid'])}")
+        raise ValueError(
+            f"it is over {', '.join(dimensions)}, and has values of {', '.join(file['grid'])}"
+        )
     if len(columns) != attributes["columns"]:
         raise ValueError(f"it has {len(columns)} columns of {attributes['columns']}")
     sentences = parsed(status.attrs["sentences"], {str: str}, "sentences")
@@ -68,7 +90,12 @@ def contents(file: h5py.File) -> dict[str, Any]:
         "identity": identity,
         "dimensions": dimensions,
         "parameters": {name: shown(file["grid"][name].attrs["units"]) for name in file["grid"]},
-        "columns": {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
+        "columns": {
+            name: columns[name]
+            for name in sorted(
+                columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name)
+            )
+        },
         "statuses": {int(number): (word, sentence) for (number, sentence), word in words},
     }
 

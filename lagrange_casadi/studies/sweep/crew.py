@@ -1,4 +1,6 @@
-"""Threads that nobody has to wait for: not who is interrupted, nor a program that ends while they are still at it."""
+"""Threads that nobody has to wait for: not who is interrupted, nor a program that ends while they
+are still at it.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,15 @@ from typing import Any
 
 
 class Crew:
-    """So many threads that do what they are given, in its order. Once dismissed they begin nothing more."""
+    """So many threads that do what they are given, in its order.
+
+    Once dismissed they begin nothing more.
+    """
 
     def __init__(self, count: int) -> None:
-        self._given: SimpleQueue[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]] | None] = SimpleQueue()
+        self._given: SimpleQueue[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]] | None] = (
+            SimpleQueue()
+        )
         self._count = count
         for _ in range(count):
             threading.Thread(target=self._work, daemon=True).start()

@@ -1,4 +1,6 @@
-"""The designs that a figure of a sweep shows: over the axes that it draws, no finer than the picture, the others fixed."""
+"""The designs that a figure of a sweep shows: over the axes that it draws, no finer than the
+picture, the others fixed.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ PIXELS, DOTS, LINES = 800, 20_000, 6
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """The designs that are drawn: of a grid over axes ``names``, each ascending and no finer than the picture, or of a list."""
+    """The designs that are drawn: of a grid over axes ``names``, each ascending and no finer than
+    the picture, or of a list.
+    """
 
     sweep: Sweep
     names: tuple[str, ...]
@@ -28,8 +32,12 @@ class Cut:
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, sweep: Sweep, over: Sequence[str], at: Mapping[str, float], family: str = "") -> Cut:
-        """Of a grid, where parameters that are neither ``over`` nor the ``family`` stay ``at`` values, or in the middle."""
+    def of(
+        cls, sweep: Sweep, over: Sequence[str], at: Mapping[str, float], family: str = ""
+    ) -> Cut:
+        """Of a grid, where parameters that are neither ``over`` nor the ``family`` stay ``at``
+        values, or in the middle.
+        """
         names = (*over, family) if family else tuple(over)
         sweep = sweep.select(**at)
         fixed: dict[str, float] = {}
@@ -44,7 +52,9 @@ class Cut:
                 fixed[name] = float(sweep[name][0])
         orders = [np.argsort(sweep[name], kind="stable") for name in names]
         if family:
-            orders[-1] = orders[-1][np.linspace(0, orders[-1].size - 1, min(LINES, orders[-1].size)).round().astype(int)]
+            orders[-1] = orders[-1][
+                np.linspace(0, orders[-1].size - 1, min(LINES, orders[-1].size)).round().astype(int)
+            ]
         return cls(sweep, names, tuple(orders), (*stays(sweep, fixed), *thinned))
 
     @classmethod
@@ -58,7 +68,9 @@ class Cut:
     @property
     def axes(self) -> tuple[Array, ...]:
         """The values along each axis that is drawn."""
-        return tuple(self.sweep[name][order] for name, order in zip(self.names, self.orders, strict=True))
+        return tuple(
+            self.sweep[name][order] for name, order in zip(self.names, self.orders, strict=True)
+        )
 
     @property
     def numbers(self) -> npt.NDArray[np.int64]:
@@ -69,9 +81,13 @@ class Cut:
         """A column over the axes that are drawn, in their order, and its own."""
         values, dimensions = self.sweep[column], list(self.sweep.dimensions)
         if self.names:
-            values = np.squeeze(values, tuple(k for k, name in enumerate(dimensions) if name not in self.names))
+            values = np.squeeze(
+                values, tuple(k for k, name in enumerate(dimensions) if name not in self.names)
+            )
             kept = [name for name in dimensions if name in self.names]
-            values = np.moveaxis(values, [kept.index(name) for name in self.names], range(len(kept)))
+            values = np.moveaxis(
+                values, [kept.index(name) for name in self.names], range(len(kept))
+            )
             for axis, order in enumerate(self.orders):
                 values = np.take(values, order, axis=axis)
         return values
@@ -79,4 +95,6 @@ class Cut:
 
 def stays(sweep: Sweep, at: Mapping[str, float]) -> tuple[str, ...]:
     """Where parameters stay, in words."""
-    return (f"at {', '.join(value(sweep, name, there) for name, there in at.items())}",) if at else ()
+    return (
+        (f"at {', '.join(value(sweep, name, there) for name, there in at.items())}",) if at else ()
+    )

@@ -24,7 +24,9 @@ class Engine(Protocol):
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """Full names of quantities, and of what histories hold, that equilibrium may leave open for some designs: NaN there."""
+        """Full names of quantities, and of what histories hold, that equilibrium may leave open for
+        some designs: NaN there.
+        """
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -32,7 +34,9 @@ class Engine(Protocol):
 
     @property
     def cost(self) -> float:
-        """Seconds that a core takes for a design, about: counted, not measured, so that it is the same everywhere."""
+        """Seconds that a core takes for a design, about: counted, not measured, so that it is the
+        same everywhere.
+        """
 
     @property
     def room(self) -> int:
@@ -43,13 +47,21 @@ class Engine(Protocol):
         """How the numbers are made."""
 
     def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
-        """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""
+        """Evaluate designs ``p`` (designs, parameters), every parameter in the order of
+        declaration; default: a thread a core.
+        """
 
     def slopes_at(self, p: Array, outcome: Outcome) -> Array:
-        """The derivatives of the peaks of the outcome of designs ``p`` by all parameters, (designs, quantities, parameters)."""
+        """The derivatives of the peaks of the outcome of designs ``p`` by all parameters, (designs,
+        quantities, parameters).
+        """
 
     def mean_slopes_at(self, p: Array, outcome: Outcome) -> Array:
-        """Those of means over time, and of roots of mean squares, (designs, 2, efforts, parameters)."""
+        """Those of means over time, and of roots of mean squares, (designs, 2, efforts,
+        parameters).
+        """
 
     def failures(self, p: Array, whole: Program) -> Mapping[str, float]:
-        """What fails of one design that has a result, (parameters,), by a graph of all outputs; nothing where all is well."""
+        """What fails of one design that has a result, (parameters,), by a graph of all outputs;
+        nothing where all is well.
+        """

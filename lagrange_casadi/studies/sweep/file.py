@@ -1,6 +1,8 @@
-"""The file of a sweep: parts joined, in chunks that the plan alone sets; ``docs/sweeps.md`` is its schema.
+"""The file of a sweep: parts joined, in chunks that the plan alone sets; ``docs/sweeps.md`` is its
+schema.
 
-Every dimension's scale is in the root, where netCDF looks for it, and those of parameters are under ``grid`` as well.
+Every dimension's scale is in the root, where netCDF looks for it, and those of parameters are under
+``grid`` as well.
 """
 
 from __future__ import annotations
@@ -40,24 +42,35 @@ _TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "
 
 
 def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] = ()) -> None:
-    """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own.
+    """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the
+    file keeps for its own.
 
     ``axis`` is that of the instants, ``columns`` are what is kept.
     """
     kinds = {column.name.partition(":")[0] for column in columns}
-    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()), *(kind for kind in _SOME if kind in kinds))
+    taken = (
+        *_TAKEN,
+        axis.name,
+        *(("peak_over",) if axis.joint else ()),
+        *(kind for kind in _SOME if kind in kinds),
+    )
     for name in designs.dimensions:
         if name in taken and isinstance(designs, Grid):
             raise DeclarationError(
-                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep a list of designs instead"
+                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep"
+                " a list of designs instead"
             )
 
 
 @contextmanager
-def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Callable[[Sequence[bytes]], None]]:
-    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order; removed on any failure.
+def joining(
+    plan: Plan, path: Path, breathe: Callable[[], None]
+) -> Iterator[Callable[[Sequence[bytes]], None]]:
+    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order;
+    removed on any failure.
 
-    ``breathe`` lets an interrupt through, while long axes are written. Raises ``OSError`` where the file cannot be written.
+    ``breathe`` lets an interrupt through, while long axes are written. Raises ``OSError`` where the
+    file cannot be written.
     """
     try:
         with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
@@ -65,13 +78,18 @@ def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Cal
             _begin(file, plan, scales, breathe)
             if bytes_.failure:
                 raise bytes_.failure
-            datasets = [(_created(file, plan, column, scales), (0,) * len(column.axes)) for column in plan.columns]
+            datasets = [
+                (_created(file, plan, column, scales), (0,) * len(column.axes))
+                for column in plan.columns
+            ]
             scales.finish()
             slabs = plan.slabs()
 
             def append(contents: Sequence[bytes]) -> None:
                 _, _, where = next(slabs)
-                corner = tuple(place.start or 0 if isinstance(place, slice) else place for place in where)
+                corner = tuple(
+                    place.start or 0 if isinstance(place, slice) else place for place in where
+                )
                 for (dataset, rest), content in zip(datasets, contents, strict=True):
                     dataset.id.write_direct_chunk((*corner, *rest), content)
                 if bytes_.failure:
@@ -91,12 +109,26 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     grid = file.create_group("grid", track_order=True)
     designs, meanings = plan.designs, plan.harvest.meanings
     if not isinstance(designs, Grid):
-        scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64, breathe)
+        scale = _stream(
+            file,
+            DESIGN,
+            (designs.size,),
+            lambda start, stop: np.arange(start, stop),
+            np.int64,
+            breathe,
+        )
         scale.make_scale(DESIGN)
         say(scale, *meanings.of_axis(DESIGN))
     for name in designs.names:
         length = designs.dimensions.get(name, designs.size)
-        scale = _stream(grid, name, (length,), lambda start, stop, name=name: designs.scale(name, start, stop), np.float64, breathe)
+        scale = _stream(
+            grid,
+            name,
+            (length,),
+            lambda start, stop, name=name: designs.scale(name, start, stop),
+            np.float64,
+            breathe,
+        )
         say(scale, *meanings.of_axis(name))
         if isinstance(designs, Grid):
             file[name] = scale
@@ -106,7 +138,9 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     instants = plan.harvest.axis
     for axis, values in ((instants.name, instants.values), ("xi", plan.harvest.xi)):
         if any(axis in column.axes for column in plan.columns):
-            scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
+            scale = file.create_dataset(
+                axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE
+            )
             say(scale, *meanings.of_axis(axis))
             scale.make_scale(axis)
     file.attrs["schema"] = SCHEMA
@@ -118,11 +152,18 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
 
 
 def _stream(
-    group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any, breathe: Callable[[], None]
+    group: Any,
+    name: str,
+    shape: tuple[int, ...],
+    values: Callable[..., Any],
+    dtype: Any,
+    breathe: Callable[[], None],
 ) -> Any:
     """A dataset over one axis, filled in pieces."""
     chunk = chunk_of(shape, _CHUNK)
-    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, fillvalue=_nothing(dtype), **FILTERS, **LARGE)
+    dataset = group.create_dataset(
+        name, shape, dtype, chunks=chunk, fillvalue=_nothing(dtype), **FILTERS, **LARGE
+    )
     for start, stop, where in slabs(shape, chunk):
         dataset[where] = values(start, stop)
         breathe()
@@ -137,7 +178,9 @@ def _nothing(dtype: Any) -> Any:
 def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> Any:
     """The dataset of a column, empty."""
     shape, chunk = (*plan.dims, *column.lengths), (*plan.chunk, *column.lengths)
-    dataset = file.create_dataset(column.place, shape, column.dtype, chunks=chunk, fillvalue=_nothing(column.dtype), **FILTERS)
+    dataset = file.create_dataset(
+        column.place, shape, column.dtype, chunks=chunk, fillvalue=_nothing(column.dtype), **FILTERS
+    )
     say(dataset, column.unit, column.attributes)
     scales.attach(dataset, (*plan.designs.dimensions, *column.axes))
     return dataset

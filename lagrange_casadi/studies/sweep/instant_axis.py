@@ -1,4 +1,6 @@
-"""What a sweep's histories are over: time, a drive's coordinate, or the place in the cycle of each design."""
+"""What a sweep's histories are over: time, a drive's coordinate, or the place in the cycle of each
+design.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ def in_words(axes: Sequence[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class InstantAxis:
-    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are asked for."""
+    """An axis: its name in the file and values (t,); ``joint`` is the drive by which instants are
+    asked for.
+    """
 
     name: str
     values: Array

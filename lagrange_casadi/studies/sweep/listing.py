@@ -18,14 +18,17 @@ from .axes import Listed, check_known, not_parameter
 
 @public
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
-    """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of values for each design.
+    """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of
+    values for each design.
 
-    Cells are parted as :func:`.read_rows` says. Angles may have a unit, as ``30 deg``. Returns a :class:`.Listed`.
+    Cells are parted as :func:`.read_rows` says. Angles may have a unit, as ``30 deg``. Returns a
+    :class:`.Listed`.
 
-    With the names of ``parameters``, as of a mechanism, the head is checked against them before any number is read; without, a
-    sweep checks it.
+    With the names of ``parameters``, as of a mechanism, the head is checked against them before any
+    number is read; without, a sweep checks it.
 
-    Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is wrong, with its line and column.
+    Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is
+    wrong, with its line and column.
     """
     rows = read_rows(path, "a first line of parameters' names")
     head = next(rows)
@@ -38,11 +41,15 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
             value, unit = typed(row.pointed(cell))
             values.append(value if unit else _number(row, name, cell))
             if unit and units.setdefault(name, unit) != unit:
-                raise DeclarationError(f"{row.where}: {name}: expected a value in {units[name]}, got '{cell}'")
+                raise DeclarationError(
+                    f"{row.where}: {name}: expected a value in {units[name]}, got '{cell}'"
+                )
         lines.append(row.line)
     if not lines:
         raise DeclarationError(f"{path}: no designs below its head {', '.join(head.cells)}")
-    return Listed(head.cells, np.array(values).reshape(-1, len(head.cells)), np.array(lines), str(path), units)
+    return Listed(
+        head.cells, np.array(values).reshape(-1, len(head.cells)), np.array(lines), str(path), units
+    )
 
 
 def _check_head(head: Row) -> None:
@@ -51,15 +58,22 @@ def _check_head(head: Row) -> None:
         if not name:
             raise DeclarationError(f"{place}: expected a parameter's name, got an empty cell")
         if not math.isnan(head.number(name)):
-            raise DeclarationError(f"{place}: expected a parameter's name, got '{name}': put a line of names above the numbers")
+            raise DeclarationError(
+                f"{place}: expected a parameter's name, got '{name}': put a line of names above the"
+                " numbers"
+            )
         if ":" in name:
             raise DeclarationError(f"{place}: {not_parameter(name)}")
         if head.cells.index(name) != column - 1:
-            raise DeclarationError(f"{place}: '{name}' stands there already as column {head.cells.index(name) + 1}")
+            raise DeclarationError(
+                f"{place}: '{name}' stands there already as column {head.cells.index(name) + 1}"
+            )
 
 
 def _number(row: Row, name: str, cell: str) -> float:
     value = row.number(cell)
     if math.isnan(value):
-        raise DeclarationError(f"{row.where}, column '{name}': expected a finite number, got '{cell}'")
+        raise DeclarationError(
+            f"{row.where}, column '{name}': expected a finite number, got '{cell}'"
+        )
     return value

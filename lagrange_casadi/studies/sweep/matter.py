@@ -18,7 +18,8 @@ from ...instants.section_law import SectionLaw
 
 @dataclass(frozen=True, eq=False)
 class Matter:
-    """A link's length and density over the parameters, without deriving either anew for each design.
+    """A link's length and density over the parameters, without deriving either anew for each
+    design.
 
     Laws are made of what was evaluated in a ``precision``.
     """
@@ -33,7 +34,9 @@ class Matter:
         """That of a link."""
         length, density = data.matter(name, data.symbols)
         cells = [c for cell in density.cells for c in cell]
-        numbers = ca.Function("matter", [data.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), length, *cells))])
+        numbers = ca.Function(
+            "matter", [data.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), length, *cells))]
+        )
         return cls(name, density, numbers, precision)
 
     def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
@@ -41,7 +44,11 @@ class Matter:
 
         Or the laws of n designs: members are (n, t), length and density (n, 1).
         """
-        length, *cells = self.numbers(p.T).full()[..., None] if p.ndim > 1 else self.numbers(p).full().ravel().tolist()
+        length, *cells = (
+            self.numbers(p.T).full()[..., None]
+            if p.ndim > 1
+            else self.numbers(p).full().ravel().tolist()
+        )
         rest = iter(cells)
         density = self.density.at(lambda _: next(rest), length)
         return law_of(self.link, members, length, density, self.precision)

@@ -1,4 +1,6 @@
-"""The unit and the meaning of each column and axis of a sweep, by name: what its file says, and what ``check`` compares."""
+"""The unit and the meaning of each column and axis of a sweep, by name: what its file says, and
+what ``check`` compares.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,16 @@ from ...instants.ordering import table_of_described
 from .axes import DESIGN
 
 OVER, CYCLE = "over", "cycle"
-"""Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""
+"""Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1,
+where they have none.
+"""
 
 STATUS = "status"
 """The one column whose name stands alone: why a design has no result, 0 where it has one."""
 
-STATUSES: Mapping[int, tuple[str, str]] = {int(status): (status.name.lower(), status.meaning) for status in Status}
+STATUSES: Mapping[int, tuple[str, str]] = {
+    int(status): (status.name.lower(), status.meaning) for status in Status
+}
 """A word and a sentence for each status."""
 
 TIMES = "history:t"
@@ -63,8 +69,9 @@ Meaning = tuple[str, dict[str, str]]
 class Meanings:
     """What columns and axes mean in a mechanism.
 
-    Its outputs are those of a ``table``, in units by ``kinds``; ``parameters`` are the units of its parameters. Instants are along
-    an ``axis``, asked for by a ``joint``, whose coordinate has the unit ``drive_unit``, or by time.
+    Its outputs are those of a ``table``, in units by ``kinds``; ``parameters`` are the units of its
+    parameters. Instants are along an ``axis``, asked for by a ``joint``, whose coordinate has the
+    unit ``drive_unit``, or by time.
     """
 
     table: Table
@@ -77,12 +84,26 @@ class Meanings:
     @classmethod
     def of(cls, description: Description, axis: str, joint: str) -> Meanings:
         """Those of a described mechanism."""
-        units = {name: str(parameter["unit"]) for name, parameter in description["parameters"].items()}
-        drive_unit = "" if not joint else LENGTH if motions_of(description)[joint] == "slide" else ANGLE
-        return cls(table_of_described(description), kinds_of_described(description), units, axis, joint, drive_unit)
+        units = {
+            name: str(parameter["unit"]) for name, parameter in description["parameters"].items()
+        }
+        drive_unit = (
+            "" if not joint else LENGTH if motions_of(description)[joint] == "slide" else ANGLE
+        )
+        return cls(
+            table_of_described(description),
+            kinds_of_described(description),
+            units,
+            axis,
+            joint,
+            drive_unit,
+        )
 
     def of_column(self, name: str, among: Collection[str] = ()) -> Meaning:
-        """The meaning of a column by its full name, ``among`` the names of all. Raises ``KeyError`` for a name that is none."""
+        """The meaning of a column by its full name, ``among`` the names of all.
+
+        Raises ``KeyError`` for a name that is none.
+        """
         kind, _, rest = name.partition(":")
         if name == STATUS:
             return "1", self._of_status()
@@ -93,14 +114,24 @@ class Meanings:
         if kind == SENSITIVITY:
             parameter, of, quantity = rest.split(":", 2)
             output = Output.of(quantity)
-            what = f"derivative by {parameter} of the {SLOPES_OF[of]}: {output.meant(self.table).long_name}"
-            return quotient(output.unit(self.kinds), self.parameters[parameter]), {"long_name": what, "missing": NO_SLOPE}
+            what = (
+                f"derivative by {parameter} of the {SLOPES_OF[of]}:"
+                f" {output.meant(self.table).long_name}"
+            )
+            return quotient(output.unit(self.kinds), self.parameters[parameter]), {
+                "long_name": what,
+                "missing": NO_SLOPE,
+            }
         output = Output.of(rest)
         words = output.meant(self.table).attributes
         if kind in _OF_OUTPUTS:
-            return output.unit(self.kinds), words | {"long_name": _OF_OUTPUTS[kind] + words["long_name"]}
+            return output.unit(self.kinds), words | {
+                "long_name": _OF_OUTPUTS[kind] + words["long_name"]
+            }
         if kind == "peak_over":
-            return self.drive_unit, {"long_name": f"coordinate of joint '{self.joint}' at the peak: {words['long_name']}"}
+            return self.drive_unit, {
+                "long_name": f"coordinate of joint '{self.joint}' at the peak: {words['long_name']}"
+            }
         prefix, unit = _BESIDE[kind]
         return unit or output.unit(self.kinds), {"long_name": prefix + words["long_name"]}
 
@@ -116,7 +147,11 @@ class Meanings:
         return unit, {"long_name": long_name}
 
     def _of_status(self) -> dict[str, str]:
-        told = {number: words for number, words in STATUSES.items() if self.axis != "t" or number != Status.NO_INSTANTS}
+        told = {
+            number: words
+            for number, words in STATUSES.items()
+            if self.axis != "t" or number != Status.NO_INSTANTS
+        }
         return {
             "long_name": "whether a design has a result, or why it has none",
             "flag_meanings": " ".join(word for word, _ in told.values()),
@@ -127,7 +162,9 @@ class Meanings:
 def _of_strength(kind: str, rest: str, among: Collection[str]) -> Meaning:
     """The meaning of a column of the strength of a link."""
     if kind == MASS:
-        return "kg", {"long_name": "mass of all links and point masses" if rest == ALL else "mass of the link"}
+        return "kg", {
+            "long_name": "mass of all links and point masses" if rest == ALL else "mass of the link"
+        }
     if kind == LIFE:
         return "1", {"long_name": "life in cycles, each the whole span"}
     way, _, link = rest.partition(":")

@@ -1,4 +1,6 @@
-"""Notes on a sweep: joints that rub and rest in its designs, whole turns of drives in all of them, and fatigue that is left out."""
+"""Notes on a sweep: joints that rub and rest in its designs, whole turns of drives in all of them,
+and fatigue that is left out.
+"""
 
 from __future__ import annotations
 
@@ -33,8 +35,14 @@ _TURNS_OF = 1024
 def fatigue_notes(found: Sweep) -> Iterator[str]:
     """Say of each link with a factor of safety why none against fatigue is kept."""
     for name, body in found.description["bodies"].items():
-        if f"{LEAST}:safety:{name}" in found.columns and f"{LEAST}:fatigue:{name}" not in found.columns:
-            yield f"no factor against fatigue of '{name}' is kept: {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
+        if (
+            f"{LEAST}:safety:{name}" in found.columns
+            and f"{LEAST}:fatigue:{name}" not in found.columns
+        ):
+            yield (
+                f"no factor against fatigue of '{name}' is kept:"
+                f" {lacking(beam_of(body['beam']).material).partition(': ')[2]}"
+            )
 
 
 def resting_note(
@@ -46,28 +54,51 @@ def resting_note(
     over: Over | None = None,
     wanted: Sequence[str] | None = None,
 ) -> str:
-    """A line where a joint that rubs rests in some design that is looked at, of all those with a result; empty where none does."""
+    """A line where a joint that rubs rests in some design that is looked at, of all those with a
+    result; empty where none does.
+    """
     told = found.description
     if "losses" not in told and not any("friction" in load for load in told["loads"].values()):
         return ""
-    right = np.concatenate([numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])])
+    right = np.concatenate(
+        [numbers[values["status"] == Status.OK] for numbers, values in found.blocks(["status"])]
+    )
     some = right[np.unique(np.linspace(0, right.size - 1, min(right.size, _RESTS_OF)).astype(int))]
     lines = []
     for number in some.tolist():
         design = {**fixed, **found.design(number)}
         with suppress(LagrangeCasadiError):  # the sweep is written, and right by its own rules
-            solution = evaluate(scene, parameters=design, t=t, over=over, wanted=wanted, backend="vm", certificate=False)
+            solution = evaluate(
+                scene,
+                parameters=design,
+                t=t,
+                over=over,
+                wanted=wanted,
+                backend="vm",
+                certificate=False,
+            )
             if solution.resting.any():
-                lines.append(f"in design {number} {rest_note(solution.t, solution.outputs, solution.resting)}")
+                lines.append(
+                    f"in design {number}"
+                    f" {rest_note(solution.t, solution.outputs, solution.resting)}"
+                )
     if not lines:
         return ""
-    return f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were looked at" if some.size > 1 else lines[0]
+    return (
+        f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were looked at"
+        if some.size > 1
+        else lines[0]
+    )
 
 
 def turning_note(scene: Scene, timing: Timing, grid: Any, fixed: Mapping[str, float]) -> str:
-    """A line where the drive turns, and makes less than a turn, or not the same in every design of a ``grid``."""
+    """A line where the drive turns, and makes less than a turn, or not the same in every design of
+    a ``grid``.
+    """
     designs, values = designs_of(grid), scene.values(fixed)
-    numbers = np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TURNS_OF)).astype(np.int64))
+    numbers = np.unique(
+        np.linspace(0, designs.size - 1, min(designs.size, _TURNS_OF)).astype(np.int64)
+    )
     p = np.tile(np.array(list(values.values())), (numbers.size, 1))
     columns = [list(values).index(name) for name in designs.names]
     for row, number in zip(p, numbers.tolist(), strict=True):

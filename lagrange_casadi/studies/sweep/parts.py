@@ -1,7 +1,9 @@
-"""What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it that dies with its process.
+"""What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it
+that dies with its process.
 
-A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells what is in it, a line that
-is the SHA-256 of that line, and then the columns one after another, as chunks of the file, each with a CRC-32 of its own.
+A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells
+what is in it, a line that is the SHA-256 of that line, and then the columns one after another, as
+chunks of the file, each with a CRC-32 of its own.
 """
 
 from __future__ import annotations
@@ -29,7 +31,14 @@ except ImportError:  # where there is none, nothing keeps two sweeps apart
     fcntl = None  # type: ignore[assignment]
 
 _HEAD = {"start": int, "stop": int, "columns": {str: [int, int]}}
-_PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = "plan.json", "lock", "forced", "joined.h5", ".draft", ".part"
+_PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = (
+    "plan.json",
+    "lock",
+    "forced",
+    "joined.h5",
+    ".draft",
+    ".part",
+)
 
 
 @dataclass(frozen=True)
@@ -43,7 +52,10 @@ class Part:
     columns: tuple[str, ...] = ()
 
     def read(self) -> list[bytes]:
-        """Its columns. Where one is not what was committed the part is deleted: raises :class:`StoreError`."""
+        """Its columns.
+
+        Where one is not what was committed the part is deleted: raises :class:`StoreError`.
+        """
         try:
             contents, flaw = self._read()
         except OSError as error:
@@ -66,7 +78,12 @@ class Part:
             contents = [file.read(length) for length, _ in columns.values()]
         sums = zip(columns.items(), contents, strict=True)
         return contents, next(
-            (f"column {name}" for (name, (_, checksum)), content in sums if zlib.crc32(content) != checksum), None
+            (
+                f"column {name}"
+                for (name, (_, checksum)), content in sums
+                if zlib.crc32(content) != checksum
+            ),
+            None,
         )
 
 
@@ -103,7 +120,8 @@ class Folder:
         try:
             yield
         finally:
-            # After the folder was removed, another sweep may have made it anew: then its lock is not this one.
+            # After the folder was removed, another sweep may have made it anew: then its lock is
+            # not this one.
             if self._is_held(number) and not list(self.path.glob(f"*{_PART}")):
                 self.remove()
             os.close(number)
@@ -113,7 +131,10 @@ class Folder:
         names = sorted(path.name for path in self.path.iterdir()) if self.path.is_dir() else []
         for name in names:
             if name not in (_PLAN, _LOCK, _FORCED, _JOINED) and not name.endswith((_PART, _DRAFT)):
-                raise PathError(f"{self.path} holds '{name}', which is no sweep's: move it, or write another file")
+                raise PathError(
+                    f"{self.path} holds '{name}', which is no sweep's: move it, or write another"
+                    " file"
+                )
 
     def _lock(self) -> int:
         while True:
@@ -130,7 +151,9 @@ class Folder:
                     return number
             except BlockingIOError:
                 os.close(number)
-                raise BusyError(f"another sweep is writing {self.target}: wait for it, or write another file") from None
+                raise BusyError(
+                    f"another sweep is writing {self.target}: wait for it, or write another file"
+                ) from None
             os.close(number)
 
     def _is_held(self, number: int) -> bool:
@@ -151,7 +174,9 @@ class Folder:
         try:
             return parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
         except (OSError, ValueError, RecursionError) as error:
-            raise StoreError(f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True") from None
+            raise StoreError(
+                f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True"
+            ) from None
 
     @property
     def forced(self) -> bool:
@@ -166,10 +191,18 @@ class Folder:
                 (self.path / _FORCED).touch()
             self._publish(_PLAN, [json.dumps(identity, indent=1).encode()])
 
-    def commit(self, start: int, stop: int, columns: Sequence[Column], contents: Sequence[bytes]) -> Part:
-        """Commit a block: on return it outlives a kill and a loss of power. Raises :class:`StoreError` where that fails."""
+    def commit(
+        self, start: int, stop: int, columns: Sequence[Column], contents: Sequence[bytes]
+    ) -> Part:
+        """Commit a block: on return it outlives a kill and a loss of power.
+
+        Raises :class:`StoreError` where that fails.
+        """
         name = _name(start, stop)
-        sums = {column.name: (len(content), zlib.crc32(content)) for column, content in zip(columns, contents, strict=True)}
+        sums = {
+            column.name: (len(content), zlib.crc32(content))
+            for column, content in zip(columns, contents, strict=True)
+        }
         head = json.dumps({"start": start, "stop": stop, "columns": sums}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
         with telling(self.target):
@@ -177,7 +210,10 @@ class Folder:
         return Part(self.path / name, start, stop, sum(map(len, contents)), tuple(sums))
 
     def parts(self) -> list[Part]:
-        """The parts that are whole, in order; what is not is removed. Their columns are checked where they are read."""
+        """The parts that are whole, in order; what is not is removed.
+
+        Their columns are checked where they are read.
+        """
         found: list[Part] = []
         for path, part in self._looked_through():
             if part is None:
@@ -189,14 +225,20 @@ class Folder:
         return found
 
     def done(self) -> int:
-        """How many designs the parts that are whole cover; it only looks, so a sweep may be at work meanwhile."""
+        """How many designs the parts that are whole cover; it only looks, so a sweep may be at work
+        meanwhile.
+        """
         return sum(part.stop - part.start for _, part in self._looked_through() if part)
 
     def flaws(self) -> Iterator[str]:
         """What is wrong with the parts, a line each; all is read, and nothing touched."""
         for path, part in self._looked_through():
             try:
-                flaw = part.flaw() if part else "its head or length, or an earlier one holds the same designs"
+                flaw = (
+                    part.flaw()
+                    if part
+                    else "its head or length, or an earlier one holds the same designs"
+                )
             except FileNotFoundError:  # a sweep at work has come to its end
                 continue
             if flaw:
@@ -260,7 +302,9 @@ def _whole(path: Path) -> Part | None:
             told = _head(file)
             start, stop, columns = (told[key] for key in _HEAD)
             size = sum(length for length, _ in columns.values())
-            whole = os.fstat(file.fileno()).st_size == file.tell() + size and path.name == _name(start, stop)
+            whole = os.fstat(file.fileno()).st_size == file.tell() + size and path.name == _name(
+                start, stop
+            )
         return Part(path, start, stop, size, tuple(columns)) if whole else None
     except (OSError, ValueError):
         return None
@@ -275,6 +319,8 @@ def _head(file: BinaryIO) -> Any:
         told = parsed(head, _HEAD, "head")
     except RecursionError:
         raise ValueError("damaged") from None
-    if not 0 <= told["start"] < told["stop"] or any(length < 0 for length, _ in told["columns"].values()):
+    if not 0 <= told["start"] < told["stop"] or any(
+        length < 0 for length, _ in told["columns"].values()
+    ):
         raise ValueError("damaged")
     return told

@@ -1,4 +1,6 @@
-"""A sweep before it runs: which designs, what is kept of them, and the words that tell it from any other sweep."""
+"""A sweep before it runs: which designs, what is kept of them, and the words that tell it from any
+other sweep.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +40,9 @@ from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
 SCHEMA_VERSION = 5
-"""Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those of 3 are of planar mechanisms
-alone, and those of 4 have no sensitivities; all three are still written."""
+"""Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those
+of 3 are of planar mechanisms alone, and those of 4 have no sensitivities; all three are still
+written."""
 
 _WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
 READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
@@ -51,7 +54,9 @@ IDENTITY = {
     "schema_version": int,
     "case": str,
     "versions": {str: str},
-    **dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str),
+    **dict.fromkeys(
+        ("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str
+    ),
     "wanted": {},
     "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
     "xi": (None, [float, float, int]),
@@ -79,9 +84,11 @@ _TIMES = 4
 
 @dataclass(frozen=True)
 class Task:
-    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves.
+    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the
+    designs themselves.
 
-    ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which derivatives are.
+    ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
+    derivatives are.
     """
 
     timing: Timing
@@ -93,11 +100,15 @@ class Task:
     by: tuple[str, ...] = ()
 
     def harvest(self, graph: Program, whole: Program | None = None) -> Harvest:
-        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all outputs."""
+        """Compile the graph of what is wanted, for what is kept of its outcomes; ``whole`` has all
+        outputs.
+        """
         xi = np.zeros(0) if self.xi is None else points(self.xi)
         engine, data = compiled(graph, self.timing, self.rung), graph.data
         axis = InstantAxis.of(data, self.timing)
-        return Harvest(engine, data, whole or graph, self.keep, axis, xi, self.safety, self.life, self.by)
+        return Harvest(
+            engine, data, whole or graph, self.keep, axis, xi, self.safety, self.life, self.by
+        )
 
 
 def compiled(graph: Program, timing: Timing, rung: Rung) -> Engine:
@@ -107,9 +118,11 @@ def compiled(graph: Program, timing: Timing, rung: Rung) -> Engine:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their defaults.
+    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their
+    defaults.
 
-    ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these values.
+    ``graph`` is that of what is wanted, and ``description`` describes the mechanism with these
+    values.
     """
 
     graph: Program
@@ -134,17 +147,27 @@ class Plan:
         rung: Rung | None = None,
         many: bool = False,
     ) -> Plan:
-        """Check everything that can be before anything is evaluated. Raises what :func:`.sweep` does."""
+        """Check everything that can be before anything is evaluated.
+
+        Raises what :func:`.sweep` does.
+        """
         fixed, rung = fixed or {}, rung or Rung()
         if rung.table is not None:
-            raise DeclarationError("a sweep reads no tables: every design would need one of its own")
+            raise DeclarationError(
+                "a sweep reads no tables: every design would need one of its own"
+            )
         check_keep(keep)
         check_designs(designs, scene.parameters, fixed)
         values, timing = scene.values(fixed), scene.timing(t, over)
         if designs.size > MOST:
-            raise DeclarationError(f"the grid has {counted(designs.size)}, and a sweep at most 10^12")
+            raise DeclarationError(
+                f"the grid has {counted(designs.size)}, and a sweep at most 10^12"
+            )
         if designs.size > MANY and not many:
-            raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
+            raise DeclarationError(
+                f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say"
+                " many=True"
+            )
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
         assembly = _assembly(scene, designs, values, names)
@@ -152,7 +175,9 @@ class Plan:
         content, named = graph.data.template.content, [name for name in names if name != "all"]
         without_fitted(fitted_of(content), names, "sweeps")
         safety, life = (tuple(among(kind, beams_of(content), named)) for kind in ("safety", "life"))
-        task = Task(timing, ratios, keep, rung, safety, life, by_parameters(graph.data.parameters, names))
+        task = Task(
+            timing, ratios, keep, rung, safety, life, by_parameters(graph.data.parameters, names)
+        )
         rung.check(graph)
         scene.checked(scene.values())
         whole = compile_scene(scene, wanted_whole(map(str, graph.outputs)), parameters=assembly)
@@ -160,8 +185,14 @@ class Plan:
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
             size = f"{largest.width / 2**30:.3g} GiB"
-            raise SizeError(f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer instants or ratios")
-        require("a design and what it is made from", (_TIMES, sum(column.width for column in harvest.columns) // 8))
+            raise SizeError(
+                f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer"
+                " instants or ratios"
+            )
+        require(
+            "a design and what it is made from",
+            (_TIMES, sum(column.width for column in harvest.columns) // 8),
+        )
         return cls(graph, graph.data.at(list(values.values())), designs, values, task, harvest)
 
     @property
@@ -185,11 +216,16 @@ class Plan:
         return self.axes_size + self.size * sum(column.width for column in self.columns)
 
     def takes(self, done: int) -> str:
-        """What is still to be done after so many designs, in words; nothing where that is little."""
+        """What is still to be done after so many designs, in words;
+        nothing where that is little.
+        """
         time = (self.size - done) * self.harvest.engine.cost
         if time < _LONG and self.most < _LARGE:
             return ""
-        return f"{counted(self.size - done)} take about {in_words(time)} of a core and a file of up to {self.most / 1e9:.3g} GB"
+        return (
+            f"{counted(self.size - done)} take about {in_words(time)} of a core and a file of up to"
+            f" {self.most / 1e9:.3g} GB"
+        )
 
     @property
     def dims(self) -> tuple[int, ...]:
@@ -212,7 +248,9 @@ class Plan:
         return slabs(self.dims, self.chunk)
 
     def block(self, start: int, stop: int) -> Array:
-        """Designs by number, of shape (designs, parameters): all parameters in the order of declaration."""
+        """Designs by number, of shape (designs, parameters): all parameters in the order of
+        declaration.
+        """
         names = list(self.values)
         p = np.tile(np.array(list(self.values.values())), (stop - start, 1))
         p[:, [names.index(name) for name in self.designs.names]] = self.designs.block(start, stop)
@@ -229,7 +267,9 @@ class Plan:
 
     @cached_property
     def identity(self) -> dict[str, Any]:
-        """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
+        """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of
+        how it is run.
+        """
         words = {
             "schema_version": self._version,
             "case": self.graph.data.name,
@@ -241,16 +281,27 @@ class Plan:
         return told
 
 
-def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]) -> Mapping[str, float] | None:
-    """Return values with which a scene is assembled: its own, None; else those of the first of some designs that can be.
+def _assembly(
+    scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str]
+) -> Mapping[str, float] | None:
+    """Return values with which a scene is assembled: its own, None; else those of the first of some
+    designs that can be.
 
     Raises what :func:`.compile_scene` does for the scene's own where there is none.
     """
     try:
         compile_scene(scene, wanted)
     except (AssemblyError, MobilityError):
-        for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
-            row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
+        for number in np.unique(
+            np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)
+        ):
+            row = dict(
+                zip(
+                    designs.names,
+                    designs.block(int(number), int(number) + 1)[0].tolist(),
+                    strict=True,
+                )
+            )
             tried = {**values, **row}
             try:
                 compile_scene(scene, wanted, parameters=tried)
@@ -262,7 +313,9 @@ def _assembly(scene: Scene, designs: Designs, values: Mapping[str, float], wante
 
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
-    """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
+    """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which
+    is wanted by name.
+    """
     scene.wants(wanted)
     names = tuple(scene.wanted if wanted is None else wanted)
     if "all" not in names or "motion" in names:
@@ -299,7 +352,10 @@ def difference(before: Any, now: Any, where: str = "") -> str | None:
         for key in dict.fromkeys([*before, *now]):
             place = f"{where} {key}".strip()
             if key not in before or key not in now:
-                return f"{place} was {'not there' if key not in before else 'there'}, and {'is' if key in now else 'is not'}"
+                return (
+                    f"{place} was {'not there' if key not in before else 'there'}, and"
+                    f" {'is' if key in now else 'is not'}"
+                )
             found = difference(before[key], now[key], place)
             if found:
                 return found
@@ -309,7 +365,10 @@ def difference(before: Any, now: Any, where: str = "") -> str | None:
     if before == now:
         return None
     if where in ("sources", "scene"):
-        what = {"sources": "the program's own code", "scene": "an expression, a law of motion or the posture of the scene"}[where]
+        what = {
+            "sources": "the program's own code",
+            "scene": "an expression, a law of motion or the posture of the scene",
+        }[where]
         return f"{what} has changed"
     return f"{where} was {_short(before)} and is {_short(now)}"
 

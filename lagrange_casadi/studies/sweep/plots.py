@@ -1,4 +1,6 @@
-"""What a designer looks at: peaks over one parameter or two, section forces over xi/l and a parameter, the front of two columns."""
+"""What a designer looks at: peaks over one parameter or two, section forces over xi/l and a
+parameter, the front of two columns.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,10 @@ if TYPE_CHECKING:
 _KEYED, _NAMED, _OFTEN, _GOLDEN = 5, 3, 3, (5.0**0.5 - 1.0) / 2.0
 _RING = 0.15
 _BLUE, _RED = "#1f4e79", "#c1272d"
-_OUTSIDE = {"viridis": {"over": "#fffbd0", "under": "#1a0022"}, "RdBu_r": {"over": "#3d0010", "under": "#021a33"}}
+_OUTSIDE = {
+    "viridis": {"over": "#fffbd0", "under": "#1a0022"},
+    "RdBu_r": {"over": "#3d0010", "under": "#021a33"},
+}
 _STAR: dict[str, Any] = {
     "marker": "*",
     "color": _RED,
@@ -41,7 +46,8 @@ _STAR: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Peaks:
-    """Columns of a grid over two parameters as maps, or over one as curves, one for each of some values of ``family``.
+    """Columns of a grid over two parameters as maps, or over one as curves, one for each of some
+    values of ``family``.
 
     Other parameters stay ``at`` values, or in the middle of their axes.
     """
@@ -53,15 +59,26 @@ class Peaks:
     at: Mapping[str, float] = field(default_factory=dict)
 
     def draw(self, sweep: Sweep) -> Figure:
-        """The figure. Raises :class:`NoDesignError` where no design that it shows has a result, or none differs from another."""
+        """The figure.
+
+        Raises :class:`NoDesignError` where no design that it shows has a result, or none differs
+        from another.
+        """
         cut = Cut.of(sweep, self.over, self.at, self.family)
         shown, same = _differing(self.columns, cut)
         gaps = Gaps.of(sweep, cut[STATUS])
-        sheet = Sheet.of(len(shown), share=("all", "all") if len(self.over) == 2 else ("all", False))
+        sheet = Sheet.of(
+            len(shown), share=("all", "all") if len(self.over) == 2 else ("all", False)
+        )
         for axes, (column, values) in zip(sheet.plots, shown.items(), strict=True):
             scale = Scale.of(values)
             if len(self.over) == 2:
-                sheet.bar(axes, _cells(axes, cut.axes, values, scale, gaps, sheet.legend), scale, label(sweep, column))
+                sheet.bar(
+                    axes,
+                    _cells(axes, cut.axes, values, scale, gaps, sheet.legend),
+                    scale,
+                    label(sweep, column),
+                )
             else:
                 _curves(axes, cut, values, gaps, sheet.legend)
                 scale.limit(axes, "y", foot=gaps.foot(values.size // len(values)))
@@ -71,16 +88,26 @@ class Peaks:
             place = np.unravel_index(np.nanargmin(values), values.shape)
             spot = [x[k] for x, k in zip(cut.axes, place, strict=True)]
             _star(axes, spot[0], spot[1] if len(self.over) == 2 else values[place], sheet.legend)
-            where = ", ".join(value(sweep, name, x, "") for name, x in zip(cut.names, spot, strict=True)) + _ties(values)
+            where = ", ".join(
+                value(sweep, name, x, "") for name, x in zip(cut.names, spot, strict=True)
+            ) + _ties(values)
             inches = (0.6 + 0.2 * len(self.over)) * sheet.across
-            axes.set_title(fitted(inches, f"★ {number(values[place])} at {where}", points=7), loc="left", color=_RED)
-        sheet.name_axes(label(sweep, self.over[0]), label(sweep, self.over[1]) if len(self.over) == 2 else "")
+            axes.set_title(
+                fitted(inches, f"★ {number(values[place])} at {where}", points=7),
+                loc="left",
+                color=_RED,
+            )
+        sheet.name_axes(
+            label(sweep, self.over[0]), label(sweep, self.over[1]) if len(self.over) == 2 else ""
+        )
         return sheet.finish(f"{sweep.case}: peak over time of each design", *cut.notes, same)
 
 
 @dataclass(frozen=True)
 class Scatter:
-    """Columns of a list's designs over each of some parameters; where ``at`` is given, of the designs with these values."""
+    """Columns of a list's designs over each of some parameters; where ``at`` is given, of the
+    designs with these values.
+    """
 
     name: str
     columns: tuple[str, ...]
@@ -94,7 +121,10 @@ class Scatter:
         gaps = Gaps.of(sweep, cut[STATUS])
         sheet = Sheet.of(len(shown) * len(self.over), columns=len(self.over), share=("col", "row"))
         for k, axes in enumerate(sheet.plots):
-            (column, values), name = list(shown.items())[k // len(self.over)], self.over[k % len(self.over)]
+            (column, values), name = (
+                list(shown.items())[k // len(self.over)],
+                self.over[k % len(self.over)],
+            )
             scale, x = Scale.of(values), cut.sweep[name]
             axes.plot(x, values, "o", color=_BLUE, markersize=3, alpha=0.6, markeredgewidth=0.0)
             gaps.cross(axes, x, sheet.legend)
@@ -108,18 +138,25 @@ class Scatter:
             _star(axes, x[place], values[place], sheet.legend)
             if k % len(self.over) == 0:
                 axes.set_ylabel(fitted(sheet.up, label(sweep, column), scale.note))
-                axes.set_title(f"★ {number(values[place])}, design {cut.numbers[place]}{_ties(values)}", loc="left", color=_RED)
+                axes.set_title(
+                    f"★ {number(values[place])}, design {cut.numbers[place]}{_ties(values)}",
+                    loc="left",
+                    color=_RED,
+                )
             if k + len(self.over) >= len(sheet.plots):
                 axes.set_xlabel(fitted(0.9 * sheet.across, label(sweep, name)))
-        return sheet.finish(f"{sweep.case}: peak over time of {cut.numbers.size} designs", *cut.notes, same)
+        return sheet.finish(
+            f"{sweep.case}: peak over time of {cut.numbers.size} designs", *cut.notes, same
+        )
 
 
 @dataclass(frozen=True)
 class Along:
-    """The section forces of a link over xi/l and a parameter: at each ratio the largest in size over the instants, signed.
+    """The section forces of a link over xi/l and a parameter: at each ratio the largest in size
+    over the instants, signed.
 
-    A few values of the parameter are curves, more are a map. Where the sign alternates, as where the largest and the least of a
-    force are alike, the size is drawn.
+    A few values of the parameter are curves, more are a map. Where the sign alternates, as where
+    the largest and the least of a force are alike, the size is drawn.
     """
 
     name: str
@@ -146,15 +183,23 @@ class Along:
             if mapped:
                 scale = Scale.of(values, sides=1 if sized else 2)
                 colours = "viridis" if sized else "RdBu_r"
-                sheet.bar(axes, _cells(axes, (there, xi), values, scale, gaps, sheet.legend, colours), scale, words)
+                sheet.bar(
+                    axes,
+                    _cells(axes, (there, xi), values, scale, gaps, sheet.legend, colours),
+                    scale,
+                    words,
+                )
                 sheet.tick(axes, "y", xi)
             else:
                 for k, row in enumerate(values):
-                    # Where the largest changes its sign, it mostly jumps from one instant to another.
+                    # Where the largest changes its sign, it mostly jumps from one instant to
+                    # another.
                     jumps = np.flatnonzero(_flips(row))
                     colour = _colour(k, there.size)
                     for j in jumps:
-                        (jump,) = axes.plot(xi[j : j + 2], row[j : j + 2], ":", color=colour, linewidth=0.8)
+                        (jump,) = axes.plot(
+                            xi[j : j + 2], row[j : j + 2], ":", color=colour, linewidth=0.8
+                        )
                         flips["where the largest in size changes its sign"] = jump
                     x, y = (np.insert(w, jumps + 1, np.nan) for w in (xi, row))
                     (line,) = axes.plot(x, y, color=colour, linewidth=1.1)
@@ -167,12 +212,17 @@ class Along:
         sheet.legend.update(flips)
         ratio = r"$\xi/l$"
         sheet.name_axes(*((label(sweep, self.over), ratio) if mapped else (ratio, "")))
-        return sheet.finish(f"{sweep.case}: section forces of {self.link}, at each ratio the largest in size over time", *cut.notes)
+        return sheet.finish(
+            f"{sweep.case}: section forces of {self.link}, at each ratio the largest in size over"
+            " time",
+            *cut.notes,
+        )
 
 
 @dataclass(frozen=True)
 class Front:
-    """Two columns or parameters of all designs against each other, and the designs of which no other is less in both.
+    """Two columns or parameters of all designs against each other, and the designs of which no
+    other is less in both.
 
     Where ``at`` is given, of the designs with these values.
     """
@@ -192,7 +242,8 @@ class Front:
         count, dots = 0, []
         for numbers, values in chosen(sweep, pair, ["status==0"]):
             count += numbers.size
-            # By the golden ratio, since each n-th of a grid may be all that share a value, or none of those chosen.
+            # By the golden ratio, since each n-th of a grid may be all that share a value, or none
+            # of those chosen.
             few = numbers * _GOLDEN % 1.0 * stride < 1.0
             dots.append([size(name, values[name])[few] for name in pair])
         x, y = np.concatenate(dots, axis=1)
@@ -201,21 +252,47 @@ class Front:
         (axes,) = sheet.plots
         if count > len(front):
             words = "designs with a result" + (f", 1 in {stride} drawn" if stride > 1 else "")
-            (sheet.legend[words],) = axes.plot(x, y, "o", color="0.75", markersize=2.5, markeredgewidth=0.0)
+            (sheet.legend[words],) = axes.plot(
+                x, y, "o", color="0.75", markersize=2.5, markeredgewidth=0.0
+            )
         axes.step(u, v, where="post", color=_RED, linewidth=0.8)
         words = f"front: no other is less in both ({len(front)})"
         (sheet.legend[words],) = axes.plot(u, v, "o", color=_RED, markersize=2.5)
         scales = [Scale.of(both) for both in (np.append(x, u), np.append(y, v))]
         for axis, scale, held in zip("xy", scales, (u, v), strict=True):
             scale.limit(axes, axis, held)
-        varied = [name for name in sweep.parameters if name not in self.at and sweep.dimensions.get(name) != 1]
-        seen = (axes.transScale + axes.transLimits).transform(np.column_stack([u, v])) * (sheet.across, sheet.up)
+        varied = [
+            name
+            for name in sweep.parameters
+            if name not in self.at and sweep.dimensions.get(name) != 1
+        ]
+        seen = (axes.transScale + axes.transLimits).transform(np.column_stack([u, v])) * (
+            sheet.across,
+            sheet.up,
+        )
         for n, k in enumerate(_apart(seen), 1):
             where = ", ".join(value(sweep, name, front[k].values[name]) for name in varied)
             style = {"color": _RED, "linestyle": "", "zorder": 4}
             sheet.legend[where] = (
-                *axes.plot(u[k], v[k], "o", markersize=8.0, markerfacecolor="white", markeredgewidth=0.8, clip_on=False, **style),
-                *axes.plot(u[k], v[k], marker=f"${n}$", markersize=4.5, markeredgewidth=0.0, clip_on=False, **style),
+                *axes.plot(
+                    u[k],
+                    v[k],
+                    "o",
+                    markersize=8.0,
+                    markerfacecolor="white",
+                    markeredgewidth=0.8,
+                    clip_on=False,
+                    **style,
+                ),
+                *axes.plot(
+                    u[k],
+                    v[k],
+                    marker=f"${n}$",
+                    markersize=4.5,
+                    markeredgewidth=0.0,
+                    clip_on=False,
+                    **style,
+                ),
             )
         for axis, name, scale in zip("xy", pair, scales, strict=True):
             axes.set(**{f"{axis}label": fitted(0.9 * sheet.up, label(sweep, name), scale.note)})
@@ -244,7 +321,9 @@ def _none(notes: Sequence[str]) -> str:
 
 
 def _differing(columns: Sequence[str], cut: Cut) -> tuple[dict[str, Array], str]:
-    """The sizes of columns that are not the same for all designs drawn, and in words those that are."""
+    """The sizes of columns that are not the same for all designs drawn, and in words those that
+    are.
+    """
     shown, same = {}, []
     for column in columns:
         values = size(column, cut[column])
@@ -256,12 +335,22 @@ def _differing(columns: Sequence[str], cut: Cut) -> tuple[dict[str, Array], str]
     more = f"; and {len(same) - _NAMED} more" if len(same) > _NAMED else ""
     words = f"{'; '.join(same[:_NAMED])}{more}"
     if not shown:
-        raise NoDesignError(f"{', '.join(('the same for all drawn', *cut.notes))}: {words}" if same else _none(cut.notes))
+        raise NoDesignError(
+            f"{', '.join(('the same for all drawn', *cut.notes))}: {words}"
+            if same
+            else _none(cut.notes)
+        )
     return shown, f"the same for all drawn: {words}" if same else ""
 
 
 def _cells(
-    axes: Any, over: tuple[Array, ...], values: Array, scale: Scale, gaps: Gaps, legend: dict[str, Any], colours: str = "viridis"
+    axes: Any,
+    over: tuple[Array, ...],
+    values: Array,
+    scale: Scale,
+    gaps: Gaps,
+    legend: dict[str, Any],
+    colours: str = "viridis",
 ) -> Any:
     """A map of values over two axes, and of what has none."""
     from matplotlib import colormaps
@@ -326,7 +415,9 @@ def _colour(k: int, count: int) -> Any:
 
 
 def _apart(places: Array) -> list[int]:
-    """Numbers of a few places (n, 2) in inches along a curve, its ends among them, that lie evenly and apart."""
+    """Numbers of a few places (n, 2) in inches along a curve, its ends among them, that lie evenly
+    and apart.
+    """
     way = np.abs(places - places[0]).sum(axis=1)
     count = min(_KEYED, 1 + int(way[-1] / _RING))
     kept: list[int] = []

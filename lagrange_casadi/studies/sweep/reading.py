@@ -1,4 +1,6 @@
-"""A sweep's file, read: whole columns, columns at given values of parameters, or all designs in turn, block by block."""
+"""A sweep's file, read: whole columns, columns at given values of parameters, or all designs in
+turn, block by block.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,15 @@ import numpy.typing as npt
 from ...arguments import Count, Index, Outputs, public, texts
 from ...base.arrays import Array
 from ...base.seal import Seen, kind_of, verify
-from ...errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line, shown
+from ...errors import (
+    DeclarationError,
+    LagrangeCasadiError,
+    PathError,
+    StoreError,
+    UnknownNameError,
+    one_line,
+    shown,
+)
 from ...methods import method
 from ...store.opening import opened_file
 from .axes import DESIGN, counted
@@ -43,10 +53,11 @@ Values = npt.NDArray[Any]
 class Sweep:
     """A finished sweep; arrays are read when they are asked for.
 
-    ``dimensions`` are the axes of the designs and their lengths: the swept parameters of a grid, or ``design`` of a list.
-    ``columns`` are what is kept of each design, by full name, with units. ``parameters`` are the units of what was swept, and
-    ``chosen`` the numbers along axes that :meth:`select` left. The whole file is compared with its seal when it is opened, and
-    again only where it has changed since.
+    ``dimensions`` are the axes of the designs and their lengths: the swept parameters of a grid, or
+    ``design`` of a list. ``columns`` are what is kept of each design, by full name, with units.
+    ``parameters`` are the units of what was swept, and ``chosen`` the numbers along axes that
+    :meth:`select` left. The whole file is compared with its seal when it is opened, and again only
+    where it has changed since.
     """
 
     path: Path
@@ -61,23 +72,34 @@ class Sweep:
 
     @classmethod
     def open(cls, path: str | Path) -> Sweep:
-        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep."""
+        """Open a file.
+
+        Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a
+        sweep.
+        """
         _refuse_unfinished(path)
         return opened_sweep(path)
 
     def __repr__(self) -> str:
-        return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
+        return (
+            f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)};"
+            f" {', '.join(self.columns)}>"
+        )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: what was swept, how many designs have a result, and the smallest and largest of columns."""
+        """What a notebook shows: what was swept, how many designs have a result, and the smallest
+        and largest of columns.
+        """
         found: str = method("Sweep._repr_html_")(self)
         return found
 
     def report(self, path: str | os.PathLike[str], scene: Scene | None = None) -> None:
-        """Write a page for browsers: maps, fronts, a table, and with the ``scene`` that was swept the mechanism in motion.
+        """Write a page for browsers: maps, fronts, a table, and with the ``scene`` that was swept
+        the mechanism in motion.
 
-        Raises :class:`DeclarationError` for another scene, for a path that does not end in .html, and where no column has one value
-        for each design; :class:`LagrangeCasadiError` where ``scene`` lacks ziglang.
+        Raises :class:`DeclarationError` for another scene, for a path that does not end in .html,
+        and where no column has one value for each design; :class:`LagrangeCasadiError` where
+        ``scene`` lacks ziglang.
         """
         method("Sweep.report")(self, path, scene)
 
@@ -89,7 +111,10 @@ class Sweep:
     @property
     def shape(self) -> tuple[int, ...]:
         """The lengths of the designs' axes, as far as they are selected."""
-        return tuple(self.chosen[name].size if name in self.chosen else length for name, length in self.dimensions.items())
+        return tuple(
+            self.chosen[name].size if name in self.chosen else length
+            for name, length in self.dimensions.items()
+        )
 
     @property
     def size(self) -> int:
@@ -97,9 +122,11 @@ class Sweep:
         return int(np.prod(self.shape, dtype=np.int64))
 
     def __getitem__(self, name: str) -> Values:
-        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or ``xi`` of columns that have them.
+        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or
+        ``xi`` of columns that have them.
 
-        A design without a result is NaN. Raises :class:`UnknownNameError` for another name, :class:`StoreError` for a damaged file.
+        A design without a result is NaN. Raises :class:`UnknownNameError` for another name,
+        :class:`StoreError` for a damaged file.
         """
         if name not in self.parameters and name not in self._over:
             self.column(name)
@@ -108,11 +135,13 @@ class Sweep:
                 return self._cut(file["grid"][name], (self._axis(name),))
             if name in self._over:
                 return _taken(file[name])
-            return self._cut(file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes))
+            return self._cut(
+                file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes)
+            )
 
     def __iter__(self) -> Iterator[str]:
-        """The names of all that it has, of which ``self[name]`` gives each: parameters, ``t`` and ``xi`` where columns have them,
-        and columns.
+        """The names of all that it has, of which ``self[name]`` gives each: parameters, ``t`` and
+        ``xi`` where columns have them, and columns.
         """
         yield from (*self.parameters, *self._over, *self.columns)
 
@@ -123,11 +152,12 @@ class Sweep:
         return self.columns[name]
 
     def select(self, **values: Any) -> Sweep:
-        """The designs with given values of parameters: a number that is on the grid, a list of such numbers, or a tuple
-        (low, high), both included. Angles may be texts, as ``"30 deg"``.
+        """The designs with given values of parameters: a number that is on the grid, a list of such
+        numbers, or a tuple (low, high), both included. Angles may be texts, as ``"30 deg"``.
 
-        An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError` for what was not swept,
-        :class:`DeclarationError` for what is none of these, and where no design has such a value, with the nearest one that has.
+        An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError`
+        for what was not swept, :class:`DeclarationError` for what is none of these, and where no
+        design has such a value, with the nearest one that has.
         """
         chosen = dict(self.chosen)
         if unknown := [name for name in values if name not in self.parameters]:
@@ -151,25 +181,33 @@ class Sweep:
         return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
 
     def _along(self, axis: str) -> npt.NDArray[np.int64]:
-        """The numbers that are selected along an axis of the designs. Raises :class:`UnknownNameError`."""
+        """The numbers that are selected along an axis of the designs.
+
+        Raises :class:`UnknownNameError`.
+        """
         if axis not in self.dimensions:
             raise UnknownNameError("axis of designs", axis, self.dimensions)
         return self.chosen.get(axis, np.arange(self.dimensions[axis]))
 
     def axes_of(self, names: Outputs) -> tuple[str, ...]:
-        """The axes beyond those of the designs that columns share; those without any go with all, and so do axes by name.
+        """The axes beyond those of the designs that columns share; those without any go with all,
+        and so do axes by name.
 
-        Raises :class:`UnknownNameError` for names that are none, :class:`DeclarationError` where two columns have different axes.
+        Raises :class:`UnknownNameError` for names that are none, :class:`DeclarationError` where
+        two columns have different axes.
         """
         names = names_in(names)
-        if unknown := [name for name in names if name not in (*self.parameters, *self.columns, *self._over)]:
+        if unknown := [
+            name for name in names if name not in (*self.parameters, *self.columns, *self._over)
+        ]:
             raise self._unknown(unknown)
         found = {self.columns[name].axes: name for name in names if name in self.columns}
         (axes, first), *others = [item for item in found.items() if item[0]] or [((), "")]
         for other, name in others:
             every, else_every = (" and ".join(words) for words in (axes, other))
             raise DeclarationError(
-                f"column '{first}' has a value for every {every}, '{name}' for every {else_every}: each needs a table of its own"
+                f"column '{first}' has a value for every {every}, '{name}' for every {else_every}:"
+                " each needs a table of its own"
             )
         return axes
 
@@ -177,11 +215,15 @@ class Sweep:
         """The unit of a parameter, of an axis such as ``t`` or ``xi``, or of a column."""
         return self.parameters.get(name) or self._units.get(name) or self.column(name).unit
 
-    def blocks(self, names: Sequence[str], along: Sequence[str] = ()) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
-        """The selected designs in turn, in blocks of rows: their numbers, and values of parameters and columns by name.
+    def blocks(
+        self, names: Sequence[str], along: Sequence[str] = ()
+    ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
+        """The selected designs in turn, in blocks of rows: their numbers, and values of parameters
+        and columns by name.
 
-        A row is a design; or with ``along``, as in ``("t", "xi")``, a design at one place of these axes: they are names too, and a
-        design's number and what has no axes come again in each of its rows.
+        A row is a design; or with ``along``, as in ``("t", "xi")``, a design at one place of these
+        axes: they are names too, and a design's number and what has no axes come again in each of
+        its rows.
 
         Raises :class:`DeclarationError` for a column with other axes.
         """
@@ -190,13 +232,22 @@ class Sweep:
         return self._blocks(names, along)
 
     def design(self, number: int) -> dict[str, float]:
-        """The values of the swept parameters of a design, by its number. Raises :class:`DeclarationError` where there is none."""
+        """The values of the swept parameters of a design, by its number.
+
+        Raises :class:`DeclarationError` where there is none.
+        """
         places = dict(zip(self.dimensions, self._place(number), strict=True))
         with self.opened() as file:
-            return {name: float(_taken(file["grid"][name], places.get(name, number))) for name in self.parameters}
+            return {
+                name: float(_taken(file["grid"][name], places.get(name, number)))
+                for name in self.parameters
+            }
 
     def values(self, number: int, names: str | Sequence[str]) -> dict[str, float]:
-        """Columns of a design, by its number. Raises :class:`DeclarationError` for a column with axes of its own."""
+        """Columns of a design, by its number.
+
+        Raises :class:`DeclarationError` for a column with axes of its own.
+        """
         names, place = names_in(names), self._place(number)
         self.check_columns(names)
         with self.opened() as file:
@@ -205,7 +256,9 @@ class Sweep:
     def _place(self, number: int) -> tuple[int, ...]:
         dims = tuple(self.dimensions.values())
         if not isinstance(number, (int, np.integer)) or not 0 <= number < math.prod(dims):
-            raise DeclarationError(f"design {number}: expected a number from 0 to {math.prod(dims) - 1}")
+            raise DeclarationError(
+                f"design {number}: expected a number from 0 to {math.prod(dims) - 1}"
+            )
         return tuple(int(i) for i in np.unravel_index(number, dims))
 
     def counts(self) -> dict[int, int]:
@@ -219,20 +272,34 @@ class Sweep:
     def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
         """Columns, or all, as an ``xarray.Dataset`` over the parameters, with units.
 
-        Raises :class:`UnknownNameError`, and :class:`LagrangeCasadiError` where xarray is not installed.
+        Raises :class:`UnknownNameError`, and :class:`LagrangeCasadiError` where xarray is not
+        installed.
         """
         try:
             import xarray
         except ImportError:
-            raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
+            raise LagrangeCasadiError(
+                "to_xarray needs xarray; install it with: pip install xarray"
+            ) from None
         kept = [self.column(name) for name in (self.columns if names is None else names_in(names))]
-        data = {k.name: ((*self.dimensions, *k.axes), self[k.name], {"units": k.unit, "long_name": k.long_name}) for k in kept}
+        data = {
+            k.name: (
+                (*self.dimensions, *k.axes),
+                self[k.name],
+                {"units": k.unit, "long_name": k.long_name},
+            )
+            for k in kept
+        }
         coordinates = {
             name: (name if name in self.dimensions else DESIGN, self[name], {"units": unit})
             for name, unit in self.parameters.items()
         }
         if DESIGN in self.dimensions:
-            coordinates[DESIGN] = (DESIGN, self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])), {"units": "1"})
+            coordinates[DESIGN] = (
+                DESIGN,
+                self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])),
+                {"units": "1"},
+            )
         for axis, unit in self._units.items():
             if any(axis in k.axes for k in kept):
                 coordinates[axis] = (axis, self[axis], {"units": unit})
@@ -244,26 +311,36 @@ class Sweep:
         return dict(self.identity["mechanism"])
 
     def check_columns(self, names: Sequence[str], along: Sequence[str] = ()) -> None:
-        """Raise for columns that are none or have other axes than these, and for axes that are none or bear a parameter's name."""
+        """Raise for columns that are none or have other axes than these, and for axes that are none
+        or bear a parameter's name.
+        """
         for axis in along:
             if axis not in self._over:
                 raise UnknownNameError("axis", axis, self._over)
             if axis in self.parameters:
-                raise DeclarationError(f"parameter '{axis}' has the name of an axis: rows cannot go along both")
-        if unknown := [name for name in names if name not in (*self.parameters, *self.columns, *along)]:
+                raise DeclarationError(
+                    f"parameter '{axis}' has the name of an axis: rows cannot go along both"
+                )
+        if unknown := [
+            name for name in names if name not in (*self.parameters, *self.columns, *along)
+        ]:
             raise self._unknown(unknown)
         for name in names:
             if name in self.parameters or name in along:
                 continue
             axes = self.column(name).axes
             if axes and axes != tuple(along):
-                raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
+                raise DeclarationError(
+                    f"column '{name}' has a value for every {' and '.join(axes)}, not one a design"
+                )
 
     @cached_property
     def meanings(self) -> Meanings:
         """What columns and axes mean, by their names."""
         axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
-        return Meanings.of(self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else "")
+        return Meanings.of(
+            self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
+        )
 
     @cached_property
     def _units(self) -> dict[str, str]:
@@ -280,15 +357,31 @@ class Sweep:
         for name in names:
             if name in self._over:
                 return DeclarationError(
-                    f"'{name}' is no column but an axis: it needs a column over {name}, as {self._over[name]} is"
+                    f"'{name}' is no column but an axis: it needs a column over {name}, as"
+                    f" {self._over[name]} is"
                 )
-        return UnknownNameError("column", names, [*self.parameters, *self.columns], f"`lagrange-casadi info {self.path}`")
+        return UnknownNameError(
+            "column",
+            names,
+            [*self.parameters, *self.columns],
+            f"`lagrange-casadi info {self.path}`",
+        )
 
-    def _blocks(self, names: Sequence[str], along: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
+    def _blocks(
+        self, names: Sequence[str], along: Sequence[str]
+    ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
         dims = tuple(self.dimensions.values())
         with self.opened() as file:
             places = (
-                dict(zip(along, np.meshgrid(*(_taken(file[axis]) for axis in along), indexing="ij"), strict=True)) if along else {}
+                dict(
+                    zip(
+                        along,
+                        np.meshgrid(*(_taken(file[axis]) for axis in along), indexing="ij"),
+                        strict=True,
+                    )
+                )
+                if along
+                else {}
             )
             lengths = next((place.shape for place in places.values()), ())
             rows = math.prod(lengths)
@@ -301,10 +394,14 @@ class Sweep:
                     if name in places:
                         values = places[name][None]
                     elif name in self.parameters:
-                        values = _along(file["grid"][name], name, list(self.dimensions), dims, where)[left]
+                        values = _along(
+                            file["grid"][name], name, list(self.dimensions), dims, where
+                        )[left]
                     else:
                         values = _taken(file[name.replace(":", "/")], where)
-                        values = values.reshape(numbers.size, *(lengths if self.columns[name].axes else ()))[left]
+                        values = values.reshape(
+                            numbers.size, *(lengths if self.columns[name].axes else ())
+                        )[left]
                     values = values.reshape(*values.shape, *(1,) * (len(shape) - values.ndim))
                     found[name] = np.broadcast_to(values, shape).reshape(-1)
                 yield np.repeat(numbers[left], rows), found
@@ -313,14 +410,24 @@ class Sweep:
         """Which designs are selected."""
         if not self.chosen:
             return slice(None)
-        places = dict(zip(self.dimensions, np.unravel_index(numbers, tuple(self.dimensions.values())), strict=True))
-        return np.all([np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0)
+        places = dict(
+            zip(
+                self.dimensions,
+                np.unravel_index(numbers, tuple(self.dimensions.values())),
+                strict=True,
+            )
+        )
+        return np.all(
+            [np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0
+        )
 
     def _axis(self, parameter: str) -> str:
         return parameter if parameter in self.dimensions else DESIGN
 
     def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
-        """What is selected of a dataset: where numbers are evenly spaced they are read, else the box around them, cut in memory."""
+        """What is selected of a dataset: where numbers are evenly spaced they are read, else the
+        box around them, cut in memory.
+        """
         numbers = [self.chosen.get(axis) for axis in axes]
         values = _taken(dataset, tuple(_box(n) for n in numbers))
         for axis, n in enumerate(numbers):
@@ -361,7 +468,9 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
 
 
 def opened_sweep(path: str | Path, seen: Seen | None = None, keeper: Any = None) -> Sweep:
-    """A sweep, compared with its seal unless its file was ``seen`` already. ``keeper`` is kept alive as long as the sweep.
+    """A sweep, compared with its seal unless its file was ``seen`` already.
+
+    ``keeper`` is kept alive as long as the sweep.
 
     Raises :class:`StoreError` for what is not a whole file of a sweep.
     """
@@ -378,13 +487,18 @@ def names_in(given: str | Sequence[str]) -> list[str]:
     return found
 
 
-def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]) -> Array:
+def _along(
+    dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]
+) -> Array:
     """A parameter's values of the designs of a slab, flat."""
     if name not in axes:
         return _taken(dataset, where[0])
     axis = axes.index(name)
     both = zip(where, dims, strict=True)
-    kept = [len(range(*place.indices(length))) if isinstance(place, slice) else 1 for place, length in both]
+    kept = [
+        len(range(*place.indices(length))) if isinstance(place, slice) else 1
+        for place, length in both
+    ]
     shape = [1] * len(dims)
     shape[axis] = kept[axis]
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
@@ -397,4 +511,6 @@ def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.
 def _refuse_unfinished(path: str | Path) -> None:
     """Raise :class:`PathError` where there are parts, and no file yet."""
     if not os.path.exists(path) and Folder.of(Path(path)).begun:
-        raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is")
+        raise PathError(
+            f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is"
+        )

@@ -1,4 +1,6 @@
-"""Scales of a sweep's figures: limits of colours and axes, ticks that do not run into each other, numbers in words."""
+"""Scales of a sweep's figures: limits of colours and axes, ticks that do not run into each other,
+numbers in words.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +21,12 @@ _TALL, _WIDE = 0.15, 0.065
 class Scale:
     """Limits of colours or of an axis, which a few designs near a dead centre do not set.
 
-    They are those of the values; but where some are further from the middle 90 % than twice what it spans, half its span away from
-    it. A scale is logarithmic where half of the values would be in the lowest fifth of it otherwise, and the middle spans more than
-    five times; there spans are ratios. One with ``sides`` is that of sizes, and begins with zero (1) or has zero in its middle (2);
-    a logarithmic one is linear up to ``low``. ``below`` and ``above`` say that values lie outside, ``most`` is the largest.
+    They are those of the values; but where some are further from the middle 90 % than twice what it
+    spans, half its span away from it. A scale is logarithmic where half of the values would be in
+    the lowest fifth of it otherwise, and the middle spans more than five times; there spans are
+    ratios. One with ``sides`` is that of sizes, and begins with zero (1) or has zero in its middle
+    (2); a logarithmic one is linear up to ``low``. ``below`` and ``above`` say that values lie
+    outside, ``most`` is the largest.
     """
 
     low: float
@@ -40,10 +44,18 @@ class Scale:
         found = np.abs(found) if sides else found
         least, most = float(found.min()), float(found.max())
         # Of a few values, the least and the largest are never in the middle.
-        near, far = (float(np.percentile(found, at, method=way)) for at, way in _MIDDLE) if found.size > 3 else (least, most)
+        near, far = (
+            (float(np.percentile(found, at, method=way)) for at, way in _MIDDLE)
+            if found.size > 3
+            else (least, most)
+        )
         low, high = _limits(0.0, 0.0, far, most) if sides else _limits(least, near, far, most)
         middle = float(np.median(found))
-        log = middle - low < _LOWEST * (high - low) and far > _SPAN * near and (least >= 0.0 < near or sides > 0)
+        log = (
+            middle - low < _LOWEST * (high - low)
+            and far > _SPAN * near
+            and (least >= 0.0 < near or sides > 0)
+        )
         if log:
             # Some sizes are zero, or rounding; a twentieth of the median is little enough.
             near, least = (max(near, middle / 20.0, far / _DEPTH),) * 2 if sides else (near, least)
@@ -57,12 +69,21 @@ class Scale:
     def extend(self) -> str:
         """Where a colour bar has arrows."""
         outside = (self.above and self.sides == 2 if self.sides else self.below, self.above)
-        return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[outside]
+        return {
+            (False, False): "neither",
+            (True, False): "min",
+            (False, True): "max",
+            (True, True): "both",
+        }[outside]
 
     @property
     def note(self) -> str:
         """How far values go that lie above, in words."""
-        return f"beyond: up to {number(self.most)}{' in size' if self.sides == 2 else ''}" if self.above else ""
+        return (
+            f"beyond: up to {number(self.most)}{' in size' if self.sides == 2 else ''}"
+            if self.above
+            else ""
+        )
 
     def norm(self) -> Any:
         """For colours."""
@@ -70,7 +91,9 @@ class Scale:
 
         if self.sides:
             least = -self.high if self.sides == 2 else 0.0
-            return AsinhNorm(self.low, least, self.high) if self.log else Normalize(least, self.high)
+            return (
+                AsinhNorm(self.low, least, self.high) if self.log else Normalize(least, self.high)
+            )
         return (LogNorm if self.log else Normalize)(self.low, self.high)
 
     def mark(self, bar: Any) -> None:
@@ -79,8 +102,12 @@ class Scale:
 
         if self.sides and self.log:
             powers: list[int] = []
-            for power in range(int(np.floor(np.log10(self.high))), int(np.floor(np.log10(self.low))), -1):
-                if 10.0**power > 2.0 * self.low and (not powers or powers[-1] - power >= np.log10(self.high / self.low) / 3):
+            for power in range(
+                int(np.floor(np.log10(self.high))), int(np.floor(np.log10(self.low))), -1
+            ):
+                if 10.0**power > 2.0 * self.low and (
+                    not powers or powers[-1] - power >= np.log10(self.high / self.low) / 3
+                ):
                     powers.append(power)
             words = [f"10{_raised(power)}" for power in powers]
             ticks, labels = [0.0, *(10.0**power for power in powers)], ["0", *words]
@@ -96,7 +123,8 @@ class Scale:
             bar.update_ticks()
 
     def limit(self, axes: Any, axis: str, held: Iterable[float] = (), foot: float = 0.05) -> None:
-        """Let axis "x" or "y" of axes have this scale, with room below for ``foot`` of it; values ``held`` are inside.
+        """Let axis "x" or "y" of axes have this scale, with room below for ``foot`` of it; values
+        ``held`` are inside.
 
         Where one of them is not positive, the axis is linear.
         """
@@ -113,8 +141,12 @@ class Scale:
             even_in_ratios(getattr(axes, f"{axis}axis"))
 
 
-def _limits(least: float, near: float, far: float, most: float, log: bool = False) -> tuple[float, float]:
-    """Of values and of their middle: the values', or the middle's and half of its span where some are far from it."""
+def _limits(
+    least: float, near: float, far: float, most: float, log: bool = False
+) -> tuple[float, float]:
+    """Of values and of their middle: the values', or the middle's and half of its span where some
+    are far from it.
+    """
     turn, back = (np.log, np.exp) if log else (np.positive, np.positive)
     with np.errstate(divide="ignore"):
         first, start, end, last = turn([least, near, far, most])
@@ -126,7 +158,9 @@ def _limits(least: float, near: float, far: float, most: float, log: bool = Fals
 def number(value: float) -> str:
     """A number as figures say it."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:
-        return (f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.3g}").replace("-", "\N{MINUS SIGN}")
+        return (f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.3g}").replace(
+            "-", "\N{MINUS SIGN}"
+        )
     digits, _, power = f"{abs(value):.2e}".replace(".00", "").partition("e")
     factor = "" if digits == "1" else f"{digits}·"
     return ("" if value > 0.0 else "\N{MINUS SIGN}") + f"{factor}10{_raised(int(power))}"
@@ -142,13 +176,19 @@ def even_in_ratios(axis: Any) -> None:
 
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
-    axis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2.5 else (1.0, 3.0) if decades > 1.2 else (1.0, 2.0, 5.0)))
+    axis.set_major_locator(
+        LogLocator(
+            subs=(1.0,) if decades > 2.5 else (1.0, 3.0) if decades > 1.2 else (1.0, 2.0, 5.0)
+        )
+    )
     axis.set_major_formatter(FuncFormatter(lambda x, _: number(x)))
     axis.set_minor_formatter(NullFormatter())
 
 
 def tick(axis: Any, values: Array, inches: float) -> None:
-    """Ticks of an axis of a length at values, ascending, with numbers as far as they do not run into each other."""
+    """Ticks of an axis of a length at values, ascending, with numbers as far as they do not run
+    into each other.
+    """
     turn = np.log if axis.get_scale() == "log" else np.positive
     low, high = turn(axis.get_view_interval())
     words, end = [f"{x:.4g}".replace("-", "\N{MINUS SIGN}") for x in values], -np.inf
@@ -163,12 +203,16 @@ def tick(axis: Any, values: Array, inches: float) -> None:
 
 
 def logarithmic(x: Array) -> bool:
-    """Whether values are even in ratios rather than in steps: they span ten times, their median nearer to the geometric mean."""
+    """Whether values are even in ratios rather than in steps: they span ten times, their median
+    nearer to the geometric mean.
+    """
     low, high = x.min(), x.max()
     if low <= 0.0 or high < 10.0 * low:
         return False
     middle = float(np.median(x))
-    return bool(abs(np.log(middle / np.sqrt(low * high))) < abs(np.log(middle / ((low + high) / 2))))
+    return bool(
+        abs(np.log(middle / np.sqrt(low * high))) < abs(np.log(middle / ((low + high) / 2)))
+    )
 
 
 def edges(x: Array, log: bool) -> Array:

@@ -1,4 +1,6 @@
-"""Which values of a parameter or an axis are meant: a number that is there, a list of such numbers, or all within a range."""
+"""Which values of a parameter or an axis are meant: a number that is there, a list of such numbers,
+or all within a range.
+"""
 
 from __future__ import annotations
 
@@ -28,23 +30,37 @@ def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.b
 
     Raises :class:`DeclarationError` for what cannot be, and for what no value is.
     """
-    several = isinstance(wanted, list | tuple | set | frozenset | range) or (isinstance(wanted, np.ndarray) and wanted.ndim == 1)
+    several = isinstance(wanted, list | tuple | set | frozenset | range) or (
+        isinstance(wanted, np.ndarray) and wanted.ndim == 1
+    )
     told = [typed(number) for number in (wanted if several else [wanted])]
     for in_unit in (told_unit for _, told_unit in told if told_unit not in ("", unit)):
         other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
-        raise DeclarationError(f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}")
+        raise DeclarationError(
+            f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}"
+        )
     try:
         numbers = np.array([read_number(value, finite=False) for value, _ in told])
     except NumberError:
         numbers = np.array([np.nan])
     pair = isinstance(wanted, tuple)
     if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
-        raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {shown(wanted)}")
+        raise DeclarationError(
+            f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got"
+            f" {shown(wanted)}"
+        )
     if not pair:
-        return np.asarray(np.any([_found(name, there, near(there, number), number, "=") for number in numbers], axis=0))
+        return np.asarray(
+            np.any(
+                [_found(name, there, near(there, number), number, "=") for number in numbers],
+                axis=0,
+            )
+        )
     low, high = numbers
     if high < low:
-        raise DeclarationError(f"select: {name}: expected (low, high), got {shown(wanted)}: the range is reversed")
+        raise DeclarationError(
+            f"select: {name}: expected (low, high), got {shown(wanted)}: the range is reversed"
+        )
     within = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
     return _found(name, there, within, low, f"up to {high:.10g} and from")
 
@@ -52,11 +68,15 @@ def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.b
 def absent(name: str, there: Array, number: float, words: str = "=") -> str:
     """Say of a number that no value is it, with the nearest that are."""
     values = np.unique(there)
-    close = ", ".join(f"{value:.10g}" for value in values[np.argsort(np.abs(values - number), kind="stable")[:2]])
+    close = ", ".join(
+        f"{value:.10g}" for value in values[np.argsort(np.abs(values - number), kind="stable")[:2]]
+    )
     return f"no design has {name} {words} {number:.10g}; nearest: {close}"
 
 
-def _found(name: str, there: Array, met: npt.NDArray[np.bool_], number: float, words: str) -> npt.NDArray[np.bool_]:
+def _found(
+    name: str, there: Array, met: npt.NDArray[np.bool_], number: float, words: str
+) -> npt.NDArray[np.bool_]:
     if not met.any():
         raise DeclarationError(absent(name, there, number, words))
     return met

@@ -1,7 +1,8 @@
 """What a sweep keeps of the strength of links: least factors of safety, lives, and masses.
 
-Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole histories: where stations stand still,
-of all designs at once (:mod:`...strength.fibres`), else of one design after another, as of a solution.
+Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole
+histories: where stations stand still, of all designs at once (:mod:`...strength.fibres`), else of
+one design after another, as of a solution.
 """
 
 from __future__ import annotations
@@ -31,19 +32,25 @@ from .matter import Matter
 from .meanings import LEAST, LIFE, MASS, WAYS
 
 _NUMBERS = 1 << 19
-"""Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory next to a processor."""
+"""Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory
+next to a processor.
+"""
 
 _CRITERION = "goodman"
 
 _ENDLESS = 0.9
-"""Utilisation at places up to which nothing wears between them: of a polynomial of degree 5 they miss less than the rest."""
+"""Utilisation at places up to which nothing wears between them: of a polynomial of degree 5 they
+miss less than the rest.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose ``life`` is.
+    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose
+    ``life`` is.
 
-    ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that lack it for some designs.
+    ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that
+    lack it for some designs.
     """
 
     data: ModelData
@@ -62,19 +69,42 @@ class Kept:
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which something is kept, in the order of declaration."""
-        return tuple(name for name in self.data.template.content["bodies"] if name in (*self.safety, *self.life))
+        return tuple(
+            name
+            for name in self.data.template.content["bodies"]
+            if name in (*self.safety, *self.life)
+        )
 
     @cached_property
     def columns(self) -> Mapping[str, bool]:
-        """The names of the columns, in the order of :meth:`evaluate`, and which may lack numbers where there is a result."""
-        found = {f"{LEAST}:{way}:{link}": link in self.doubtful for link in self._judged for way in ("safety", *self._ways(link))}
+        """The names of the columns, in the order of :meth:`evaluate`, and which may lack numbers
+        where there is a result.
+        """
+        found = {
+            f"{LEAST}:{way}:{link}": link in self.doubtful
+            for link in self._judged
+            for way in ("safety", *self._ways(link))
+        }
         found |= {f"{LIFE}:{link}": link in self.doubtful for link in self._lives}
         return found | {f"{MASS}:{part}": False for part in (*self.links, ALL) if self.links}
 
-    def evaluate(self, status: npt.NDArray[np.int8], value: Array, series: Array | None, times: Array, p: Array) -> list[Array]:
-        """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n, outputs, t), ``times`` (n, t)."""
+    def evaluate(
+        self,
+        status: npt.NDArray[np.int8],
+        value: Array,
+        series: Array | None,
+        times: Array,
+        p: Array,
+    ) -> list[Array]:
+        """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n,
+        outputs, t), ``times`` (n, t).
+        """
         there = np.flatnonzero(status == 0)
-        tired = {link: self._tired(link, there, series, times, p) for link in self.links if self._tires(link)}
+        tired = {
+            link: self._tired(link, there, series, times, p)
+            for link in self.links
+            if self._tires(link)
+        }
         found: list[Array] = []
         for link in self._judged:
             kept = [f"utilisation:{link}:{way}" for way in self._ways(link) if way != "fatigue"]
@@ -103,7 +133,9 @@ class Kept:
     def _tires(self, link: str) -> bool:
         return link in self.data.materials and not lacking(self.data.materials[link])
 
-    def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
+    def _tired(
+        self, link: str, there: Any, series: Array | None, times: Array, p: Array
+    ) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
         share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
         assert series is not None
@@ -117,30 +149,57 @@ class Kept:
         for moving in np.unique(counts, axis=0):
             if moving.any():
                 alike = (counts == moving).all(axis=1)
-                self._count(link, there[alike], members[alike][..., moving], (series, times, moving, p), names, share, lives)
+                self._count(
+                    link,
+                    there[alike],
+                    members[alike][..., moving],
+                    (series, times, moving, p),
+                    names,
+                    share,
+                    lives,
+                )
         return share, lives
 
     def _count(
-        self, link: str, there: Any, members: Array, whole: tuple[Any, ...], names: Mapping[str, int], share: Array, lives: Array
+        self,
+        link: str,
+        there: Any,
+        members: Array,
+        whole: tuple[Any, ...],
+        names: Mapping[str, int],
+        share: Array,
+        lives: Array,
     ) -> None:
-        """Fill in utilisations and lives of designs that are ``there``, of which the same instants count."""
-        (series, times, moving, p), fatigue, material = whole, self._fatigue[link], self.data.materials[link]
+        """Fill in utilisations and lives of designs that are ``there``, of which the same instants
+        count.
+        """
+        (series, times, moving, p), fatigue, material = (
+            whole,
+            self._fatigue[link],
+            self.data.materials[link],
+        )
         stands = fatigue.stands(members)
         some, standing = there[stands], members[stands]
-        many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
+        many = max(
+            1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2])
+        )
         for start in range(0, some.size, many):
             few = slice(start, start + many)
             share[some[few]] = fatigue.histories(standing[few], p[some[few]]).utilisation(material)
         for i in there.tolist():
             endless = share[i] <= _ENDLESS and material.endless
             if np.isnan(share[i]) or (link in self.life and not endless):
-                found, cycles = self._slowly(link, series[i][:, moving], times[min(i, len(times) - 1)][moving], p[i], names)
+                found, cycles = self._slowly(
+                    link, series[i][:, moving], times[min(i, len(times) - 1)][moving], p[i], names
+                )
                 share[i] = found if np.isnan(share[i]) else share[i]
                 lives[i] = cycles
             else:
                 lives[i] = math.inf
 
-    def _slowly(self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]) -> tuple[float, float]:
+    def _slowly(
+        self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]
+    ) -> tuple[float, float]:
         """The same of one design, as of a solution."""
         members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
         beam = beam_told(self.data.at(p)["bodies"][link]["beam"])
@@ -157,7 +216,11 @@ class Kept:
     def _fatigue(self) -> dict[str, FibreStresses]:
         found = {}
         for name in self.links:
-            members = [output for output in map(Output.of, self.series) if output.along and output.part == name]
+            members = [
+                output
+                for output in map(Output.of, self.series)
+                if output.along and output.part == name
+            ]
             found[name] = FibreStresses.of(self.data, name, members)
         return found
 

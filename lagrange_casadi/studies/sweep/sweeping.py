@@ -50,26 +50,33 @@ def sweep(
     many: bool = False,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Evaluate a scene for many designs, and keep of each what sizes its parts. Nothing is derived or compiled for a design.
+    """Evaluate a scene for many designs, and keep of each what sizes its parts.
+
+    Nothing is derived or compiled for a design.
 
     Parameters
     ----------
     scene
-        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they are sent what is derived.
+        A scene, or a case from :func:`.load_case`. Workers of a cluster need no file of it: they
+        are sent what is derived.
     grid
-        A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or a :class:`.Range`; or a
-        :class:`.Listed` of designs, as :func:`.read_designs` reads it from CSV.
+        A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or
+        a :class:`.Range`; or a :class:`.Listed` of designs, as :func:`.read_designs` reads it from
+        CSV.
     out
         The file; by default one that lives as long as what is returned.
     parameters
         Values of parameters that are not swept.
     t, over, wanted
-        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name. With ``over``, or with bounds of
-        ``t`` that are expressions of parameters, every design has times of its own.
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name. With
+        ``over``, or with bounds of ``t`` that are expressions of parameters, every design has times
+        of its own.
     xi
-        Ratios xi/l at which section forces are kept too: over the instants, the value largest in size at each.
+        Ratios xi/l at which section forces are kept too: over the instants, the value largest in
+        size at each.
     keep
-        ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all outputs over time.
+        ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all
+        outputs over time.
     backend, precision, newton, flags
         How it is evaluated: see :class:`.Rung`.
     workers
@@ -81,14 +88,13 @@ def sweep(
     many
         Mean it where there are more than 10^9 designs.
     progress
-        Called with what is being done (``designs``, after an interrupt ``stopping``, then ``file``), how much of it is done, and of
-        how much.
+        Called with what is being done (``designs``, after an interrupt ``stopping``, then
+        ``file``), how much of it is done, and of how much.
 
-    Notes
-    -----
-    Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
-    :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
-    :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
+    Notes ----- Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError`
+    or :class:`PathError` for mistakes, :class:`StoreError` where the file is another sweep's or
+    cannot be written, :class:`BusyError` where another process writes it, :class:`ClusterError`
+    where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
     :class:`StoppedError` after an interrupt. What was done is kept.
     """
     plan = Plan.of(
@@ -106,7 +112,9 @@ def sweep(
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     hands = hired(workers, dask)
-    seen = carry_out(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
+    seen = carry_out(
+        plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None)
+    )
     return opened_sweep(target, seen, keeper)
 
 
@@ -119,12 +127,19 @@ class _Temporary:
 
 
 def hired(workers: int | None, dask: str | None) -> Workers:
-    """Choose who evaluates. Raises :class:`DeclarationError` for a count that no machine has, and for both."""
+    """Choose who evaluates.
+
+    Raises :class:`DeclarationError` for a count that no machine has, and for both.
+    """
     if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_THREADS):
-        raise DeclarationError(f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}")
+        raise DeclarationError(
+            f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}"
+        )
     if dask is None:
         return Threads(workers)
     if workers is not None:
-        raise DeclarationError("workers and dask exclude each other: a cluster has workers of its own")
+        raise DeclarationError(
+            "workers and dask exclude each other: a cluster has workers of its own"
+        )
     cluster: Workers = method("sweep.dask")(dask)
     return cluster

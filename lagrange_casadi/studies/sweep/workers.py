@@ -17,23 +17,31 @@ Block = tuple[int, int, list[bytes]]
 """Designs from and to before, and their columns as the file keeps them."""
 
 Blocks = Generator[Block | None, None, None]
-"""Blocks as they are done; None where nothing was done for a while, so that whoever waits may stop."""
+"""Blocks as they are done; None where nothing was done for a while, so
+that whoever waits may stop.
+"""
 
 
 PULSE, PATIENCE = 0.1, 0.7
-"""Seconds after which whoever waits hears that nothing came, and in which blocks that are under way may still end."""
+"""Seconds after which whoever waits hears that nothing came, and in which blocks that are under way
+may still end.
+"""
 
 
 class Workers(Protocol):
     """Whoever evaluates blocks."""
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
-        """Evaluate what is in the queue, in any order; what was begun when it is stopped is given if it ends within patience."""
+        """Evaluate what is in the queue, in any order; what was begun when it is stopped is given
+        if it ends within patience.
+        """
 
 
 @dataclass(frozen=True)
 class Threads:
-    """Threads of this process, by default one a core, each at a block of its own; fewer where memory does not hold as many."""
+    """Threads of this process, by default one a core, each at a block of its own; fewer where
+    memory does not hold as many.
+    """
 
     count: int | None = None
 

@@ -14,13 +14,17 @@ def main(folder: str, library: str, *ratios: str) -> None:
     def struct(name: str, members: list[str]) -> type[ctypes.Structure]:
         return type(name, (ctypes.Structure,), {"_fields_": [(member, real) for member in members]})
 
-    inputs, outputs = (struct(kind, [row["name"] for row in told[kind]]) for kind in ("inputs", "outputs"))
+    inputs, outputs = (
+        struct(kind, [row["name"] for row in told[kind]]) for kind in ("inputs", "outputs")
+    )
     kinds = {"real": real, "unsigned": ctypes.c_uint, "int": ctypes.c_int}
     layout = [(row["name"], kinds[row["type"]] * row["count"]) for row in told["model"]]
     model = type("model", (ctypes.Structure,), {"_fields_": layout})()
     forces = struct("forces", ["axial", "shear", "bending"])
     loaded, p = ctypes.CDLL(library), told["prefix"]
-    prepare, motion, evaluate = (getattr(loaded, f"{p}_{name}") for name in ("prepare", "motion", "evaluate"))
+    prepare, motion, evaluate = (
+        getattr(loaded, f"{p}_{name}") for name in ("prepare", "motion", "evaluate")
+    )
     message = getattr(loaded, f"{p}_message")
     message.restype = ctypes.c_char_p
     motion.argtypes = [ctypes.c_void_p, *[real] * (2 if single else 1), ctypes.c_void_p]
@@ -38,10 +42,24 @@ def main(folder: str, library: str, *ratios: str) -> None:
         values = [getattr(found, name) for name, _ in outputs._fields_]
         for number, _ in enumerate(told["links"]):
             section = getattr(loaded, f"{p}_section")
-            section.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, real, ctypes.c_void_p]
+            section.argtypes = [
+                ctypes.c_void_p,
+                ctypes.c_void_p,
+                ctypes.c_int,
+                real,
+                ctypes.c_void_p,
+            ]
             for ratio in ratios:
                 at = forces()
-                check(section(ctypes.byref(model), ctypes.byref(found), number, float(ratio), ctypes.byref(at)))
+                check(
+                    section(
+                        ctypes.byref(model),
+                        ctypes.byref(found),
+                        number,
+                        float(ratio),
+                        ctypes.byref(at),
+                    )
+                )
                 values += [at.axial, at.shear, at.bending]
         print(*(value.hex() for value in values))
 
