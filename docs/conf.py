@@ -170,13 +170,9 @@ def write(path, text):
         path.write_text(text)
 
 
-NOTEBOOKS = {f"tutorials/{name}" for name in ("connecting_rod", "air_damper", "jigsaw")}
-"""Pages that can be downloaded as notebooks."""
-
-
 def offer_a_notebook(_app, name, source):
     """Write a page as a notebook too, and put a link to it below the title."""
-    if name in NOTEBOOKS:
+    if name in notebooks.PAGES:
         page = HERE / f"{name}.md"
         made = page.parent / "generated" / f"{page.stem}.ipynb"
         made.parent.mkdir(exist_ok=True)

@@ -3,19 +3,25 @@
 import base64
 import mimetypes
 import re
+import textwrap
 
 import nbformat
 from nbformat import v4
 
-CELL = re.compile(r"```python\n(?P<code>.*?)```\n(\n(?P<shown>( {4}[^\n]*\n|\n(?= {4}))+))?", re.DOTALL)
-"""A block of code, and the indented block after it, which is what the code prints."""
+PAGES = ("tutorials/connecting_rod", "tutorials/air_damper", "tutorials/jigsaw")
+"""The pages that can be downloaded as notebooks."""
+
+INDENTED = r"( {4}[^\n]*\n|\n(?= {4}))+"
+CELL = re.compile(rf"```python\n(?P<code>.*?)```\n(\n(?P<shown>{INDENTED}))?", re.DOTALL)
+"""A block of code, and the indented block right after it: the lines that the code prints."""
 
 
 def cells(page):
-    """Split a page into triples: text, the code after it, and the printed lines that the page shows."""
+    """Split a page into triples: text, the code after it, and the lines that the code prints."""
     found, done = [], 0
     for match in CELL.finditer(page):
-        found.append((page[done : match.start()], match["code"], match["shown"]))
+        shown = match["shown"] and textwrap.dedent(match["shown"])
+        found.append((page[done : match.start()], match["code"], shown))
         done = match.end()
     return [*found, (page[done:], None, None)]
 
@@ -26,7 +32,7 @@ def write(path, page, folder):
     for text, code, shown in cells(page):
         made.append(prose(text, folder))
         if code is not None:
-            printed = [v4.new_output("stream", text=re.sub(r"^ {4}", "", shown, flags=re.MULTILINE))] if shown else []
+            printed = [v4.new_output("stream", text=shown)] if shown else []
             made.append(v4.new_code_cell(code.rstrip("\n"), outputs=printed))
     for number, cell in enumerate(made):
         cell["id"] = f"cell-{number}"  # the same bytes in every build
@@ -36,10 +42,10 @@ def write(path, page, folder):
 
 def prose(text, folder):
     """Make a cell of text: pictures are part of it, links to other pages are plain text."""
-    pictures = {
-        name: {mimetypes.guess_type(name)[0]: base64.b64encode((folder / name).read_bytes()).decode()}
-        for name in re.findall(r"!\[[^]]*\]\(([^):]+)\)", text)
-    }
+    pictures = {}
+    for name in re.findall(r"!\[[^]]*\]\(([^):]+)\)", text):
+        picture = base64.b64encode((folder / name).read_bytes()).decode()
+        pictures[name] = {mimetypes.guess_type(name)[0]: picture}
     text = re.sub(r"(!\[[^]]*\]\()([^):]+\))", r"\1attachment:\2", text)
     text = re.sub(r"(?<!!)\[([^]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
     return v4.new_markdown_cell(text.strip("\n"), **({"attachments": pictures} if pictures else {}))

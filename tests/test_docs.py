@@ -3,8 +3,10 @@
 import inspect
 import re
 import subprocess
+import sys
 from pathlib import Path
 
+import nbformat
 import pytest
 
 import lagrange_casadi
@@ -18,27 +20,30 @@ from lagrange_casadi.store.runs import SCHEMA_VERSION
 pytestmark = pytest.mark.quick
 
 ROOT = Path(__file__).parent.parent
+sys.path.append(str(ROOT / "docs"))
+
+import notebooks  # noqa: E402 - it lies beside the pages
+
 PAGES = [
     "README.md",
-    *(
-        f"docs/{page}.md"
-        for page in (
-            *(
-                "method",
-                "declaring",
-                "loads",
-                "machines",
-                "space",
-                "strength",
-                "sweeps",
-                "report",
-                "animations",
-                "optimise",
-            ),
-            *("reference/python", "tutorials/connecting_rod", "tutorials/two_loops"),
-        )
-    ),
+    "docs/method.md",
+    "docs/declaring.md",
+    "docs/loads.md",
+    "docs/machines.md",
+    "docs/space.md",
+    "docs/strength.md",
+    "docs/sweeps.md",
+    "docs/report.md",
+    "docs/animations.md",
+    "docs/optimise.md",
+    "docs/reference/python.md",
 ]
+CONTINUED = sorted(
+    page.relative_to(ROOT).as_posix()
+    for folder in ("tutorials", "gallery/questions")
+    for page in (ROOT / "docs" / folder).glob("*.md")
+    if page.stem != "index"
+)
 WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if "generated" not in page.parts)
 PROSE = ["README.md", "CONTRIBUTING.md", *(page.relative_to(ROOT).as_posix() for page in WRITTEN)]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
@@ -50,11 +55,49 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks
-    names = {}
     for block in blocks:
-        exec(
-            compile(block, page, "exec"), names if "tutorials" in page else {}
-        )  # a tutorial goes on where it was
+        exec(compile(block, page, "exec"), {})
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("page", CONTINUED)
+def test_pages_show_what_their_code_prints(page, tmp_path, monkeypatch, capsys):
+    """On these pages a block uses the names of those before it."""
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for _, code, shown in notebooks.cells((ROOT / page).read_text()):
+        exec(compile(code or "", page, "exec"), names)
+        printed = capsys.readouterr().out
+        assert shown is None or printed.split() == shown.split()
+
+
+@pytest.mark.parametrize("name", notebooks.PAGES)
+def test_a_notebook_has_the_code_and_the_pictures_of_its_page(name, tmp_path):
+    page = ROOT / "docs" / f"{name}.md"
+    text = page.read_text()
+    notebooks.write(tmp_path / "made.ipynb", text, page.parent)
+    made = nbformat.read(tmp_path / "made.ipynb", as_version=4)
+    nbformat.validate(made)
+    code = [cell.source for cell in made.cells if cell.cell_type == "code"]
+    assert [f"{source}\n" for source in code] == re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert sum(len(cell.get("attachments", ())) for cell in made.cells) == text.count("![") > 0
+
+
+def test_the_program_of_the_tutorial_prints_what_is_shown(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "tutorials" / "microcontroller.md").read_text()
+    names = {}
+    for _, code, _ in notebooks.cells(page)[:2]:
+        exec(compile(code, "microcontroller.md", "exec"), names)
+    (program,) = re.findall(r"```c\n(.*?)```", page, re.DOTALL)
+    Path("main.c").write_text(program)
+    files = ["-Ifeeder_c", "main.c", "feeder_c/feeder.c", "-o", "main", "-lm"]
+    flags = ["-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Werror"]
+    subprocess.run([*find_compiler("c").command, *flags, *files], check=True)
+    capfd.readouterr()
+    subprocess.run([tmp_path / "main"], check=True)
+    shown = re.search(r"It prints\n\n((    .*\n)+)", page)[1]
+    assert capfd.readouterr().out.split() == shown.split()
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
@@ -89,7 +132,7 @@ def test_the_exported_c_is_called_as_shown(page, tmp_path):
 
 @pytest.mark.parametrize("page", LINKING)
 def test_links_lead_somewhere(page):
-    for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
+    for target in re.findall(r"\]\(([^)#:]+)\)", (ROOT / page).read_text()):
         assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
 
 
