@@ -3,7 +3,6 @@
 import base64
 import mimetypes
 import re
-import textwrap
 
 import nbformat
 from nbformat import v4
@@ -11,17 +10,15 @@ from nbformat import v4
 PAGES = ("tutorials/connecting_rod", "tutorials/air_damper", "tutorials/jigsaw")
 """The pages that can be downloaded as notebooks."""
 
-INDENTED = r"( {4}[^\n]*\n|\n(?= {4}))+"
-CELL = re.compile(rf"```python\n(?P<code>.*?)```\n(\n(?P<shown>{INDENTED}))?", re.DOTALL)
-"""A block of code, and the indented block right after it: the lines that the code prints."""
+CELL = re.compile(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", re.DOTALL)
+"""A block of code, and the block of text right after it: the lines that the code prints."""
 
 
 def cells(page):
     """Split a page into triples: text, the code after it, and the lines that the code prints."""
     found, done = [], 0
     for match in CELL.finditer(page):
-        shown = match["shown"] and textwrap.dedent(match["shown"])
-        found.append((page[done : match.start()], match["code"], shown))
+        found.append((page[done : match.start()], *match.groups()))
         done = match.end()
     return [*found, (page[done:], None, None)]
 

@@ -96,7 +96,7 @@ def test_the_program_of_the_tutorial_prints_what_is_shown(tmp_path, monkeypatch,
     subprocess.run([*find_compiler("c").command, *flags, *files], check=True)
     capfd.readouterr()
     subprocess.run([tmp_path / "main"], check=True)
-    shown = re.search(r"It prints\n\n((    .*\n)+)", page)[1]
+    shown = re.search(r"It prints\n\n```text\n(.*?)```", page, re.DOTALL)[1]
     assert capfd.readouterr().out.split() == shown.split()
 
 
