@@ -178,7 +178,7 @@ def offer_a_notebook(_app, name, source):
         made.parent.mkdir(exist_ok=True)
         notebooks.write(made, source[0], page.parent)
         title, rest = source[0].split("\n", 1)
-        link = f"{{download}}`Download this page as a notebook <generated/{made.name}>`"
+        link = f"[Download this page as a notebook](generated/{made.name})"
         source[0] = f"{title}\n\n{link}\n{rest}"
 
 
