@@ -38,12 +38,6 @@ PAGES = [
     "docs/optimise.md",
     "docs/reference/python.md",
 ]
-CONTINUED = sorted(
-    page.relative_to(ROOT).as_posix()
-    for folder in ("tutorials", "gallery/questions")
-    for page in (ROOT / "docs" / folder).glob("*.md")
-    if page.stem != "index"
-)
 WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if "generated" not in page.parts)
 PROSE = ["README.md", "CONTRIBUTING.md", *(page.relative_to(ROOT).as_posix() for page in WRITTEN)]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
@@ -59,18 +53,6 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
         exec(compile(block, page, "exec"), {})
 
 
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("page", CONTINUED)
-def test_pages_show_what_their_code_prints(page, tmp_path, monkeypatch, capsys):
-    """On these pages a block uses the names of those before it."""
-    monkeypatch.chdir(tmp_path)
-    names = {}
-    for _, code, shown in notebooks.cells((ROOT / page).read_text()):
-        exec(compile(code or "", page, "exec"), names)
-        printed = capsys.readouterr().out
-        assert shown is None or printed.split() == shown.split()
-
-
 @pytest.mark.parametrize("name", notebooks.PAGES)
 def test_a_notebook_has_the_code_and_the_pictures_of_its_page(name, tmp_path):
     page = ROOT / "docs" / f"{name}.md"
@@ -81,23 +63,6 @@ def test_a_notebook_has_the_code_and_the_pictures_of_its_page(name, tmp_path):
     code = [cell.source for cell in made.cells if cell.cell_type == "code"]
     assert [f"{source}\n" for source in code] == re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert sum(len(cell.get("attachments", ())) for cell in made.cells) == text.count("![") > 0
-
-
-def test_the_program_of_the_tutorial_prints_what_is_shown(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs" / "tutorials" / "microcontroller.md").read_text()
-    names = {}
-    for _, code, _ in notebooks.cells(page)[:2]:
-        exec(compile(code, "microcontroller.md", "exec"), names)
-    (program,) = re.findall(r"```c\n(.*?)```", page, re.DOTALL)
-    Path("main.c").write_text(program)
-    files = ["-Ifeeder_c", "main.c", "feeder_c/feeder.c", "-o", "main", "-lm"]
-    flags = ["-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Werror"]
-    subprocess.run([*find_compiler("c").command, *flags, *files], check=True)
-    capfd.readouterr()
-    subprocess.run([tmp_path / "main"], check=True)
-    shown = re.search(r"It prints\n\n```text\n(.*?)```", page, re.DOTALL)[1]
-    assert capfd.readouterr().out.split() == shown.split()
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/export.md"])
