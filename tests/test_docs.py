@@ -297,7 +297,7 @@ TRUSTED = {
         "`--flags` (`flags=`) go to it",
         "The cache folder",
     ],
-    "The seal": ["tells damage", "no signature"],
+    "The seal": ["detects damage", "no signature"],
     "Files of unknown origin": ["`--time-limit`", "What it does not promise"],
 }
 
