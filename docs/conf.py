@@ -4,6 +4,7 @@ import ast
 import builtins
 import inspect
 import re
+import sys
 import typing
 from collections import Counter
 from contextlib import suppress
@@ -16,6 +17,9 @@ import lagrange_casadi
 
 HERE = Path(__file__).parent
 CASES = HERE.parent / "cases"
+sys.path.append(str(HERE))
+
+import notebooks  # noqa: E402 - it lies beside this file
 
 project = "lagrange_casadi"
 author = "The lagrange_casadi developers"
@@ -166,6 +170,18 @@ def write(path, text):
         path.write_text(text)
 
 
+def offer_a_notebook(_app, name, source):
+    """Write a page as a notebook too, and put a link to it below the title."""
+    if name in notebooks.PAGES:
+        page = HERE / f"{name}.md"
+        made = page.parent / "generated" / f"{page.stem}.ipynb"
+        made.parent.mkdir(exist_ok=True)
+        notebooks.write(made, source[0], page.parent)
+        title, rest = source[0].split("\n", 1)
+        link = f"[Download this page as a notebook](generated/{made.name})"
+        source[0] = f"{title}\n\n{link}\n{rest}"
+
+
 class Names(dict):
     """Names of annotations that only a type checker imports, each as a class of this name."""
 
@@ -239,6 +255,7 @@ def out_of_the_pages(app, tree):
 def setup(app):
     """Connect what is above."""
     app.connect("builder-inited", gallery)
+    app.connect("source-read", offer_a_notebook)
     app.connect("autodoc-before-process-signature", without_marks)
     app.connect("autodoc-process-signature", short_arrays)
     app.connect("missing-reference", by_last_name)

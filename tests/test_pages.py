@@ -1,4 +1,4 @@
-"""How-to guides: every block is run, and prints what its page says."""
+"""Tutorials, how-to guides and answers: every block is run, and prints what its page says."""
 
 import contextlib
 import io
@@ -14,13 +14,18 @@ import pytest
 # A cluster wants the same flags everywhere, and commands build with those that users have.
 pytestmark = pytest.mark.usefixtures("released")
 
-HOWTO = Path(__file__).parent.parent / "docs" / "howto"
-PAGES = sorted(page.stem for page in HOWTO.glob("*.md") if page.stem != "index")
+DOCS = Path(__file__).parent.parent / "docs"
+PAGES = sorted(
+    page.relative_to(DOCS).with_suffix("").as_posix()
+    for folder in ("tutorials", "howto", "gallery/questions")
+    for page in (DOCS / folder).glob("*.md")
+    if page.stem != "index"
+)
 
 
 def blocks(page):
     """Yield the language, the text and the stated result of each fenced block, but for results."""
-    text = (HOWTO / f"{page}.md").read_text()
+    text = (DOCS / f"{page}.md").read_text()
     fences = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
     for (language, text), following in zip(fences, [*fences[1:], ("", "")], strict=True):
         if language != "text":
@@ -55,7 +60,7 @@ def missing(stated, printed):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_guides_run_and_print_what_they_say(page, tmp_path, monkeypatch):
+def test_pages_run_and_print_what_they_say(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {}
     found = list(blocks(page))
