@@ -22,7 +22,7 @@ from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.instant_axis import in_words
 from .echo import echo
-from .report import asked_line, peak_line
+from .report import Rows, asked_line
 from .strength_lines import untold_lines
 
 
@@ -90,9 +90,8 @@ def _describe_file(solution: Solution) -> None:
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
         echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
-    echo("peaks:")
-    for name in solution.names():
-        echo(peak_line(solution, solution.peak(name)))
+    for line in Rows.of_all(solution).table():
+        echo(line)
 
 
 def _describe_sweep(identity: Mapping[str, Any]) -> None:

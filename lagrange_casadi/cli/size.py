@@ -14,7 +14,7 @@ from ..declare.times import Over
 from ..studies.sizing import Sized, size
 from .echo import echo
 from .options import parameters
-from .strength_lines import safety_lines, told
+from .strength_lines import evaluated, safety_lines
 
 
 def size_command(
@@ -61,7 +61,7 @@ def size_command(
             echo(line)
     for name, why in found.left.items():
         echo(f"{name}: left as it is, for {why}")
-        for line in told(
+        for line in evaluated(
             name,
             lambda link: list(
                 safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding))

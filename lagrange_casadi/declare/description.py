@@ -214,6 +214,18 @@ def fitted_of(description: Description) -> list[str]:
     return [name for name, joint in description["joints"].items() if "fitted" in joint]
 
 
+def bends_of(description: Description) -> list[str]:
+    """Return the welds between the pieces of bent bars, by the names that they get there."""
+    found = []
+    for name, joint in description["joints"].items():
+        bar, bend, number = name.rpartition("_bend_")
+        if bend and number.isdigit() and joint["kind"] == "weld":
+            pieces = joint["parent"]["body"], joint["child"]["body"]
+            if pieces == (f"{bar}_{number}", f"{bar}_{int(number) + 1}"):
+                found.append(name)
+    return found
+
+
 def parts_of(description: Description) -> list[str]:
     """The names of all parts that outputs are of."""
     tables = ("bodies", "joints", "constraints", "rows", "loads")
