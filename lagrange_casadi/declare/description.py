@@ -118,7 +118,9 @@ def check_places(description: Description) -> None:
         *((name, point) for name, load in description["loads"].items() for point in load["points"]),
     ):
         if place["body"] != "ground" and place["body"] not in description["bodies"]:
-            raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
+            raise ValueError(
+                f"'{name}' is at a place on '{place['body']}', which is not a body of the mechanism"
+            )
 
 
 def density_of(body: Description) -> NumericDensity:
