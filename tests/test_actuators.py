@@ -125,7 +125,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
     with pytest.raises(
         NoDesignError,
         match=(
-            r"no motor of 3 serves; nearest comes large: (speed|heat|peak torque) \d+ % of what it"
+            r"no motor of 3 is suitable; nearest is large: (speed|heat|peak torque) \d+ % of its"
         ),
     ):
         select(
@@ -186,7 +186,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
             f"{HEADS},inertia",
             "line 1: the column 'inertia' comes twice",
         ),
-        ([], HEADS, "it has no motors, only heads"),
+        ([], HEADS, "expected at least one motor below the heads"),
     ],
 )
 def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):

@@ -36,7 +36,7 @@ def told(station):
     ) as error:
         crank(station)
     lines = re.search(
-        r"of its own: (tail = .*); and tail\.tip in place of the station", str(error.value)
+        r"declare another link: (tail = .*); and use tail\.tip as the point", str(error.value)
     )[1]
 
     def place(m):

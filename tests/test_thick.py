@@ -246,14 +246,14 @@ def test_second_moments_are_told_in_any_way_of_densities():
         (
             {"yy": -1e-3, "zz": 1e-3},
             (
-                "link 'a': no slice has these second moments: yy, zz and yy zz - yz yz must not be"
-                " negative"
+                "link 'a': impossible second moments of slices: yy, zz and yy zz - yz yz must not"
+                " be negative"
             ),
         ),
-        ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': no slice has these second moments"),
+        ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': impossible second moments of slices"),
         (
             {"yy": 1e-3, "zz": density.polynomial(1e-3, -3e-3)},
-            "link 'a': no slice has these second moments",
+            "link 'a': impossible second moments of slices",
         ),
     ],
 )

@@ -151,7 +151,7 @@ def _describe_mechanism(description: Description) -> None:
         echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
     echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
     if description.get("bars"):
-        echo(f"  bars, whose spin about their own axis is idle: {', '.join(description['bars'])}")
+        echo(f"  two-force links, whose spin has no effect: {', '.join(description['bars'])}")
 
 
 def _in_plane(joint: Description) -> str:
@@ -187,7 +187,7 @@ def _in_space(joint: Description, description: Description) -> str:
     return (
         told
         if barred or not unmeasured & set(joint["coordinates"])
-        else f"{told}, closes a loop: its angles are not measured"
+        else f"{told}, closes a loop: its angles are not evaluated"
     )
 
 
@@ -198,7 +198,7 @@ def _driven(coordinate: str, joint: Description, description: Description) -> st
     given, drives = coordinate in joint["driven"], description.get("drives")
     if drives is None:
         return ", driven" if given else ""
-    return f"{', driven' if coordinate in drives else ''}{', its motion is given' if given else ''}"
+    return f"{', driven' if coordinate in drives else ''}{', motion given' if given else ''}"
 
 
 def _vector(components: Sequence[float]) -> str:

@@ -238,7 +238,11 @@ def peak_line(solution: Solution, peak: Peak, scale: float | None = None) -> str
         where = f"{solution.over.shown(peak.over)}, {where}"
     error = error_of(solution, peak.name)
     value = shown(peak, error, _size(peak) if scale is None else scale)
-    more = "" if peak.least is None else "; too much hides between the instants, use more of them"
+    more = (
+        ""
+        if peak.least is None
+        else ("; the peak between the instants was not found, use more instants")
+    )
     return f"  {peak.name:<28} {value:>12} {peak.unit:<4} at {where}{more}"
 
 

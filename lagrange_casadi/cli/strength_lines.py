@@ -150,7 +150,11 @@ def _peak(link: str, peak: StressPeak) -> str:
     )
     least = peak.least
     value = f"{peak.value / 1e6 + 0.0:.6g}" if least is None else f">= {least / 1e6:.6g}"
-    more = "" if least is None else "; too much hides between the instants, use more of them"
+    more = (
+        ""
+        if least is None
+        else ("; the peak between the instants was not found, use more instants")
+    )
     return f"  {f'stress:{link}:{peak.kind}':<28} {value:>12} MPa  at {where}{more}"
 
 
