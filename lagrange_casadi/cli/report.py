@@ -280,8 +280,8 @@ def _aligned(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[st
 
 
 def asked_line(words: Sequence[Any], slides: bool) -> str:
-    """How instants are asked for, from :meth:`.Timing.words`; whether the joint ``slides``, where
-    there is one.
+    """Line on how the instants are defined, from :meth:`.Timing.words`, for a joint that ``slides``
+    or turns.
     """
     start, stop, count, *joint = words
     ends = [

@@ -73,8 +73,8 @@ def strength_cards(
 
 
 def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
-    """Which links and joints are left out of figures and tables of strength, and why, but for those
-    that were told of.
+    """Lines on links and joints without figures and tables of strength, and the reasons, except
+    those reported before.
     """
     for part, why in untold(solution).items():
         if part not in besides:

@@ -32,7 +32,7 @@ POINTS = Call(
         "slopes": "double*",
     },
 )
-"""What the C takes: n points, each with a time, iterated coordinates, a ratio, and so on; and the
+"""Arguments of the C: n points, each with a time, iterated coordinates, a ratio, and so on; and the
 parameters of all.
 """
 

@@ -27,16 +27,16 @@ FORCES = {
 """The section forces that stresses are linear in: in the plane, and in space."""
 
 _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
-"""Their places in :meth:`.Properties.rows`."""
+"""Places of the forces in :meth:`.Properties.rows`."""
 
 KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
-"""Of each kind of stress the weights of s^2 and t^2 in its square."""
+"""Weights of s^2 and t^2 in the square of each kind of stress."""
 
 _LOOKED_AT = 65
 """Places at which the thinnest cross-section is sought where it changes."""
 
 _DEEP = 4
-"""How much of an expression is compared to see that two fibres are alike."""
+"""Depth to which expressions of two fibres are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ class CrossSections:
         return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
-        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres,
+        """Factors of stresses by section forces between two breaks, at ratios ``u``: (3, fibres,
         forces, u...).
         """
         p = self.properties(cell, u)
@@ -121,13 +121,13 @@ class CrossSections:
 
     @cached_property
     def alone(self) -> list[list[int]]:
-        """Of each cell the fibres, those left out that are like another one."""
+        """Fibres of each cell without those that equal another one."""
         return [self._differing(cell, lower=False) for cell in range(len(self.beam.course.cells))]
 
     @cached_property
     def needed(self) -> list[list[int]]:
-        """Of each cell the fibres, those left out that have the normal stress of another one, and
-        no shear.
+        """Fibres of each cell without those that have the normal stress of another one, and no
+        shear.
         """
         return [self._differing(cell, lower=True) for cell in range(len(self.beam.course.cells))]
 
@@ -151,8 +151,8 @@ class CrossSections:
         return kept
 
     def _plain(self, row: tuple[tuple[Any, ...], ...]) -> tuple[list[Any], list[Any]]:
-        """What a fibre takes for its normal stress, and for its shear stress: in the plane alone
-        the square of this counts.
+        """Factors of a fibre's normal stress and shear stress: in the plane only the square of the
+        latter matters.
         """
         if self.space:
             return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
@@ -194,6 +194,8 @@ def _same(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> boo
 
 
 def _below(a: tuple[list[Any], list[Any]], b: tuple[list[Any], list[Any]]) -> bool:
-    """Whether a fibre has the normal stress of another one, no shear stress, and the other some."""
+    """Return whether a fibre has the normal stress of another one, no shear stress, and the other
+    some.
+    """
     same = all(ca.is_equal(x, y, _DEEP) for x, y in zip(a[0], b[0], strict=True))
     return same and all(x.is_zero() for x in a[1]) and not all(x.is_zero() for x in b[1])

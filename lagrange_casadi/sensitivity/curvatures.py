@@ -29,8 +29,9 @@ from .slopes import Numbers, Slopes
 
 
 class Bends(NamedTuple):
-    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it
-    changes along w ways, (n, w, 2 + parameters)."""
+    """Gradient at n points by time, xi/l and all parameters, (n, 2 + parameters), and its change
+    along w directions, (n, w, 2 + parameters).
+    """
 
     gradient: Array
     changes: Array
@@ -38,7 +39,7 @@ class Bends(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Curvatures:
-    """What ``slopes`` are of, and its second derivatives at points: by ``library``, or by the
+    """Second derivatives of the functions of ``slopes`` at points: by ``library``, or by the
     virtual machine.
     """
 
@@ -63,8 +64,8 @@ class Curvatures:
     def at(
         self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array, ways: Array
     ) -> Bends:
-        """Those of what is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, along each of
-        ``ways`` (w, 2 + parameters).
+        """Second derivatives of the ``chosen`` quantities at times ``t`` and ratios ``xi``, (n,)
+        each, along each of ``ways`` (w, 2 + parameters).
 
         Places along a link move as those of :meth:`.Slopes.at` do with ``value``, unless that is
         NaN. ``z`` (n, z) are the iterated coordinates there; they must close the loops.

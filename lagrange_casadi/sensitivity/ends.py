@@ -1,4 +1,4 @@
-"""How the first and the last instant move with the parameters, where they do."""
+"""Derivatives of the first and the last instant by the parameters."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def end_slopes(laws: Laws, timing: Timing, first: float, last: float, p: Array) 
 
 
 def end_bends(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
-    """Their second derivatives by all parameters, (2, parameters, parameters) [s]."""
+    """Second derivatives by all parameters, (2, parameters, parameters) [s]."""
     if timing.shared or not p.size:
         return np.zeros((2, p.size, p.size))
     t, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)

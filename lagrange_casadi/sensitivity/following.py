@@ -13,8 +13,8 @@ from ..instants.backends import begun, follow
 def iterated(
     graph: Program, following: codegen.Library | None, t: Array, p: Array, places: Array
 ) -> Array:
-    """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are
-    followed; by compiled code, if any.
+    """Iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from which
+    they are followed; by compiled code, if any.
     """
     if graph.newton is None:
         return np.zeros((places.size, 0))

@@ -1,4 +1,4 @@
-"""What is at peaks, taken a step of Newton's method further.
+"""Values at peaks after one more step of Newton's method.
 
 A search by values knows the place of a smooth peak to the root of its rounding only. What the place
 is off by, times how the derivatives change along time and along the link, is added to them: all
@@ -16,16 +16,14 @@ from ..base.arrays import Array
 from .slopes import AtPoints, Numbers, Slopes
 
 _NUDGE_T, _NUDGE_XI = 1e-3, 1e-3
-"""By how much a place is moved for differences: of a step between instants, and as a ratio to the
-length.
-"""
+"""Steps of differences: relative to a step between instants, and as a ratio to the length."""
 
 _NEAR_T, _NEAR_XI = 1e-2, 1e-5
-"""How far a smooth peak is from where it was found at most, likewise."""
+"""Largest distance of a smooth peak from the place where it was found, likewise."""
 
 _ASIDE, _NEARER = 1e-9, 0.5
-"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on
-its own side at most.
+"""Relative change of a peak's value that shows the other side of a jump; and the part of it that
+may remain on its own side.
 """
 
 _REACHES = (1.0, 8.0, 64.0, 512.0)
@@ -41,7 +39,7 @@ def at_peaks(
     step: float,
     stay: npt.NDArray[np.bool_],
 ) -> tuple[AtPoints, Array, Array]:
-    """What is at peaks (value, t, xi), what its slopes lack to those at the smooth peaks, and the
+    """Corrected peaks (value, t, xi), the change of slopes to those at the smooth peaks, and the
     iterated coordinates there.
 
     The peaks are in the span of the ``instants``, a ``step`` apart. What is known to ``stay`` (q,)
@@ -136,8 +134,8 @@ def _along(
     by_t: Array,
     sign: Array,
 ) -> Array:
-    """How far the ``inner`` peaks are from the smooth ones along the link; and in time, ``by_t``,
-    of those that turn there.
+    """Distance of the ``inner`` peaks from the smooth ones along the link; and in time, ``by_t``,
+    for those that turn there.
     """
     rate, bend = here.rate[inner], tt[inner]
     xx = (further.value - 2.0 * here.value[inner] + nearer.value) / _NUDGE_XI**2

@@ -18,13 +18,13 @@ from .points import SAME_PLACE
 from .slopes import Numbers
 
 _NEAR_T, _NEAR_XI = 1e-2, 1e-4
-"""How far a smooth peak is from where it was found at most: of a step between instants, and as a
-ratio to the length.
+"""Largest distance of a smooth peak from the place where it was found: in steps between instants,
+and as a ratio to the length.
 """
 
 _FLAT, _STILL = 1e-9, 1e-6
-"""Of the peak: what it bends by over the whole span, or length, where it is level; and what a level
-peak's slope may change by.
+"""Relative change over the whole span, or length, up to which a peak is level; and the largest
+change of a level peak's slope.
 """
 
 _SMOOTH = (PeakKind.SMOOTH, PeakKind.LINK_END)

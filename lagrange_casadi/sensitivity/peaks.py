@@ -1,4 +1,4 @@
-"""How peaks change with parameters.
+"""Derivatives of peaks by parameters.
 
 A smooth peak moves as a parameter changes. To first order its value changes as that of the quantity
 does where the peak is: the envelope theorem. A peak at the first or the last instant goes with that
@@ -21,11 +21,11 @@ from .points import SAME_PLACE
 from .slopes import Numbers, Slopes
 
 _STEEP = 1e-5
-"""Of its value: how much a quantity changes in a step of time where its peak is not smooth."""
+"""Relative change of a quantity in a step of time if its peak is not smooth."""
 
 
 class PeakKind(enum.IntEnum):
-    """What a peak is at."""
+    """Kind of a peak's place."""
 
     SMOOTH = 0
     """The quantity is stationary in time there."""
@@ -44,7 +44,8 @@ _SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 
 @dataclass(frozen=True, eq=False)
 class PeakSlopes:
-    """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,).
+    """Derivatives of q peaks by all parameters, (q, parameters), and the kind of each one's place,
+    (q,).
 
     ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch,
     ``switch`` (q,) is the number of that switch, or -1. ``t`` (q,) are the times at which they were
@@ -67,7 +68,7 @@ def peak_slopes(
     ends: Array,
     nothing: npt.NDArray[np.bool_],
 ) -> PeakSlopes:
-    """Those of peaks, (value, t, xi), (q,) each, of what is ``chosen``.
+    """Derivatives of peaks, (value, t, xi), (q,) each, of the ``chosen`` quantities.
 
     They are peaks over the time of the ``instants``, which are in equal steps; ``ends`` (2,
     parameters) says how the first and the last move. ``nothing`` (q,) tells which peaks are zero
@@ -127,7 +128,7 @@ def peak_slopes(
 
 
 def _near(step: float, instants: Array) -> float:
-    """How far from a kink, a jump or an end a peak is told that is at it [s]."""
+    """Distance from a kink, a jump or an end within which a peak is at it [s]."""
     return SIDE * step + 2 * SPACING * float(np.abs(instants).max())
 
 
@@ -160,7 +161,7 @@ def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tup
 
 
 def _gap(watch: Watch, values: Array) -> Array:
-    """How far what is watched is from the nearest number at which it makes a kink or a jump."""
+    """Distance of a watched function from the nearest number at which it makes a kink or a jump."""
     if watch.kind is Kind.STEP:
         return np.asarray(values - np.round(values))
     gaps = values[:, None] - np.array(watch.at or (0.0,))

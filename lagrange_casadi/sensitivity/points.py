@@ -31,7 +31,7 @@ from ..equations.section_function import Place, Section
 from ..summits.sharpness import Kind, Sharpness, Watch
 
 SAME_PLACE = 1e-9
-"""How near to a station a peak along a link is that is at it, as a ratio to the length."""
+"""Distance, as a ratio to the length, within which a peak along a link is at a load point."""
 
 _DRIVES = ("d", "d_rate", "d_acceleration", "d_jerk")
 _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
@@ -61,8 +61,8 @@ class PointFunction(Graphs):
     def of(
         cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
     ) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what
-        makes kinks and jumps.
+        """Make it for some quantities: columns of a graph, resultants of such, section forces; and
+        the functions with kinks and jumps.
 
         Without a ``sharpness`` there is nothing of the latter.
         """
@@ -88,9 +88,7 @@ class PointFunction(Graphs):
 def _at_drives(
     graph: Program, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]
 ) -> Any:
-    """The same function where the drives' coordinates, rates, accelerations and their rates are
-    given.
-    """
+    """Function of given coordinates, rates, accelerations and jerks of the drives."""
     instant = differentiable(graph.instant)
     t, d, rate, acceleration, z, p = inputs = instant.sx_in()
     xi, value, moving, jerk = (
@@ -126,7 +124,7 @@ def _at_drives(
 
 
 def _ends(parts: Sequence[Any]) -> list[int]:
-    """Where each of some parts that stand below each other begins, and where the last one ends."""
+    """First row of each of some parts that stand below each other, and the end of the last one."""
     ends = [0]
     for part in parts:
         ends.append(ends[-1] + part.numel())

@@ -29,7 +29,7 @@ Numbers = npt.NDArray[np.intc]
 
 
 class AtPoints(NamedTuple):
-    """Of n points the value (n,), its derivative by time (n,), and those by all parameters (n,
+    """Value of n points (n,), its derivative by time (n,), and those by all parameters (n,
     parameters).
     """
 
@@ -82,8 +82,8 @@ class Slopes:
     def at(
         self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None = None
     ) -> AtPoints:
-        """What is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, with iterated coordinates
-        ``z`` (n, z) there.
+        """Evaluate the ``chosen`` quantities at times ``t`` and ratios ``xi``, (n,) each, with
+        iterated coordinates ``z`` (n, z) there.
 
         With ``value`` (n,) a place along a link moves with the station that is there, on the side
         on which the force is nearer to that; else it stands still. A ratio of what is not along a
@@ -130,7 +130,7 @@ class Slopes:
 
     @symbolic_property
     def _single(self) -> dict[int, PointFunction]:
-        """Those that were asked for, by number."""
+        """Requested parameters, by number."""
         return {}
 
     def iterated(self, t: Array, p: Array, places: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Whether another peak of a quantity is as large as the one that is told, and changes otherwise
+"""Test whether another peak of a quantity is as large as the reported one, and changes differently
 with parameters.
 
 The largest of both then has a kink at these parameters, and no derivative. What is as large and
@@ -16,13 +16,13 @@ from .peaks import PeakSlopes, peak_slopes
 from .slopes import Numbers, Slopes
 
 AS_LARGE: dict[Precision, float] = {"double": 1e-9, "single": 1e-5}
-"""What a peak may be below another that it ties with, of itself."""
+"""Largest relative difference of two peaks that tie."""
 
 _OTHERWISE = 1e-4
-"""By what of a slope two slopes differ."""
+"""Relative difference of two slopes that differ."""
 
 _NOISE, _FAINT = 1e-9, 1e-12
-"""What of the largest slope by a parameter, and of the peak, is no slope."""
+"""Fraction of the largest slope by a parameter, and of the peak, that counts as no slope."""
 
 
 def ties(
@@ -35,8 +35,8 @@ def ties(
     ends: Array,
     others: Array,
 ) -> npt.NDArray[np.bool_]:
-    """Which of the peaks (q,) of what is ``chosen`` tie with another one: see :func:`.peak_slopes`,
-    which gave ``own``.
+    """Return which of the peaks (q,) of the ``chosen`` quantities tie with another one: see
+    :func:`.peak_slopes`, which gave ``own``.
 
     ``others`` (q, n, 4) are the local peaks that are as large, as :class:`.Peaks` has them.
     """

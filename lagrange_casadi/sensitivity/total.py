@@ -42,7 +42,7 @@ def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
 
 
 def _seeds(count: int, by: Sequence[int]) -> Any:
-    """How all parameters change with some of them."""
+    """Derivatives of all parameters by some of them."""
     seeds = ca.SX(count, len(by))
     for k, j in enumerate(by):
         seeds[j, k] = 1.0
@@ -50,5 +50,5 @@ def _seeds(count: int, by: Sequence[int]) -> Any:
 
 
 def _driven(graph: Program, t: Any, p: Any, by: Sequence[int]) -> list[Any]:
-    """How the drives' coordinates, rates and accelerations change with some parameters."""
+    """Derivatives of the drives' coordinates, rates and accelerations by some parameters."""
     return [ca.jtimes(part, p, _seeds(p.numel(), by)) for part in graph.laws.motion(t, p)]

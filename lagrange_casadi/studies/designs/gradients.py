@@ -1,4 +1,4 @@
-"""How the peaks of a design change with all parameters."""
+"""Derivatives of a design's peaks by all parameters."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def gradient(
     t: Array,
     xi: Array,
 ) -> PeakSlopes:
-    """That of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and ratios
-    ``xi``.
+    """Gradient of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and
+    ratios ``xi``.
 
     ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with
     nothing.
@@ -49,8 +49,8 @@ class MeanSlopes(NamedTuple):
 
 
 def mean_slopes(slopes: Slopes, times: DesignTimes, p: Array, chosen: Numbers) -> MeanSlopes:
-    """Those of what is ``chosen`` (e,) of a design ``p`` (parameters,): of sums by trapezia, whose
-    instants may move.
+    """Derivatives of the means of the ``chosen`` quantities (e,) of a design ``p`` (parameters,):
+    of sums by trapezia, whose instants may move.
     """
     instants = times.of(p[None], asked=False)[0][0]
     first, last = _ends(slopes, times, instants, p)
@@ -97,8 +97,8 @@ def tied(
     own: PeakSlopes,
     others: Array,
 ) -> npt.NDArray[np.bool_]:
-    """Which of them (q,) tie with another peak; ``others`` (q, n, 4) are those that are as large:
-    see :func:`.ties`.
+    """Return which peaks (q,) tie with another peak; ``others`` (q, n, 4) are those that are as
+    large: see :func:`.ties`.
     """
     instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
@@ -110,7 +110,7 @@ def _ends(slopes: Slopes, times: DesignTimes, instants: Array, p: Array) -> Arra
 
 
 def _nothing(units: npt.NDArray[np.intp], value: Array) -> npt.NDArray[np.bool_]:
-    """Which peaks are zero but for rounding, beside the largest of their unit."""
+    """Return which peaks are zero within rounding, relative to the largest of their unit."""
     sizes, largest = np.abs(value), np.zeros(units.size)
     np.maximum.at(largest, units, np.where(np.isfinite(sizes), sizes, 0.0))
     return np.asarray(sizes <= NOTHING * largest[units])
