@@ -115,7 +115,7 @@ def test_a_rotor_may_be_without_inertia(here):
     duty = duty_of(
         turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia
     )
-    with pytest.raises(DeclarationError, match="expected what the drive feels"):
+    with pytest.raises(DeclarationError, match="expected the inertia seen by the drive"):
         assert duty.inertia_ratio
     assert judge(motor, duty).heat > 0.0
 

@@ -159,7 +159,7 @@ def test_parts_that_cannot_be(part, told):
 
 
 def test_of_each_kind_one():
-    with pytest.raises(DeclarationError, match="it has a rolling part already"):
+    with pytest.raises(DeclarationError, match="the joint already has a rolling part"):
         rotor(bearings.Rolling(1e3, 1.0), bearings.Rolling(2e3, 1.0))
 
 

@@ -159,7 +159,7 @@ def test_info_says_how_joints_in_space_move(tmp_path, capsys):
         "  screw joint N: ground (0.4, 0.1, 0) - ram (0, 0, 0), about (0.6, 0, 0.8) of ground (0.3"
         " m a turn)\n" in told
     )
-    assert "  two-force links, whose spin about their own axis has no effect: rod\n" in told
+    assert "  two-force links, whose spin has no effect: rod\n" in told
     assert (
         "load brake: torque on ram against ground, x = 1 N m, y = 0 N m, z = -2 N m, in the axes of"
         " ram\n" in told

@@ -149,8 +149,13 @@ def test_a_curve_of_numbers_is_numbers():
             {"smoothing": -1.0},
             "smoothing must be a finite number that is not negative, got -1.0",
         ),
-        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves but a straight line"),
-        ([0, 1, 2, 3], [0, 1, 2, 0], {"smoothing": 5.0, "periodic": True}, "leaves but a constant"),
+        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves only a straight line"),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2, 0],
+            {"smoothing": 5.0, "periodic": True},
+            "leaves only a constant",
+        ),
         ("abcd", [0, 1, 2, 3], {}, "curve: x: expected a row of numbers, got 'abcd'"),
     ],
 )

@@ -203,7 +203,7 @@ def test_what_is_not_exact_is_not_told(scene, joint, why):
     solution = evaluate(scene)
     ranges = holding(scene, solution)
     assert ranges[joint].untold == why
-    assert f"held at rest: effort:{joint} is not told: {why}" in solution.notes
+    assert f"held at rest: effort:{joint} is not evaluated: {why}" in solution.notes
     open_ = np.isnan(solution.effort(joint))
     assert open_.any()
     assert np.isnan(ranges[joint].least[open_]).all()

@@ -242,7 +242,7 @@ def test_bounds_that_parameters_make_impossible_are_told_with_them():
         evaluate(scene, parameters={"rpm": 0.0})
     with pytest.raises(
         DeclarationError,
-        match=r"the motion of joint 'O' stands still.*; with the parameters rpm = 0, l = ",
+        match=r"the motion of joint 'O' is at rest.*; with the parameters rpm = 0, l = ",
     ):
         evaluate(scene, over=("O", 0, 1, 5), parameters={"rpm": 0.0})
 
