@@ -106,7 +106,7 @@ class Comparison:
         self._weigh()
         for name, loose in self.withheld.items():
             if not any(loose):
-                self.notes.append(f"'{name}' {WITHHELD} at all instants that were looked at")
+                self.notes.append(f"'{name}' {WITHHELD} at all instants that were evaluated")
         for name, worst in self.solution.failed.items():
             self.notes.append(f"{CONDEMNED} by {name} {worst:.2g}")
 

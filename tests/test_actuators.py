@@ -115,7 +115,7 @@ def test_a_rotor_may_be_without_inertia(here):
     duty = duty_of(
         turned(harmonic(0.0, 0.8, 0.1), (0, 10, 101)), "J", ratio=40, inertia=motor.inertia
     )
-    with pytest.raises(DeclarationError, match="expected what the drive feels"):
+    with pytest.raises(DeclarationError, match="expected the inertia seen by the drive"):
         assert duty.inertia_ratio
     assert judge(motor, duty).heat > 0.0
 
@@ -125,7 +125,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
     with pytest.raises(
         NoDesignError,
         match=(
-            r"no motor of 3 serves; nearest comes large: (speed|heat|peak torque) \d+ % of what it"
+            r"no motor of 3 is suitable; nearest is large: (speed|heat|peak torque) \d+ % of its"
         ),
     ):
         select(
@@ -186,7 +186,7 @@ def test_where_no_motor_serves_the_nearest_is_named(here):
             f"{HEADS},inertia",
             "line 1: the column 'inertia' comes twice",
         ),
-        ([], HEADS, "it has no motors, only heads"),
+        ([], HEADS, "expected at least one motor below the heads"),
     ],
 )
 def test_a_bad_line_of_a_catalogue_is_told(here, rows, heads, says):

@@ -336,7 +336,7 @@ def test_links_refuse_what_is_no_beam():
         m.link("a", length=1.0, beam=7)
     with pytest.raises(
         DeclarationError,
-        match="a beam has sections, and where centre and inertia are given there are none",
+        match="beam= excludes centre= and inertia=, with which a link has no sections",
     ):
         m.link(
             "a",

@@ -159,20 +159,20 @@ def test_parts_that_cannot_be(part, told):
 
 
 def test_of_each_kind_one():
-    with pytest.raises(DeclarationError, match="it has a rolling part already"):
+    with pytest.raises(DeclarationError, match="the joint already has a rolling part"):
         rotor(bearings.Rolling(1e3, 1.0), bearings.Rolling(2e3, 1.0))
 
 
 def test_a_slide_has_no_pin():
     m = Mechanism("m")
     joint = m.prismatic("P", m.ground, m.point_mass("a", 1.0), axis=(1, 0))
-    with pytest.raises(DeclarationError, match="and it is prismatic"):
+    with pytest.raises(DeclarationError, match="got a prismatic one"):
         bearings.fit(m, joint, bearings.Rolling(1e3, 1.0))
 
 
 def test_a_sweep_tells_no_pins():
     with pytest.raises(
-        DeclarationError, match="output 'safety:O': sweeps tell no pins and bearings"
+        DeclarationError, match="output 'safety:O': sweeps have no strength of pins and bearings"
     ):
         sweep(rotor(bearings.Rolling(1e3, 1.0)), {"r": [0.05]}, wanted=["safety:O"])
 

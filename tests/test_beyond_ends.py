@@ -32,11 +32,11 @@ def told(station):
     """The place that the lines of the refusal make."""
     with pytest.raises(
         ParameterError,
-        match=rf"joint 'bolt': station {station} m is outside link 'arm', 0 to 0\.1 m; what lies",
+        match=rf"joint 'bolt': station {station} m is outside link 'arm', 0 to 0\.1 m; for a point",
     ) as error:
         crank(station)
     lines = re.search(
-        r"of its own: (tail = .*); and tail\.tip in place of the station", str(error.value)
+        r"declare another link: (tail = .*); and use tail\.tip as the point", str(error.value)
     )[1]
 
     def place(m):

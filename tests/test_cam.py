@@ -300,7 +300,7 @@ def broken(**options):
         ),
         ({"flat": True, "roller": 0.01}, "a flat face has neither a roller nor a point"),
         ({"side": 2}, "side must be 1 or -1, got 2"),
-        ({"point": "other"}, "its point must be on 'rod', which joint 'lead' leads"),
+        ({"point": "other"}, "its point must be on 'rod', which joint 'lead' guides"),
         (
             {"lift": lambda x: 0.001 * x},
             "its lift must be the same after a turn of the cam; expected a period of 2 pi",

@@ -49,7 +49,7 @@ def test_info_shows_the_whole_scene(here, capsys):
             " rad (90 deg), driven"
         ),
         "  gravity: (0, -9.81) m/s^2",
-        "freedoms: 3, driven at O, way, turn",
+        "degrees of freedom: 3, driven at O, way, turn",
         "  drive way: a spline through 5 samples from 0 to 1 s; from 0 m to 0.5 m",
         "load push: force on block, x = (-(k*O)) N, y = 2.5 N, in ground axes",
         "load wind: force on rod, x = 1 N, y = 0 N, in the axes of rod",
@@ -121,7 +121,7 @@ def test_motions_of_points_drives_elsewhere_and_own_outputs(tmp_path, capsys):
     case.write_text(PLOTTER)
     assert main(["info", str(case)]) == 0
     told = capsys.readouterr().out
-    assert "freedoms: 2, driven at swing, reach\n" in told
+    assert "degrees of freedom: 2, driven at swing, reach\n" in told
     assert "  motion hook.x: 0.8 of the time t; from 0.8 m to 0.8 m\n" in told
     assert "from 0.1 m to 0.1 m, within -0.1 m and 0.3 m\n" in told
     assert "load wind: line load on arm, x = 0 N/m, y = 0 to -40 N/m, in ground axes\n" in told
@@ -159,7 +159,7 @@ def test_info_says_how_joints_in_space_move(tmp_path, capsys):
         "  screw joint N: ground (0.4, 0.1, 0) - ram (0, 0, 0), about (0.6, 0, 0.8) of ground (0.3"
         " m a turn)\n" in told
     )
-    assert "  bars, whose spin about their own axis is idle: rod\n" in told
+    assert "  two-force links, whose spin has no effect: rod\n" in told
     assert (
         "load brake: torque on ram against ground, x = 1 N m, y = 0 N m, z = -2 N m, in the axes of"
         " ram\n" in told

@@ -15,7 +15,7 @@ TOLD = {
     , about (0.48, 0.8, 0.36) of ground
   spherical joint B: coupler (0.4, 0, 0) - rocker (0.25, 0, 0)
   gravity: (0, -9.81, 0) m/s^2
-  bars, whose spin about their own axis is idle: coupler
+  two-force links, whose spin has no effect: coupler
 load brake: torque on rocker against ground
     , x = (-(0.48*brake)) N m, y = (-(0.8*brake)) N m, z = (-(0.36*brake)) N m, in ground axes
 """
@@ -26,18 +26,18 @@ load brake: torque on rocker against ground
     , turn_1 about (1, 0, 0) of ground, turn_2 about (0, 1, 0)
   prismatic joint P0: cylinder0 (0, 0, 0) - piston0 (0, 0, 0), along (1, 0, 0) of cylinder0, driven
   spherical joint S5: piston5 (0.45, 0, 0) - platform (0.2007, -0.2229, 0)
-    , closes a loop: its angles are not measured
-freedoms: 6, driven at P0, P1, P2, P3, P4, P5
+    , closes a loop: its angles are not evaluated
+degrees of freedom: 6, driven at P0, P1, P2, P3, P4, P5
 """
     ),
     "delta": (
         """
   free joint tool: ground (0, 0, 0) - platform (0, 0, 0)
-    , slide_1 along (1, 0, 0) of ground, its motion is given
-    , slide_2 along (0, 1, 0), its motion is given
-    , slide_3 along (0, 0, 1), its motion is given
+    , slide_1 along (1, 0, 0) of ground, motion given
+    , slide_2 along (0, 1, 0), motion given
+    , slide_3 along (0, 0, 1), motion given
     , turn_1 about (1, 0, 0), turn_2 about (0, 1, 0), turn_3 about (0, 0, 1)
-  bars, whose spin about their own axis is idle: left0, right0, left1, right1, left2, right2
+  two-force links, whose spin has no effect: left0, right0, left1, right1, left2, right2
 """
     ),
     "five_link_suspension": (
@@ -45,9 +45,9 @@ freedoms: 6, driven at P0, P1, P2, P3, P4, P5
   free joint wheel: ground (0, 0.7, 0.3) - hub (0.1, 0, 0)
     , slide_1 along (1, 0, 0) of ground, slide_2 along (0, 1, 0), slide_3 along (0, 0, 1), driven
     , turn_1 about (1, 0, 0), turn_2 about (0, 1, 0), turn_3 about (0, 0, 1)
-  bars, whose spin about their own axis is idle: upper_front, upper_rear, lower_front, lower_rear, toe
+  two-force links, whose spin has no effect: upper_front, upper_rear, lower_front, lower_rear, toe
 posture: that of reference, in which the parts are declared
-"""  # noqa: E501
+"""
     ),
     "cardan_shaft": (
         """
@@ -105,7 +105,10 @@ def scene():
     [
         (
             {"slip:slide": 0.25},
-            "posture: slip:slide = 0.25 m, else that of reference, in which the parts are declared",
+            (
+                "posture: slip:slide = 0.25 m, else the reference posture, in which the parts are"
+                " declared"
+            ),
         ),
         ({"hinge": 0.1}, "posture: hinge = 0.1 rad (5.72958 deg)"),
     ],
@@ -115,8 +118,8 @@ def test_a_posture_that_is_told_in_part(tmp_path, capsys, posture, line):
     found = told(capsys, tmp_path / "case.py")
     slip = """
   cylindrical joint slip: lever (0.3, 0, 0) - rest (0, 0, 0)
-    , slide along (0, 0, 1) of lever, driven, its motion is given
-    , turn about (0, 0, 1), driven, its motion is given
+    , slide along (0, 0, 1) of lever, driven, motion given
+    , turn about (0, 0, 1), driven, motion given
 """
     for one in (line, *lines_of(slip)):
         assert one in found, one

@@ -250,7 +250,7 @@ def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monk
         "CXX",
     )
     with pytest.warns(
-        UserWarning, match=r"fake-cc failed with status 3: x\.cpp:1: error: no .*; scalar C serves"
+        UserWarning, match=r"fake-cc failed with status 3: x\.cpp:1: error: no .*; using scalar C"
     ):
         assert evaluate(slider_crank()).provenance.backend == "c"
     with pytest.raises(CompilerError, match="fake-cc failed with status 3"):

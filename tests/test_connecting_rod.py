@@ -154,13 +154,16 @@ def _goodman(stress):
 
 def test_run_prints_every_part(here, capsys):
     few = ["--over", "main=90deg:810deg:121"]
-    assert (
-        main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm", *few])
-        == 0
-    )
+    arguments = ["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm"]
+    assert main([*arguments, *few]) == 0
+    short = capsys.readouterr().out
+    assert "least factor of safety of each part:\n  rod                4." in short
+    assert "  piston_pin         1." in short
+    assert len(short.splitlines()) < 40
+    assert main([*arguments, *few, "--verbose"]) == 0
     out = capsys.readouterr().out
     for part in ("rod", "crank", "crankpin", "piston_pin"):
         assert f"\n  {part:<20} " in out
     assert out.count("| fatigue governs\n") == 2
     assert out.count("| pressure governs\n") == 2
-    assert out.count("endless: no swing is above the endurance limit") == 2
+    assert out.count("endless: no stress cycle is above the endurance limit") == 2

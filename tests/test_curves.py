@@ -149,8 +149,13 @@ def test_a_curve_of_numbers_is_numbers():
             {"smoothing": -1.0},
             "smoothing must be a finite number that is not negative, got -1.0",
         ),
-        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves but a straight line"),
-        ([0, 1, 2, 3], [0, 1, 2, 0], {"smoothing": 5.0, "periodic": True}, "leaves but a constant"),
+        ([0, 1, 2, 3], [0, 1, 2, 0.1], {"smoothing": 5.0}, "leaves only a straight line"),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2, 0],
+            {"smoothing": 5.0, "periodic": True},
+            "leaves only a constant",
+        ),
         ("abcd", [0, 1, 2, 3], {}, "curve: x: expected a row of numbers, got 'abcd'"),
     ],
 )
@@ -333,7 +338,7 @@ def test_an_argument_beyond_the_ends_is_refused_by_name():
     for backend in ("vm", "c", "lanes"):
         with pytest.raises(
             AssemblyError,
-            match=r"load 'stop': .* beyond the curve's ends at t = 0\.15 s, where J =",
+            match=r"load 'stop': .* outside the curve's range at t = 0\.15 s, where J =",
         ):
             evaluate(scene, parameters={"swing": 0.75}, backend=backend)
         designs = DesignEngine.of(scene, rung=Rung(backend))
@@ -354,7 +359,7 @@ def test_a_part_beyond_the_ends_is_refused_by_name():
         "length"
     ] == pytest.approx(0.9, rel=1e-14)
     with pytest.raises(
-        ParameterError, match="link 'arm': what is put into its curve is beyond the curve's ends"
+        ParameterError, match="link 'arm': the argument of its curve is outside the curve's range"
     ):
         evaluate(scene, parameters={"size": 4.1})
     for backend in ("vm", "lanes"):
@@ -394,7 +399,7 @@ def test_a_motion_beyond_the_ends_is_refused_by_name():
     assert evaluate(scene).certified
     with pytest.raises(
         DeclarationError,
-        match="the motion of joint 'J': what is put into its curve is beyond the curve's ends",
+        match="the motion of joint 'J': the argument of its curve is outside the curve's range",
     ):
         evaluate(scene, parameters={"swing": 0.6})
     for backend in ("vm", "lanes"):
@@ -486,7 +491,7 @@ def test_a_table_in_a_constraint_names_the_curve():
     m = Mechanism("cornered")
     x = m.coordinate(m.prismatic("X", m.ground, m.point_mass("p", 1.0), axis=(1, 0)))
     m.constraint("cam", table(x, [0, 1, 2], [0, 1, 3]) - m.time)
-    with pytest.raises(DeclarationError, match=r"in place of a table, a curve\(x, y\)"):
+    with pytest.raises(DeclarationError, match=r"as curve\(x, y\) in place of a table"):
         evaluate(Scene(m, motion={}, t=(0.5, 1.7, 5), posture={"X": 0.5}))
 
 

@@ -299,11 +299,15 @@ def broken(**options):
             {"follower": "main"},
             "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'",
         ),
-        ({"point": "drum"}, "its point must be on 'cart', which joint 'lead' leads"),
+        ({"point": "drum"}, "its point must be on 'cart', which joint 'lead' guides"),
         ({"axis": (1, 0.1, 0)}, "joint 'lead' must be along the drum's axis"),
         (
             {"place": (0.0, 0.0, 0.0)},
-            "cam 'cam': the drum does not pass by the roller; expected it off the axis",
+            (
+                "cam 'cam': the drum's surface does not pass the roller; expected the roller off"
+                " the"
+                " axis"
+            ),
         ),
         (
             {"lift": lambda x: 0.01 * x},

@@ -152,7 +152,7 @@ def test_files_and_peaks_between_instants(tmp_path):
 def test_what_cannot_be_told_is_one_line():
     with pytest.raises(
         DeclarationError,
-        match=r"table: deflection:rod:across is no polynomial of the rate; want section:rod",
+        match=r"table: deflection:rod:across is not a polynomial of the rate; want section:rod",
     ):
         evaluate(slider(), wanted=["deflection:rod"], table=64)
     m = SpatialMechanism("odd")
@@ -165,7 +165,7 @@ def test_what_cannot_be_told_is_one_line():
     scene = Scene(m, {f"at_{name}": polynomial(0.0) for name in bars}, t=(0, 0, 1))
     with pytest.raises(
         DeclarationError,
-        match="output 'deflection:odd': for torsion of a polygon there is no formula; give",
+        match="output 'deflection:odd': there is no formula for torsion of a polygon; use",
     ):
         derive(scene, ["deflection:odd"])
     with pytest.raises(

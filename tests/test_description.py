@@ -105,5 +105,5 @@ def test_what_a_file_has_otherwise_is_refused(path, value):
     for key in path[:-1]:
         part = part[key]
     part[path[-1]] = value
-    with pytest.raises(ValueError, match="is not what it should be"):
+    with pytest.raises(ValueError, match="is not of the expected kind"):
         check_shape(found, shape_of, "mechanism")

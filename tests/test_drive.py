@@ -195,7 +195,7 @@ def test_what_no_drive_feels_alone_is_told():
         inertia_at(press(polynomial(0.1, 7.0)), "P")
     with pytest.raises(
         DeclarationError,
-        match="inertia at 'X': with non-holonomic constraints no drive moves alone",
+        match="inertia at 'X': with non-holonomic constraints no drive can move alone",
     ):
         inertia_at(load_case(CASES / "sleigh").scene, "X")
 
@@ -355,8 +355,8 @@ def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
         ]
         first = next(choice for choice in choices if choice.serves)
         told = out.partition(f"\n{name}: ")[2].partition("\nY: ")[0]
-        assert f"smallest of 3 motors that serves: '{first.motor.name}'" in told
-        assert f"it feels an inertia of {mass:.5g} to {mass:.5g} kg\n" in told
+        assert f"smallest suitable of 3 motors: '{first.motor.name}'" in told
+        assert f"it drives an inertia of {mass:.5g} to {mass:.5g} kg\n" in told
         ratio = mass / (turns**2 * first.motor.inertia)
         assert (
             f"inertia of the load over the motor's: {ratio:.5g} to {ratio:.5g}, in the mean"
@@ -375,7 +375,7 @@ def test_it_draws_and_takes_linear_motors_and_other_parameters(gantry, capsys):
     arguments = ["drive", "case.py", "--motors", "linear.csv", "--drive", "Y", "--set", "load=20"]
     assert main([*arguments, "--plot", "y.svg"]) == 0
     out = capsys.readouterr().out
-    assert "smallest of 2 motors that serves: 'L2', 640 W, with a ratio of 1\n" in out
+    assert "smallest suitable of 2 motors: 'L2', 640 W, with a ratio of 1\n" in out
     assert "peak force" in out
     assert "    smaller: L1: " in out
     assert "\nX: " not in out
@@ -404,7 +404,7 @@ def test_without_a_catalogue_it_tells_the_load(gantry, capsys):
     assert "smallest" not in out
     (gantry / "motors.csv").write_text((gantry / "linear.csv").read_text())
     assert main(["drive", "case.py", "--drive", "X"]) == 0
-    assert "smallest of 2 motors that serves: 'L2'" in capsys.readouterr().out
+    assert "smallest suitable of 2 motors: 'L2'" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -413,7 +413,7 @@ def test_without_a_catalogue_it_tells_the_load(gantry, capsys):
         (
             ["--motors", "rotary.csv"],
             2,
-            "drive 'X' slides: expected --lead, its way in a turn of the motor, or linear motors",
+            "drive 'X' slides: expected --lead, the travel per turn of the motor, or linear motors",
         ),
         (["--motors", "linear.csv", "--lead", "0.1"], 2, "--lead: linear motors have no lead"),
         (["--lead", "-1"], 2, "--lead: expected a positive length"),
@@ -433,7 +433,7 @@ def test_without_a_catalogue_it_tells_the_load(gantry, capsys):
             2,
             "efficiency must be above 0 and at most 1, got 2.0",
         ),
-        (["--motors", "rotary.csv", "--ratio", "5000"], 1, "no motor of 3 serves; nearest comes"),
+        (["--motors", "rotary.csv", "--ratio", "5000"], 1, "no motor of 3 is suitable; nearest is"),
     ],
 )
 def test_misuse_is_one_line(gantry, capsys, arguments, status, says):
@@ -454,7 +454,8 @@ def test_friction_at_rest_leaves_a_duty_open_but_for_its_range(here):
     solution = evaluate(scene)
     with pytest.raises(
         DeclarationError,
-        match=r"the effort of drive 'X' is open at 2\d of 61 instants; joints that rub are at rest",
+        match=r"the effort of drive 'X' is indeterminate at 2\d of 61 instants; joints with"
+        r" friction are at rest",
     ):
         duty_of(replace(solution, held={}), "X")
     assert np.abs(duty_of(solution, "X").torque[-1]) == pytest.approx(0.1 * 10.0 * 9.81)

@@ -192,7 +192,11 @@ def two_loops():
 
 def test_drives_that_depend_on_each_other_are_refused_by_name():
     m, laws, posture = two_loops()
-    with pytest.raises(AssemblyError, match=r"the drives O0, C0 cannot make the motion at t = 0 s"):
+    with pytest.raises(
+        AssemblyError,
+        match=r"the drives O0, C0 cannot produce the motion at t = 0"
+        r" s",
+    ):
         evaluate(Scene(m, laws, posture=posture, drives=["O0", "C0"]))
     assert evaluate(
         Scene(m, laws, posture=posture, drives=["C0", "B1"], t=(0.2, 0.3, 11))
@@ -206,11 +210,13 @@ def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
         made.mechanism, made.motion, posture=made.posture, t=(0.01, 0.08, 71), drives=["guide"]
     )
     with pytest.raises(
-        AssemblyError, match=r"the drives guide cannot make the motion (at|after) t = 0\.0(39|4)"
+        AssemblyError, match=r"the drives guide cannot produce the motion (at|after) t = 0\.0(39|4)"
     ):
         evaluate(scene)
     at = Scene(made.mechanism, made.motion, posture=made.posture, t=(0.0, 0.0, 1), drives=["guide"])
-    with pytest.raises(AssemblyError, match="the drives guide cannot make the motion at t = 0 s"):
+    with pytest.raises(
+        AssemblyError, match="the drives guide cannot produce the motion at t = 0 s"
+    ):
         evaluate(at)
 
 
@@ -218,13 +224,13 @@ def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
     ("drives", "error", "told"),
     [
         ("O", DeclarationError, "drives: expected a list of joints, or weights by joint, got 'O'"),
-        (["O", "O"], DeclarationError, "drives: a joint stands twice in O, O"),
+        (["O", "O"], DeclarationError, "drives: a joint is listed twice in O, O"),
         (
             ["O"],
             DeclarationError,
             (
-                "drives: 1 cannot make 2 independent motions; name at least 2 joints for .* O, C,"
-                " got O"
+                "drives: 1 cannot make 2 independent motions; expected at least 2 joints for .* O,"
+                " C, got O"
             ),
         ),
         ([], DeclarationError, "drives: 0 cannot make 2 independent motions; .* got none"),
@@ -232,7 +238,7 @@ def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
         (
             ["O", "hung"],
             DeclarationError,
-            "drives: joint 'hung' has no coordinate that an effort could work along",
+            "drives: joint 'hung' has no coordinate for an effort",
         ),
         (
             {"O": -1.0, "C": 1.0},
@@ -247,7 +253,7 @@ def test_where_drives_cannot_hold_the_motion_on_the_way_there_is_no_result():
         (
             {"O": ca.SX.sym("w"), "C": 1.0},
             DeclarationError,
-            "the weight of joint 'O' depends on w, which is no parameter",
+            "the weight of joint 'O' depends on w, which is not a parameter",
         ),
         (3, DeclarationError, "drives: expected a list of joints, or weights by joint, got 3"),
     ],

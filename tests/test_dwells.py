@@ -116,5 +116,5 @@ def test_a_sweep_tells_of_designs_that_rest_though_the_first_does_not(tmp_path):
     )
     found = sweep(lasts, {"r": [0.06, 0.08, 0.1]}, wanted=["effort"], out=tmp_path / "s.h5")
     told = resting_note(lasts, found, {}, wanted=["effort"])
-    assert told.startswith("in design 1 a joint that rubs is at rest at ")
-    assert told.endswith("; so it is in 2 of 3 designs that were looked at")
+    assert told.startswith("in design 1 a joint with friction is at rest at ")
+    assert told.endswith("; so it is in 2 of 3 designs that were evaluated")

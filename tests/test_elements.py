@@ -200,7 +200,7 @@ def declared(make, space=False):
         ),
         (
             declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)])),
-            "plate 'p': give its mass, or what it has per_area",
+            "plate 'p': expected mass= or per_area=",
         ),
         (
             declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0), space=True),
@@ -208,7 +208,7 @@ def declared(make, space=False):
         ),
         (
             declared(lambda m: plate(m, "p", [(0, 0), (1, 0), (0, 1)], mass=1.0).corner(3)),
-            "'p': corner 3 is none of 0 to 2",
+            "'p': there is no corner 3, expected 0 to 2",
         ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0)], mass=1.0)),
@@ -216,7 +216,7 @@ def declared(make, space=False):
         ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (0, 0), (1, 0)], mass=1.0)),
-            "corners 0 and 1 lie on each other",
+            "corners 0 and 1 coincide",
         ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 0, 0)], mass=1.0)),
@@ -224,11 +224,11 @@ def declared(make, space=False):
         ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)])),
-            "give its mass, or what it has per_length",
+            "expected mass= or per_length=",
         ),
         (
             declared(lambda m: bent_bar(m, "b", [(0, 0), (1, 0), (1, 1)], mass=1.0).corner(-1)),
-            "'b_1': corner -1 is none of 0 to 2",
+            "'b_1': there is no corner -1, expected 0 to 2",
         ),
     ],
 )

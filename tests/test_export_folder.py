@@ -183,9 +183,7 @@ def test_a_table_too_large_for_its_target(tmp_path):
 def test_what_no_drive_moves_is_refused(tmp_path):
     m = Mechanism("bracket")
     m.weld("wall", m.ground, m.link("arm", length=1.0, mass=2.0))
-    with pytest.raises(
-        DeclarationError, match="'bracket' has no drive, and C without inputs computes nothing"
-    ):
+    with pytest.raises(DeclarationError, match="'bracket' has no drive, so C would have no inputs"):
         export(Scene(m, {}), tmp_path / "out")
     assert not list(tmp_path.iterdir())
 

@@ -200,7 +200,7 @@ def test_the_folder_says_what_it_has(tmp_path):
 
 @pytest.mark.parametrize("options", [{"precision": "single"}, {"newton": 2}, {"table": 64}])
 def test_arithmetic_that_has_none(options, tmp_path):
-    with pytest.raises(DeclarationError, match="output 'sensitivity' goes with double precision"):
+    with pytest.raises(DeclarationError, match="output 'sensitivity' needs double precision"):
         export(slider_crank(), tmp_path / "a", wanted=WANTED, **options)
     assert not (tmp_path / "a").exists()
 
@@ -210,4 +210,4 @@ def test_from_the_command_line(tmp_path, monkeypatch, capsys):
     assert main(["export", "slider_crank", "--out", "a", "--want", "effort,sensitivity:r"]) == 0
     assert "slider_crank_sensitivity(" in (tmp_path / "a" / "slider_crank.h").read_text()
     assert main(["export", "slider_crank", "--out", "b", "--want", "sensitivity:r"]) == 2
-    assert "sensitivities are of other outputs" in capsys.readouterr().err
+    assert "sensitivities need other outputs" in capsys.readouterr().err

@@ -393,27 +393,30 @@ def declared(**told):
         ({"joint": "pin", "mu": 0.1}, "joint 'pin' turns; expected radius"),
         (
             {"joint": "pin", "mu": 0.1, "radius": 0.01, "length": 0.1},
-            "turns and has no length of guidance; valid: radius",
+            "turns and has no guide length; expected radius=",
         ),
         ({"joint": "pin", "mu": -0.1, "radius": 0.01}, "mu must be at least 0, got -0.1"),
         ({"joint": "pin", "mu": 0.1, "radius": 0.0}, "radius must be positive, got 0"),
-        ({"joint": "pin"}, "expected mu, a friction coefficient, or viscous"),
-        ({"joint": "pin", "viscous": 0.1, "radius": 0.1}, "radius goes with mu"),
+        ({"joint": "pin"}, "expected mu=, a friction coefficient, or viscous="),
+        ({"joint": "pin", "viscous": 0.1, "radius": 0.1}, "radius needs mu="),
         ({"joint": "pin", "mu": 0.1, "radius": 0.01, "static": 0.2}, "static needs stribeck"),
-        ({"joint": "pin", "mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck goes with static"),
-        ({"joint": "guide", "mu": 0.1}, "bears a moment; expected length"),
+        ({"joint": "pin", "mu": 0.1, "radius": 0.01, "stribeck": 0.2}, "stribeck needs static="),
+        ({"joint": "guide", "mu": 0.1}, "transmits a moment; expected length="),
         (
             {"joint": "guide", "mu": 0.1, "radius": 0.1, "length": 0.1},
-            "slides and has no radius; valid: length",
+            "slides and has no radius; expected length=",
         ),
-        ({"joint": "slot", "mu": 0.1, "length": 0.1}, "bears no moment, and needs no length"),
+        ({"joint": "slot", "mu": 0.1, "length": 0.1}, "transmits no moment; leave length= out"),
         (
             {"joint": "ball_pin", "mu": 0.1, "radius": 0.01},
-            "'ball' is a point mass and has no direction",
+            "has no angle: 'ball' is a point mass",
         ),
         (
             {"joint": "weld", "mu": 0.1},
-            "joint 'weld' is weld; in a plane these may rub: revolute, prismatic, slot",
+            (
+                "joint 'weld' is weld; in a plane friction is possible in these joints: revolute,"
+                " prismatic, slot"
+            ),
         ),
     ],
 )

@@ -229,17 +229,17 @@ def test_at_rest_both_are_open_and_where_both_turn_back_they_go_on():
         (
             "P",
             {"mu": 0.1, "radius": 0.1},
-            "joint 'P' bears a moment; expected length, that of its guidance",
+            "joint 'P' transmits a moment; expected length=, the guide length",
         ),
         (
             "P",
             {"mu": 0.1, "length": 0.1},
-            "joint 'P' holds its child against turning about its line; expected radius, at which",
+            "joint 'P' transmits a moment about its axis; expected radius=",
         ),
         (
             "P",
             {"mu": 0.1, "length": 0.1, "radius": 0.1, "along": "turn"},
-            "joint 'P' has one coordinate, and no 'turn'",
+            "joint 'P' has one coordinate and none called 'turn'",
         ),
         (
             "C",
@@ -250,17 +250,20 @@ def test_at_rest_both_are_open_and_where_both_turn_back_they_go_on():
         (
             "C",
             {"mu": 0.1, "radius": 0.1, "along": "turn"},
-            "joint 'C' bears a moment; expected length, from one bearing to the",
+            "joint 'C' transmits a moment; expected length=, the distance of its",
         ),
         (
             "C",
             {"mu": 0.1, "radius": 0.1, "length": 0.1, "along": "turn", "smooth": 0.1},
-            "joint 'C' slides and turns at once, and has no smooth sign",
+            ("joint 'C' slides and turns at once, for which smooth= is not available"),
         ),
         (
             "U",
             {"mu": 0.1, "radius": 0.1},
-            "in space these may rub: revolute, prismatic, cylindrical, screw, spherical",
+            (
+                "in space friction is possible in these joints: revolute, prismatic, cylindrical,"
+                " screw, spherical"
+            ),
         ),
     ],
 )

@@ -141,20 +141,22 @@ def test_what_no_couple_drives_is_refused():
     scene = Scene(jack(0.02, 0.1), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
     with pytest.raises(
         ParameterError,
-        match="friction 'flanks': mu times the lead of a radian must be less than radius",
+        match="friction 'flanks': mu times the lead per radian must be less than the radius",
     ):
         evaluate(scene, parameters={"mu": 4.0})
 
 
 def test_mistakes_in_space_are_told():
-    with pytest.raises(DeclarationError, match="is a screw, and a thread has one mu"):
+    with pytest.raises(
+        DeclarationError, match="is a screw, whose thread has one friction coefficient"
+    ):
         jack(0.01, 0.1, static=0.2, stribeck=0.1)
     m = jack(0.01, 0.1)
     for joint, words in (
-        ("O", "bears a moment; expected length, from one bearing"),
+        ("O", "transmits a moment; expected length=, the distance of its two bearing"),
         (
             "guide",
-            "friction 'more': joint 'guide' bears a moment; expected length, that of its guidance",
+            "friction 'more': joint 'guide' transmits a moment; expected length=, the guide length",
         ),
     ):
         found: Joint = m.joints[joint]

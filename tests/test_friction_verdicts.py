@@ -175,7 +175,9 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     assert np.isfinite(solution.series["load:gas:fx"]).all()
     note, held = solution.notes
     assert held.startswith("held at rest: effort:O may be anything from")
-    assert note.startswith("a joint that rubs is at rest at 22 of 41 instants, first at t = 0 s")
+    assert note.startswith(
+        "a joint with friction is at rest at 22 of 41 instants, first at t = 0 s"
+    )
     assert "ring, pin" in note
     save(solution, tmp_path / "rest.h5")
     assert check(tmp_path / "rest.h5") == []

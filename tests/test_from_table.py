@@ -108,7 +108,7 @@ def test_what_cannot_be_tabulated_is_refused_with_the_reason():
         evaluate(shaper, table=64)
     with pytest.raises(
         DeclarationError,
-        match=r"table: an accuracy of 1e-09 is not reached; the best is 0\.000.*, with 16384",
+        match=r"table: an accuracy of 1e-09 is not possible; the best is 0\.000.*, with 16384",
     ):
         evaluate(load_case(CASES / "engine").scene, table=1e-9)
 

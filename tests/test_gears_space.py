@@ -288,7 +288,7 @@ def test_bad_gears_in_space_are_refused_by_name():
         second.at(0.04),
         radii=(0.04, 0.06),
     )
-    one_line("0.1 m beside each other along the axis", first.at(0.1), third, radii=(0.04, 0.06))
+    one_line("0.1 m along the axis", first.at(0.1), third, radii=(0.04, 0.06))
     one_line("crossed axes need both numbers of teeth and radii", first, worm, radii=(0.04, 0.06))
     one_line(
         "0.02 m beside the line at right angles",

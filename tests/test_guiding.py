@@ -243,7 +243,8 @@ def test_misuse_is_told(laws, error, told):
 def test_who_drives_must_be_said():
     with pytest.raises(
         DeclarationError,
-        match=r"motion of 'tool': no effort is along it; name the joints that make it by drives",
+        match=r"motion of 'tool': a guided point or pose has no effort; list the joints that drive"
+        r" it in drives",
     ):
         guided(drives=None)
     with pytest.raises(

@@ -203,7 +203,7 @@ def test_what_is_not_exact_is_not_told(scene, joint, why):
     solution = evaluate(scene)
     ranges = holding(scene, solution)
     assert ranges[joint].untold == why
-    assert f"held at rest: effort:{joint} is not told: {why}" in solution.notes
+    assert f"held at rest: effort:{joint} is not evaluated: {why}" in solution.notes
     open_ = np.isnan(solution.effort(joint))
     assert open_.any()
     assert np.isnan(ranges[joint].least[open_]).all()
@@ -223,7 +223,7 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
         duty_of(solution.during(~rests), "O", efficiency=0.8).torque
     )
     assert duty_of(solution, "O", efficiency=0.8).torque.tolist() == duty.torque.tolist()
-    with pytest.raises(DeclarationError, match=r"give what holding\(\) tells"):
+    with pytest.raises(DeclarationError, match=r"use the range of holding\(\)"):
         duty_of(replace(solution, held={}), "O")
     told = (
         f"held at rest: effort:O may be anything from {held.least[rests].min():.5g} to"
@@ -246,7 +246,7 @@ def test_a_drive_is_sized_by_what_may_be_needed_at_rest(tmp_path):
     found = CliRunner().invoke(program, ["sweep", str(tmp_path / "packer.py"), *out])
     assert found.exit_code == 0, found.output
     line = (
-        f"note: in design 0 a joint that rubs is at rest at {np.count_nonzero(rests)} of"
+        f"note: in design 0 a joint with friction is at rest at {np.count_nonzero(rests)} of"
         f" {rests.size} instants"
     )
     assert found.output.count(line) == 1

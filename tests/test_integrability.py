@@ -163,10 +163,10 @@ def test_the_angular_velocity_of_a_body_in_space_is_refused():
     fields, _ = free_body("rates")
     with pytest.raises(
         DeclarationError,
-        match=r"velocity_graphs: velocities 0, 1, 2 \(counted from 0\) are no rate of a place",
+        match=r"velocity_graphs: velocities 0, 1, 2 \(counted from 0\) are not integrable",
     ) as told:
         LagrangeSystem(**fields)
-    assert "take the velocities of points or axes" in str(told.value)
+    assert "use the velocities of points or axes" in str(told.value)
 
 
 def test_the_rates_of_a_body_s_axes_give_euler_s_equations():

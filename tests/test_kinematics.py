@@ -189,7 +189,7 @@ def test_drives_that_do_not_fit_are_refused():
 def test_a_loop_without_closed_form_needs_a_posture():
     base = truss_platform()
     with pytest.raises(
-        DeclarationError, match=r"have no closed form; give a rough posture of .*leg0"
+        DeclarationError, match=r"have no closed form; also give a rough posture of .*leg0"
     ):
         derive(Scene(base.mechanism, base.motion, posture={"bar0": 0.0}))
 

@@ -200,7 +200,7 @@ def test_one_reverse_sweep_serves_any_number_of_mobilities():
             "accelerations must have 2 entries, got 1",
         ),
         ({"mobility_rates": lambda s: ca.SX(0, 1)}, "mobility_rates must have 1 entries, got 0"),
-        ({"coordinates": lambda s: s.coordinates[0]}, "say by 'tangent'"),
+        ({"coordinates": lambda s: s.coordinates[0]}, "set 'tangent'"),
         ({"tangent": lambda s: ca.SX.eye(3)}, "tangent must have shape"),
         ({"rates": lambda s: 2 * s.rates}, "rates must be symbols"),
         ({"forces": lambda s: ca.SX.zeros(3)}, "forces must have 2 entries"),

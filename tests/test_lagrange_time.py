@@ -153,7 +153,7 @@ def test_a_pendulum_on_a_pivot_that_moves_by_a_law():
     assert found == pytest.approx(expected, rel=1e-14)
     with pytest.raises(
         DeclarationError,
-        match=r"kinetic depends on 't': give time=t if it is the time, else give the parameter",
+        match=r"kinetic depends on 't': set time=t if it is the time, else rename the parameter",
     ):
         LagrangeSystem(**fields)
 
@@ -277,7 +277,7 @@ def test_a_mobility_of_what_time_moves():
         ({"drift": lambda s: s.rates}, "drift must not depend on rates"),
         (
             {"force_function": lambda s: s.velocities[0]},
-            "force_function must not depend on velocities; put what does into 'forces'",
+            "force_function must not depend on velocities; move such terms into 'forces'",
         ),
         (
             {"force_function": lambda s: s.accelerations[0]},
@@ -293,7 +293,7 @@ def test_a_mobility_of_what_time_moves():
         ),
         (
             {"velocity_graphs": lambda s: s.rates + ca.SX.sym("time")},
-            "velocity_graphs depends on 'time': give time=time if",
+            "velocity_graphs depends on 'time': set time=time if",
         ),
         (
             {"constraints": lambda s: s.rates[0], "multipliers": lambda s: ca.SX.sym("l")},

@@ -152,10 +152,7 @@ def plated():
     [
         (
             "plate",
-            (
-                "link 'plate' is known by its centre of mass and inertia only; a section needs to"
-                " know how its mass lies along it"
-            ),
+            ("link 'plate' has sections only if its mass is given along it"),
         ),
         ("lump", "'lump' is not a link and has no sections; links: rod, plate"),
     ],

@@ -270,12 +270,12 @@ def test_what_bears_no_line_load_is_refused_by_name():
     for place in (ball, m.ground):
         with pytest.raises(
             DeclarationError,
-            match=r"load 'wind': a line load acts along a link, and '\w+' is none; take a force",
+            match=r"load 'wind': expected a link for a line load, got '\w+'; use a force",
         ):
             m.line_load("wind", place, y=1.0)
     expected_one = (
-        r"load 'wind': expected one value, two, where it begins and where it ends, or a function of"
-        r" the distance .*, got"
+        r"load 'wind': expected one value, two values at its start and end, or a function of the"
+        r" distance .*, got"
     )
     for value in ((1.0, 2.0, 3.0), ()):
         with pytest.raises(DeclarationError, match=expected_one):
@@ -286,8 +286,8 @@ def test_what_bears_no_line_load_is_refused_by_name():
         with pytest.raises(DeclarationError, match="load 'wind' depends on 'foreign'"):
             m.line_load("wind", rod, y=foreign)
     no_polynomial = (
-        "load 'wind' must be a polynomial of the distance from the base, of degree 7 at most;"
-        " take one"
+        "load 'wind' must be a polynomial of the distance from the base, of degree 7 at most; use"
+        " one"
     )
     shape = curve([0.0, 0.3, 0.6, 1.0], [1.0, 2.0, 1.5, 0.0])
     wrong = (
@@ -313,7 +313,7 @@ def test_what_bears_no_line_load_is_refused_by_name():
         m.line_load("wind", rod, y=lambda xi: xi * (1 / 0))
     with pytest.raises(
         DeclarationError,
-        match="load 'wind': its function of the distance fails: a symbol is neither true",
+        match="load 'wind': its function of the distance fails: a symbol has no truth value",
     ):
         m.line_load("wind", rod, y=lambda xi: xi if xi > 0 else 0)
     with pytest.raises(
@@ -330,7 +330,7 @@ def test_what_bears_no_line_load_is_refused_by_name():
         m.line_load("wind", rod, y=1.0, between=(0.0, m.time))
     with pytest.raises(
         DeclarationError,
-        match=r"load 'wind': between must be two distances from the base that rise, got 0\.5",
+        match=r"load 'wind': between must be two increasing distances from the base, got 0\.5",
     ):
         m.line_load("wind", rod, y=1.0, between=(0.5, 0.5))
     m.line_load("wind", rod, y=1.0, between=(low, 0.6))
@@ -344,7 +344,8 @@ def test_what_bears_no_line_load_is_refused_by_name():
         evaluate(scene, parameters={"low": -0.1})
     with pytest.raises(
         ParameterError,
-        match=r"load 'wind': it acts between 0\.7 and 0\.6 m; it must end beyond where it begins",
+        match=r"load 'wind': it acts between 0\.7 and 0\.6 m; expected an end greater than the"
+        r" start",
     ):
         evaluate(scene, parameters={"low": 0.7})
     engine = DesignEngine.of(scene, rung=Rung("vm"))

@@ -169,7 +169,7 @@ def test_numbers_that_cannot_be_are_refused_by_name():
             gears(m, "mesh", first, second, radii=(0.05, 0.1), **more)
         assert str(error.value) == f"gears 'mesh': {told}"
 
-    refused("expected mu of crossed axes, efficiency of others", mu=0.1)
+    refused("expected mu= for crossed axes, efficiency= for others", mu=0.1)
     refused("efficiency must not be above 1, got 1.1", efficiency=1.1)
     refused("efficiency must be above 0, got 0", efficiency=0.0)
     refused("efficiency is too low for a gear in this ring, got 0.4", efficiency=0.4)

@@ -29,9 +29,8 @@ def scene():
     return Scene(m, {{"O": {law}}}, t=(0, 1, 5))
 """
 IF_ELSE = (
-    "a symbol is neither true nor false before it has a value: use casadi.if_else(condition, a, b)"
-    " for 'if', casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min'"
-    " and 'max'"
+    "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if', casadi.logic_and"
+    " and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and 'max'"
 )
 
 
@@ -63,7 +62,10 @@ def test_a_law_that_chooses_names_what_makes_it():
     scene = swinging(law=expression(lambda t: t if t > 0.5 else 2.0 * t))
     with pytest.raises(DeclarationError) as error:
         evaluate(scene)
-    assert str(error.value).endswith(f"no casadi.SX expression of t: {IF_ELSE}"[:300])
+    assert str(error.value).endswith(
+        "cannot be made as an expression of the time t (CasADi's"
+        f" functions, numbers without units): {IF_ELSE}"[:300]
+    )
 
 
 @pytest.mark.parametrize(
@@ -73,7 +75,8 @@ def test_functions_of_math_name_casadis(function):
     with pytest.raises(
         DeclarationError,
         match=(
-            r"load 'push' must be finite, got nan; functions of math .* CasADi's, as casadi\.sin$"
+            r"load 'push' must be finite, got nan; the functions of math .* use casadi\.sin,"
+            r" casadi\.fmax and the like$"
         ),
     ):
         swinging(function)

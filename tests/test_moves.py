@@ -235,12 +235,12 @@ def test_moves_that_cannot_be_are_refused_everywhere():
     for values, says in (
         (
             {"T": 2.0},
-            r"moves: the other parts take .* s, which leaves nothing of the period of 1\.5 s",
+            r"moves: the other parts take .* s, which is not less than the period of 1\.5 s",
         ),
         ({"T": -0.1}, r"move 'out': its time must be positive, got -0\.1 s"),
         (
             {"h": 0.0},
-            "move 'back': it goes nowhere, so that limits give it no time; expected a dwell",
+            "move 'back': its distance is zero, so limits give no duration; expected a dwell",
         ),
         ({"v": 0.0}, "move 'back': speed must be positive, got 0"),
     ):
@@ -357,16 +357,16 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         (lambda: moves([1.0]), "expected a list of move"),
         (
             lambda: moves([dwell(1.0)]),
-            r"nothing but dwells; expected a move, or for what stands still polynomial\(PLACE\)",
+            r"there are only dwells; expected a move, or polynomial\(VALUE\) for a joint at rest",
         ),
         (
             lambda: moves([move(1.0)]),
             "move 1 of the moves: expected a time, or limits of speed, acceleration or jerk",
         ),
-        (lambda: move(), "move: expected one of to, a place, and by, a way"),
+        (lambda: move(), "move: expected either to=, an end value, or by=, a distance"),
         (
             lambda: move(1.0, by=2.0, name="up"),
-            "move 'up': expected one of to, a place, and by, a way",
+            "move 'up': expected either to=, an end value, or by=, a distance",
         ),
         (lambda: move(1.0, time=1.0, name="a b"), "move name 'a b' must be a letter followed by"),
         (
@@ -381,11 +381,11 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         (lambda: moves([move("1 lap", time=1.0)]), "move: to: expected a number"),
         (
             lambda: moves([move(1.0, time=1.0), dwell()]),
-            "dwell 2 of the moves: expected a time, or a period of the moves",
+            "dwell 2 of the moves: expected its time, or a period of all moves",
         ),
         (
             lambda: moves([move(1.0, time=1.0), dwell(), dwell()], period=3.0),
-            "2 dwells have no time; at most one",
+            "2 dwells have no time; expected a time for all but one",
         ),
         (
             lambda: moves([move(1.0, time=1.0)], period=3.0),
@@ -393,7 +393,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: moves([move(1.0, time=4.0), dwell()], period=3.0),
-            "take 4 s, which leaves nothing of the period of 3 s",
+            "take 4 s, which is not less than the period of 3 s",
         ),
         (
             lambda: moves([move(1.0, time=1.0)], cyclic=True),
@@ -405,7 +405,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: moves([move(1.0, time=1.0)], advance=1.0),
-            "advance is of a cyclic motion; expected cyclic=True",
+            "advance= needs cyclic=True",
         ),
         (
             lambda: moves([move(1.0, time=0.2, law="cycloidal", **SOON)]),
@@ -420,7 +420,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: moves([move(1.0, time=1.0, jerk=5.0, law="trapezoid")]),
-            "accelerations of the law trapezoid jump, so no limit",
+            "accelerations of the law trapezoid jump, so its jerk is infinite",
         ),
         (
             lambda: moves([move(1.0, speed=-1.0)]),
@@ -428,7 +428,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: moves([move(0.0, speed=1.0)]),
-            "it goes nowhere, so that limits give it no time; expected a dwell",
+            "its distance is zero, so limits give no duration; expected a dwell",
         ),
         (
             lambda: moves([move(1.0, time=1.0, name="a"), dwell(1.0, name="a")]),
@@ -436,7 +436,7 @@ SOON = {"speed": 4.0, "acceleration": 60.0}
         ),
         (
             lambda: arm(polynomial(0.0, 1.0)).timetable("J"),
-            "joint 'J' is not made of moves, so it has no timetable",
+            "joint 'J' is not made of moves, so it has no timetable; expected a motion by moves()",
         ),
     ],
 )
@@ -475,10 +475,7 @@ def test_info_tells_moves_and_jumps(here, capsys):
     assert main(["info", "arm.py"]) == 0
     lines = capsys.readouterr().out.splitlines()
     for line in (
-        (
-            "  drive J: 3 moves and dwells, over and over; within 0 rad (0 deg) and 0.5 rad"
-            " (28.6479 deg)"
-        ),
+        ("  drive J: 3 moves and dwells, repeated; within 0 rad (0 deg) and 0.5 rad (28.6479 deg)"),
         "    out: from 0 to 0.25 s, from 0 by 0.5 rad (trapezoid), at most 3 rad/s, 36 rad/s^2",
         "    hold: from 0.25 to 0.75 s, rests at 0.5 rad",
         (

@@ -33,7 +33,7 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
     out, err = capfd.readouterr()
     assert err == ""
     assert out.startswith("slider_crank: peak:effort:O = 7.1794")
-    assert f"  {limit}: 1.2, active, a unit more gains " in out
+    assert f"  {limit}: 1.2, active, relaxed by one unit it gains " in out
     assert "  2 of 2 starts converged, " in out
     assert out.endswith("wrote a.h5 and a.svg\n")
     assert (here / "a.svg").read_text().lstrip().startswith("<?xml")
@@ -110,7 +110,7 @@ def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
         (["--over", "k=0.1:0.2"], "unknown parameter 'k'; valid: r, l"),
         (["--subject-to", "peak:effort:O"], "expected a constraint such as"),
         (["--figure", "x.txt"], "expected a name that ends in .png or .pdf or .svg"),
-        (["--set", "l=0.2"], "over: parameter 'l' is chosen, and set to a value as well"),
+        (["--set", "l=0.2"], "over: parameter 'l' is in over= and set to a value as well"),
         (["--out", "notes.txt"], "--out notes.txt: expected a name that ends in .h5 or .hdf5"),
         (["--out", "nowhere/x.h5"], "folder nowhere does not exist"),
     ],

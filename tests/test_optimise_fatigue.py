@@ -122,7 +122,7 @@ def test_it_is_that_of_the_instants_that_are_asked_for():
                 sliding=True,
                 t=(0, 0.2, 9),
             ),
-            "a load travels along link 'rod': its fatigue is followed by sweeps alone",
+            "a load moves along link 'rod'; its fatigue is available in sweeps only",
             marks=pytest.mark.long,
         ),
     ],

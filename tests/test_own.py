@@ -203,7 +203,9 @@ def test_an_effort_where_nothing_drives_is_named():
         m.output("wrong", m.results.effort(parts["bore"]))
 
     with pytest.raises(
-        DeclarationError, match=r"made of effort:bore, and joint 'bore' is no drive; drives: main"
+        DeclarationError,
+        match=r"made of effort:bore, but joint 'bore' is not a drive; drives:"
+        r" main",
     ):
         evaluate(engine(more=more))
 
@@ -246,7 +248,7 @@ def test_an_effort_where_nothing_drives_is_named():
         (
             lambda m, p: m.results.load("gas"),
             DeclarationError,
-            "expected the load itself, as its declaration returned it, got its name 'gas'",
+            "expected the load that its declaration returned, got its name 'gas'",
         ),
         (
             lambda m, p: m.results.multiplier(p["rod"]),
@@ -294,7 +296,7 @@ def test_frictions_and_what_they_take_are_results():
         m.results.friction(m.loads["gas"])
     with pytest.raises(
         DeclarationError,
-        match="expected the friction itself, as its declaration returned it, got its name",
+        match="expected the friction that its declaration returned, got its name",
     ):
         m.results.friction("rings")
     scene = Scene(m, {"main": motion.polynomial(0.1, 60.0)}, t=(0, 0.1, 21), posture={"rod": 0.0})

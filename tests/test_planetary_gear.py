@@ -159,8 +159,8 @@ def test_what_does_not_fit_is_refused_by_name():
 
     refused("its ring has 61 teeth; expected 60", teeth=(24, 18, 61))
     refused("teeth: expected a list, each a whole number", teeth=(24, 18.5, 61))
-    refused("5 planets cannot be evenly round; expected a number that divides 84", planets=5)
-    refused("7 planets of 18 teeth have no room", planets=7)
+    refused("5 planets cannot be evenly spaced; expected a number that divides 84", planets=5)
+    refused("7 planets of 18 teeth do not fit", planets=7)
     refused("module must be positive, got -0.002 m", module=-0.002)
     m = SpatialMechanism("space")
     with pytest.raises(DeclarationError, match="it lies in a plane"):

@@ -130,7 +130,8 @@ def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
     ).tolist() == expected
     with pytest.raises(
         ParameterError,
-        match="mechanism 'arm' is massless: at least one link or point mass needs a mass",
+        match="mechanism 'arm' has neither mass nor load; give at least one link or point mass a"
+        " mass",
     ):
         scene.mechanism.values({"a": 0.0, "b": 0.0})
     with pytest.raises(ParameterError, match="link 'arm': mass must not be negative, got -1 kg"):

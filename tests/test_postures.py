@@ -110,9 +110,9 @@ def test_what_no_way_closes_cannot_be_assembled():
 def test_names_that_iterations_need_are_told_at_once():
     scene = load_case("rrr3").scene
     says = (
-        r"the loops closed by joint 'foot1', joint 'foot2' have no closed form; give a rough"
-        r" posture of lower0, lower1, lower2, "
-        r"platform too; posture=\{'lower0': '\.\.\. deg', .*'platform': '\.\.\. deg'\}$"
+        r"the loops closed by joint 'foot1', joint 'foot2' have no closed form; also give a rough"
+        r" posture of lower0, lower1, lower2, platform; posture=\{'lower0': '\.\.\. deg',"
+        r" .*'platform': '\.\.\. deg'\}$"
     )
     with pytest.raises(PostureError, match=says) as error:
         evaluate(replace(scene, posture={}))
@@ -156,7 +156,9 @@ def test_the_command_line_draws_the_ways(here, capfd, command):
     assert main(command) == 2
     err = capfd.readouterr().err
     assert err.startswith("error: the loop closed by joint 'B' can be assembled in two ways")
-    assert err.endswith("; own_postures.png draws 2 that close, each with its posture\n")
+    assert err.endswith(
+        "; own_postures.png draws the 2 of these that close all loops, each with its posture\n"
+    )
     assert err.count("\n") == 1
     assert sorted(path.name for path in here.iterdir()) == ["own", "own_postures.png"]
     assert (here / "own_postures.png").read_bytes()[:4] == b"\x89PNG"

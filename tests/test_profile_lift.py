@@ -203,12 +203,12 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
         (
             "roller",
             circle(0.05, 0.06, 40),
-            r"profile: its points do not go round the cam's shaft, which is at \(0, 0\)",
+            r"profile: its points do not enclose the cam's shaft, which is at \(0, 0\)",
         ),
         (
             "roller",
             np.repeat(circle(0.05, 0.0, 40), 2, axis=0),
-            "profile: points 1 and the next lie on each other",
+            "profile: points 1 and the next coincide",
         ),
         (
             "roller",
@@ -222,12 +222,12 @@ HOLLOW = (0.05 + 0.008 * np.cos(12 * TURN))[:, None] * np.column_stack([np.cos(T
         (
             "swinging roller",
             circle(0.3, 0.0, 40),
-            "profile: the follower does not reach all of it, or is too near",
+            "profile: the follower is too short to reach all of it, or too close",
         ),
         (
             "swinging flat",
             circle(0.2, 0.0, 40),
-            "profile: the follower's pin is too near: the profile passes it",
+            "profile: the follower's pin is too close: the profile passes it",
         ),
         ("roller", circle(0.001, 0.0, 40) * 1e-3, "profile: "),
     ],

@@ -80,7 +80,7 @@ def test_parameters_scale_shift_and_stretch(here):
     assert found.motion("X").value == pytest.approx(0.2 + 0.15 * (found.t / 2) ** 3, abs=1e-11)
     assert found.effort("X") == pytest.approx(2.0 * 0.15 * 6 * found.t / 8, abs=1e-8)
     with pytest.raises(
-        DeclarationError, match="what is put into its curve is beyond the curve's ends"
+        DeclarationError, match="the argument of its curve is outside the curve's range"
     ):
         evaluate(scene, t=(0, 2, 21))
 
@@ -151,7 +151,7 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
             RAMP,
             {"value": 3},
             DeclarationError,
-            r"axis\.csv: column 3 is none of the 2 there are, numbered from 1",
+            r"axis\.csv: column 3 is not one of its 2 columns, numbered from 1",
         ),
         (
             RAMP,
@@ -175,26 +175,26 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
             RAMP,
             {"period": 0.5},
             DeclarationError,
-            r"its rows last 0\.7 s, but the period is 0\.5 s; expected the rows of one period",
+            r"its rows last 0\.7 s, but the period is 0\.5 s; expected rows of exactly one period",
         ),
         (
             RAMP,
             {"advance": 1.0},
             DeclarationError,
-            "advance is of a periodic motion; expected periodic=True",
+            "advance= needs periodic=True",
         ),
         (
             RAMP,
             {"smoothing": -1.0},
             DeclarationError,
-            r"smoothing must be the noise \[rad\], a number that is not negative",
+            r"expected the noise \[rad\], a number of at least 0",
         ),
         (RAMP, {"smoothing": "auto"}, DeclarationError, "or 'estimated', got 'auto'"),
         (
             RAMP,
             {"smoothing": 1e3},
             DeclarationError,
-            r"axis\.csv: curve: a smoothing of 1000 leaves but a straight line",
+            r"axis\.csv: curve: a smoothing of 1000 leaves only a straight line",
         ),
         (
             RAMP,
@@ -207,7 +207,7 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
             [*RAMP, [0.7, 1.0]],
             {},
             DeclarationError,
-            r"axis\.csv, line 10: times must rise, but 0\.7000000000000 follows 0\.7",
+            r"axis\.csv, line 10: times must increase, but 0\.7000000000000 follows 0\.7",
         ),
         (
             [*RAMP, [0.9, math.nan]],

@@ -100,7 +100,7 @@ def test_exported_c_takes_the_parameters(precision, tmp_path):
 def test_a_cycle_that_ends_before_the_scene_is_refused():
     scene = geared(LAWS["times"])
     with pytest.raises(
-        DeclarationError, match=r"motion of joint 'J': .* beyond the curve's ends at t = 0\.5"
+        DeclarationError, match=r"motion of joint 'J': .* outside the curve's range at t = 0\.5"
     ):
         evaluate(scene, parameters={"duration": 0.5})
     assert DesignEngine.of(scene).evaluate(
@@ -125,12 +125,12 @@ def test_a_row_is_taken_apart_only_as_far_as_it_is_alike():
     assert Scaled.of("row", [1.0, 2.0]).scale is None
     assert Scaled.of("row", ca.SX([1.0, 2.0])).numbers == [1.0, 2.0]
     with pytest.raises(
-        DeclarationError, match="row: parameters must scale and shift all of them alike"
+        DeclarationError, match="row: parameters may only scale and shift all of them together"
     ):
         Scaled.of("row", [p, q, p + q, 1.0])
     with pytest.raises(
         DeclarationError,
-        match=r"motion samples: values: parameters must scale .* lagrange_casadi\.curve",
+        match=r"motion samples: values: parameters may only scale .* lagrange_casadi\.curve",
     ):
         motion.samples([0, 1, 2, 3], [0, p, q, p * p])
     with pytest.raises(DeclarationError, match="places must increase"):

@@ -135,6 +135,6 @@ def test_the_motor_is_the_one_that_closed_forms_name(scene, capsys):
     assert "{:.3g} kJ a stroke, of which {:.2f} kJ".format(*energies) in " ".join(page.split())
     assert main(["drive", case, "--ratio", "20,30,40,50", "--efficiency", "0.95"]) == 0
     assert (
-        "smallest of 6 motors that serves: 'S 180', 31416 W, with a ratio of 50"
+        "smallest suitable of 6 motors: 'S 180', 31416 W, with a ratio of 50"
         in capsys.readouterr().out
     )

@@ -52,7 +52,7 @@ def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
         assert profile.dimensions["diameter"] < one.profile.dimensions["diameter"]
         assert found.factor < 2.0 <= one.safety.factor
     assert sized.mass == pytest.approx(sum(one.mass for one in sized.links))
-    assert sized.left == {"plate": "diameter is no dimension of its rectangle"}
+    assert sized.left == {"plate": "diameter is not a dimension of its rectangle"}
 
 
 @pytest.mark.long
@@ -138,13 +138,13 @@ def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
             r"size: deflection: expected a positive number, got -0\.1"),
         ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
         ({"links": ["plate"]}, DeclarationError,
-            "link 'plate': diameter is no dimension of its rectangle"),
+            "link 'plate': diameter is not a dimension of its rectangle"),
         ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError,
-            "no link; upper: wall is no dimension of its round_bar"),
+            "no link; upper: wall is not a dimension of its round_bar"),
         ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError,
             r"'x': parameter 'd1' = 0\.5 m is out of its range"),
         ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError,
-            "its height is no parameter"),
+            "its height is not a parameter"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_sized(scene, arguments, error, says):
@@ -221,9 +221,10 @@ def test_one_command_sizes(here, capsys, sized):
     for one in sized.links:
         assert f"\n{one.link}: '{one.profile.name}', {one.mass:.6g} kg\n" in out
         assert (
-            f"    lighter: '{one.lighter[0].name}' has {one.lighter[1].factor:.4g} against " in out
+            f"    lighter: '{one.lighter[0].name}' has a factor of {one.lighter[1].factor:.4g}"
+            " against " in out
         )
-    assert "plate: left as it is, for diameter is no dimension of its rectangle\n  plate  " in out
+    assert "plate: not sized: diameter is not a dimension of its rectangle\n  plate  " in out
     settings = [f"{name}={value!r}" for name, value in sized.parameters.items()]
     assert " ".join(f"--set {word}" for word in settings) in out
     assert (

@@ -249,9 +249,12 @@ def test_what_a_ball_cannot_have_is_told():
     for more, words in (
         (
             {"along": "turn_1"},
-            "joint 'ball' rubs along the way in which it turns, and not along 'turn_1'",
+            "joint 'ball' has its friction along its rotation, not along 'turn_1'",
         ),
-        ({"length": 0.1}, "joint 'ball' turns and has no length of guidance; valid: radius"),
+        (
+            {"length": 0.1},
+            "joint 'ball' turns and has no guide length; expected radius=",
+        ),
         ({"radius": None}, "joint 'ball' turns; expected radius"),
     ):
         with pytest.raises(DeclarationError, match=f"friction 'more': {words}"):
@@ -262,5 +265,7 @@ def test_what_a_ball_cannot_have_is_told():
     two.friction("rub", two.spherical("A", crank.tip, rod), mu=0.1, radius=0.01)
     two.spherical("B", rod.tip, end.tip)
     two.revolute("C", two.ground.at(0.2, 0.1, 0.0), end, axis=(0, 1, 0))
-    with pytest.raises(MobilityError, match="where one of them rubs, make the other one universal"):
+    with pytest.raises(
+        MobilityError, match="if one of them has friction, make the other one universal"
+    ):
         evaluate(Scene(two, {"O": polynomial(0.3, 1.0)}, t=(0, 1, 3), posture={"C": 0.4}))

@@ -91,10 +91,10 @@ def test_a_station_beyond_an_end_is_refused_with_lines_that_weld_on_what_reaches
         return evaluate(Scene(m, {"hinge": motion.polynomial(0.0, 1.0)}, t=(0, 1, 3)))
 
     with pytest.raises(
-        ParameterError, match=r"is outside link 'pole', 0 to 0\.5 m; what lies beyond"
+        ParameterError, match=r"is outside link 'pole', 0 to 0\.5 m; for a point beyond"
     ) as refused:
         flag()
-    tail, weld = str(refused.value).partition("of its own: ")[2].split("; ")[:2]
+    tail, weld = str(refused.value).partition("declare another link: ")[2].split("; ")[:2]
 
     def point(m):
         names = {"m": m}
@@ -114,6 +114,6 @@ def test_a_row_replaces_one_drive():
     pose = m.free("pose", m.ground, disc)
     with pytest.raises(
         DeclarationError,
-        match=r"those of joint 'pose' are pose:slide_1, .*; take a chain of joints of one",
+        match=r"those of joint 'pose' are pose:slide_1, .*; use a chain of joints of one",
     ):
         m.nonholonomic("rolling", m.velocity(disc)[0] - 0.1 * m.rate(pose, "turn_2"), replaces=pose)

@@ -122,7 +122,8 @@ def test_an_idle_spin_is_named_and_what_to_do_about_it():
     with pytest.raises(
         MobilityError,
         match=(
-            "the spin of link 'rod' about the line from 'A' to 'B' is idle: give one of their turns"
+            "the spin of link 'rod' about the line from 'A' to 'B' is not determined: give one of"
+            " their rotations"
         ),
     ):
         evaluate(Scene(held_rod(), {"O": motion.polynomial(0.0, 6.0)}, posture={"G": 0.35}))
@@ -140,7 +141,8 @@ def test_drives_where_there_is_nothing_to_drive_are_named():
     m.prismatic("G", m.ground, slider, axis=(1, 0, 0))
     with pytest.raises(
         DeclarationError,
-        match="drive 'A:turn_1': the spin of bar 'rod' is idle and moves nothing; drive another",
+        match="drive 'A:turn_1': the spin of two-force link 'rod' about its own axis moves"
+        " nothing; drive another",
     ):
         evaluate(
             Scene(m, {"O": motion.polynomial(0.5, 6.0)}, posture={"G": 0.35}, drives=["A:turn_1"])
@@ -148,7 +150,7 @@ def test_drives_where_there_is_nothing_to_drive_are_named():
     laws = {"O": motion.polynomial(0.5, 1.0), "A:turn_1": motion.polynomial(0.3)}
     with pytest.raises(
         DeclarationError,
-        match="drive 'B:turn_1': the joint closes a loop, where its turns are not told",
+        match="drive 'B:turn_1': the joint closes a loop, where its rotations are not evaluated",
     ):
         evaluate(Scene(held_rod(), laws, posture=ROUGH, drives=["O", "B:turn_1"]))
 
@@ -166,8 +168,8 @@ def test_what_a_posture_lacks_to_be_counted_is_named():
     with pytest.raises(
         MobilityError,
         match=(
-            r"could not be assembled to count by rank\) and 1 drive\(s\); give a rough posture of"
-            r" C, A too"
+            r"could not be assembled to count by rank\) and 1 drive\(s\); also give a rough"
+            r" posture of C, A"
         ),
     ):
         evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}))

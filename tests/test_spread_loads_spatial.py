@@ -143,7 +143,7 @@ def test_peaks_between_instants_and_of_sweeps():
 def test_a_point_mass_bears_none():
     m = SpatialMechanism("bare")
     with pytest.raises(
-        DeclarationError, match="load 'wind': a line load acts along a link, and 'ball' is none"
+        DeclarationError, match="load 'wind': expected a link for a line load, got 'ball'"
     ):
         m.line_load("wind", m.point_mass("ball", 1.0), z=1.0)
 

@@ -136,7 +136,7 @@ def test_files_keep_what_was_wanted(tmp_path):
 def test_no_table_holds_what_is_largest_along_a_link():
     with pytest.raises(
         DeclarationError,
-        match=r"table: stress:rod:von_mises is no polynomial of the rate; want section:rod",
+        match=r"table: stress:rod:von_mises is not a polynomial of the rate; want section:rod",
     ):
         evaluate(slider(), wanted=["stress:rod"], table=64)
 

@@ -117,6 +117,6 @@ def test_lines_are_of_all_times_where_the_scene_is_told(turning):
     scene, solution = turning
     peak = refine_stress(scene, solution, "bar", "normal")
     told, sampled = (list(strength_lines(solution, ["stress:bar"], s)) for s in (scene, None))
-    assert f"{peak.value / 1e6:>13.6g} MPa at t = {peak.t:.5g} s" in told[1]
+    assert f"{peak.value / 1e6:>13.6g} MPa  at t = {peak.t:.5g} s" in told[1]
     assert told[1] != sampled[1]
     assert [line.split()[0] for line in told] == [line.split()[0] for line in sampled]

@@ -247,12 +247,13 @@ def test_what_has_no_stress(solutions, robots):
         solutions["even"].stress("rod").peak("von")
     with pytest.raises(
         DeclarationError,
-        match="link 'crank' has no beam, which says what it is made of; links with one: rod",
+        match="link 'crank' has no beam=; links with a beam: rod",
     ):
         solutions["even"].stress("crank")
     with pytest.raises(
         DeclarationError,
-        match="link 'upper' is twisted, and for torsion of a polygon there is no formula; give its",
+        match="link 'upper' is twisted, and for torsion of a polygon there is no formula; use"
+        " beams",
     ):
         evaluate(strong.robot(SHAPES["leaning"]), certificate=False).stress("upper")
     with pytest.raises(DeclarationError, match="were not wanted; want section:rod too"):

@@ -152,7 +152,7 @@ def test_long_lists_are_told_apart_by_their_digest():
         ((None, 0.4, 5), "expected numbers for START and STOP"),
         ([], "expected at least one value"),
         ([0.1, np.nan], "values must be finite, got nan"),
-        ([0.1, 0.2, 0.1], "the value 0.1 is given twice"),
+        ([0.1, 0.2, 0.1], "the value 0.1 is listed twice"),
         ("abc", "grid of l: expected (start, stop, count) or numbers, got 'abc'"),
         ("1_0", "expected (start, stop, count) or numbers, got '1_0'"),
         (["0.1", "abc"], "expected (start, stop, count) or numbers, got ['0.1', 'abc']"),

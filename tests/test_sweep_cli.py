@@ -265,8 +265,8 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
     (folder / "plan.json").write_text('{"grid": 3}')
     assert main(["check", "x.h5.parts"]) == 1
     assert (
-        "plan.json: damaged: plan.schema_version is not what it should be; start anew with --force"
-        in capfd.readouterr().err
+        "plan.json: damaged: plan.schema_version is not of the expected kind; start anew with"
+        " --force" in capfd.readouterr().err
     )
 
 

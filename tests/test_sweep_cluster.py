@@ -219,7 +219,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(
 
         told = (
             rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in"
-            r" .*: go on with resume=True"
+            r" .*: continue with resume=True"
         )
         with pytest.raises(ClusterError, match=told):
             sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)

@@ -90,5 +90,5 @@ def test_all_is_without_them_unless_they_are_named(slider_crank):
 
 
 def test_only_sensitivities_are_nothing(slider_crank):
-    with pytest.raises(DeclarationError, match="sensitivities are of other outputs"):
+    with pytest.raises(DeclarationError, match="sensitivities need other outputs"):
         sweep(slider_crank, {"l": (0.2,)}, wanted=["sensitivity:l"])

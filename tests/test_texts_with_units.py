@@ -279,7 +279,7 @@ def test_a_text_in_another_unit_is_refused(declared):
                 else value
             )
 
-        with pytest.raises(DeclarationError, match=r"got .*'|it is told in (m|s|rad), and"):
+        with pytest.raises(DeclarationError, match=r"got .*'|it is in (m|s|rad), but"):
             declared(at)
 
 

@@ -246,14 +246,14 @@ def test_second_moments_are_told_in_any_way_of_densities():
         (
             {"yy": -1e-3, "zz": 1e-3},
             (
-                "link 'a': no slice has these second moments: yy, zz and yy zz - yz yz must not be"
-                " negative"
+                "link 'a': impossible second moments of slices: yy, zz and yy zz - yz yz must not"
+                " be negative"
             ),
         ),
-        ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': no slice has these second moments"),
+        ({"yy": 1e-3, "zz": 1e-3, "yz": 2e-3}, "link 'a': impossible second moments of slices"),
         (
             {"yy": 1e-3, "zz": density.polynomial(1e-3, -3e-3)},
-            "link 'a': no slice has these second moments",
+            "link 'a': impossible second moments of slices",
         ),
     ],
 )
@@ -299,7 +299,8 @@ def test_a_thick_rod_between_two_spherical_joints_is_no_bar():
     m.prismatic("G", m.ground.at(0, 0.05, 0), slider, axis=(1, 0, 0))
     posture = {"G": 0.35, "A:turn_1": 0.0, "A:turn_2": 0.0, "A:turn_3": 0.1}
     with pytest.raises(
-        MobilityError, match="the spin of link 'rod' about the line from 'A' to 'B' is idle"
+        MobilityError,
+        match="the spin of link 'rod' about the line from 'A' to 'B' is not determined",
     ):
         evaluate(Scene(m, {"O": motion.polynomial(0.0, 6.0)}, posture=posture))
 

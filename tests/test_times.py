@@ -137,7 +137,7 @@ def test_a_swing_is_followed_from_the_start_of_t():
     forth = press(lambda *_: law, over=("O", 0.7, 1.3, 9))
     back = press(lambda *_: law, over=("O", 1.3, 0.7, 9), t=(0.25, 1, 2))
     np.testing.assert_allclose(evaluate(forth).t + evaluate(back).t[::-1], 0.25, atol=1e-15)
-    with pytest.raises(DeclarationError, match=r"goes the other way than from 1\.3 rad"):
+    with pytest.raises(DeclarationError, match=r"goes in the opposite direction to from 1\.3 rad"):
         press(lambda *_: law, over=("O", 1.3, 0.7, 9))
 
 
@@ -173,8 +173,8 @@ def test_what_is_asked_for_can_be_sent_and_compared():
         (
             ("O", 1, 0, 5),
             (
-                "over: the motion of joint 'O' goes the other way than from 1 rad (57.2958 deg) to"
-                " 0 rad (0 deg)"
+                "over: the motion of joint 'O' goes in the opposite direction to from 1 rad"
+                " (57.2958 deg) to 0 rad (0 deg)"
             ),
         ),
         (("O", 0, ca.SX.sym("q"), 5), "over: STOP depends on 'q', not a parameter"),
@@ -198,14 +198,11 @@ def test_a_joint_that_is_not_driven_is_refused_by_name():
     [
         (
             motion.polynomial(0.3),
-            "stands still, and does not go from 0 rad (0 deg) to 6.28319 rad (360 deg)",
+            "is at rest and does not go from 0 rad (0 deg) to 6.28319 rad (360 deg)",
         ),
         (
             motion.harmonic(0, 1, 1),
-            (
-                "does not go from 0 rad (0 deg) to 6.28319 rad (360 deg) all the way: it turns back"
-                " at t = 0.25 s"
-            ),
+            ("does not go from 0 rad (0 deg) to 6.28319 rad (360 deg): it reverses at t = 0.25 s"),
         ),
         (
             motion.samples([0, 1, 2, 3], [0, 1, 2, 3]),
@@ -245,7 +242,7 @@ def test_bounds_that_parameters_make_impossible_are_told_with_them():
         evaluate(scene, parameters={"rpm": 0.0})
     with pytest.raises(
         DeclarationError,
-        match=r"the motion of joint 'O' stands still.*; with the parameters rpm = 0, l = ",
+        match=r"the motion of joint 'O' is at rest.*; with the parameters rpm = 0, l = ",
     ):
         evaluate(scene, over=("O", 0, 1, 5), parameters={"rpm": 0.0})
 

@@ -59,7 +59,7 @@ def test_a_link_that_only_slides_on_a_point_is_refused():
     m.revolute("O", m.ground, p)
     m.prismatic("P", a, p, axis=(1, 0))
     scene = Scene(m, {"P": polynomial(0.5)})
-    with pytest.raises(DeclarationError, match="'a' only slides on a point"):
+    with pytest.raises(DeclarationError, match="'a' is connected by sliding on a point only"):
         span(m, scene.motion)
 
 

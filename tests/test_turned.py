@@ -39,7 +39,7 @@ def said(scene, rows=((600.0, 0.5),), **asked):
 def test_less_than_a_turn_is_said_with_what_makes_it_whole(law):
     found = said(press(law), t=(0, 0.05, 31))
     assert found.startswith("drive 'O' makes 0.")
-    assert found.endswith("of a turn; instants over O=0deg:360deg:31 make it whole")
+    assert found.endswith("of a revolution; instants over O=0deg:360deg:31 make it a whole number")
 
 
 def sampled():
@@ -50,7 +50,8 @@ def test_the_line_begins_where_the_motion_does_and_goes_its_way():
     back = press(lambda _, w: motion.polynomial(1.0, -w))
     assert (
         said(back, t=(0, 0.01, 9))
-        == "drive 'O' makes 0.1 of a turn; instants over O=57.2958deg:-302.704deg:9 make it whole"
+        == "drive 'O' makes 0.1 of a revolution; instants over O=57.2958deg:-302.704deg:9 make it"
+        " a whole number"
     )
 
 
@@ -99,7 +100,7 @@ def test_a_sweep_says_where_designs_make_different_turns():
     assert (
         said(scene, rows[:2])
         == "drive 'O' makes 1 to 10 turns, not the same in every design; instants over"
-        " O=0deg:3600deg:31 make it whole"
+        " O=0deg:3600deg:31 make it a whole number"
     )
     found = turning_note(scene, scene.timing(), {"rpm": (300.0, 1200.0, 4)}, {"l": 0.4})
     assert found.startswith("drive 'O' makes 0.5 to 2 turns, not the same in every design")

@@ -231,7 +231,8 @@ def test_a_table_serves_what_comes_round_and_says_what_does_not():
     )
     with pytest.raises(
         DeclarationError,
-        match=r"effort:O.* do not repeat.*a load that sees an angle with its turns may wind up",
+        match=r"effort:O.* do not repeat.*a load that depends on a number of revolutions may not"
+        r" repeat",
     ):
         evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
 
@@ -269,7 +270,8 @@ def test_sweeps_count_the_same_and_refuse_by_name(backend):
             np.testing.assert_allclose(values, solution.series[name], rtol=1e-12, atol=1e-12)
     with pytest.raises(
         AssemblyError,
-        match=r"the angle of 'C', which a load sees with its turns, swings .* deg from the middle",
+        match=r"the angle of 'C', on whose number of revolutions a load depends, is .* deg from"
+        r" the middle",
     ):
         evaluate(scene, parameters={"p": 0.05})
 
@@ -517,13 +519,14 @@ def test_an_angle_whose_turns_nothing_tells_is_refused():
     )
     with pytest.raises(
         AssemblyError,
-        match=r"the angle of 'Q', which a load sees with its turns, swings -?1\d\d deg",
+        match=r"the angle of 'Q', on whose number of revolutions a load depends, is -?1\d\d deg",
     ):
         evaluate(led(0.7), t=(0.0, 2.0, 201))
     with pytest.raises(
         DeclarationError,
         match=(
-            "load 'coil_Q': the angle of 'Q' is seen with its turns, but how many it makes does not"
+            "load 'coil_Q': the angle of 'Q' enters with its number of revolutions, which cannot"
+            " be determined"
         ),
     ):
         evaluate(led(1.5))

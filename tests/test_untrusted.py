@@ -339,7 +339,7 @@ def test_a_shape_names_the_place_that_it_does_not_fit(value, shape, place):
     if not place:
         assert parsed(json.dumps({"it": value}), {"it": shape}) is not None
         return
-    with pytest.raises(ValueError, match=rf"^{re.escape(place)} is not what it should be$"):
+    with pytest.raises(ValueError, match=rf"^{re.escape(place)} is not of the expected kind$"):
         check_shape(value, shape, "it")
 
 

@@ -83,7 +83,7 @@ def test_a_result_says_that_rigid_links_are_not_enough(tmp_path):
     assert slow.notes == ()
     (note,) = fast.notes
     assert note == f"link 'bar': {vibration(fast, 'bar').words}"
-    assert "rigid links are not enough: by harmonic 1" in note
+    assert "rigid links are not enough: harmonic 1" in note
     assert evaluate(shaken(0.8 * natural()), wanted=["section:bar"], certificate=False).notes == ()
     save(fast, tmp_path / "fast.h5")
     assert load(tmp_path / "fast.h5").notes == fast.notes
@@ -104,8 +104,7 @@ def test_what_is_no_cycle_is_told():
     assert half.enough is None
     assert "does not end as it began" in half.words
     assert (
-        "so few instants"
-        in vibration(evaluate(scene, t=(0, 0.1, 3), certificate=False), "bar").words
+        "more instants" in vibration(evaluate(scene, t=(0, 0.1, 3), certificate=False), "bar").words
     )
 
 
@@ -114,7 +113,7 @@ def test_uneven_instants_are_told():
     arm = m.link("arm", length=0.4, beam=beams.Beam(SHAPE, strong.STEEL))
     m.revolute("O", m.ground, arm)
     scene = Scene(m, {"O": polynomial(0.0, 1.0, 2.0)}, t=(0, 1, 3), over=("O", 0.0, 1.0, 9))
-    assert "not equally far apart" in vibration(evaluate(scene, certificate=False), "arm").words
+    assert "equally spaced instants" in vibration(evaluate(scene, certificate=False), "arm").words
 
 
 def test_joints_tell_how_ends_are_held():

@@ -189,15 +189,18 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
     asked = ["run", "slider_crank", "--t", "0:0.08:9", "--no-figures", "--out", "a.h5"]
     assert main([*asked, "--want", "effort,sensitivity:r", "--csv", "a.csv"]) == 0
     told = capsys.readouterr().out
-    assert re.search(r"how peaks change.*\n +r \[m\]\n  effort:O +212\.\d+\n", told)
+    assert re.search(r"derivatives of peaks.*\n +r \[m\]\n  effort:O +212\.\d+\n", told)
     assert re.search(
-        r"how means over time change.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told
+        r"derivatives of means over time.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told
     )
     assert load("a.h5").sensitivities.parameters == ("r",)
     assert "sensitivity:r:effort:O [N m/m]" in (tmp_path / "a.csv").read_text().splitlines()[0]
     capsys.readouterr()
     assert main([*asked, "--want", "sensitivity:r"]) == 2
-    assert "sensitivities are of other outputs; want some too, as effort" in capsys.readouterr().err
+    assert (
+        "sensitivities need other outputs; want some of these too, as effort"
+        in capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize(

@@ -124,7 +124,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
             raise DeclarationError(f"{row.where}: motor '{motor.name}' comes twice")
         motors[motor.name] = motor
     if not motors:
-        raise DeclarationError(f"{head.where}: it has no motors, only heads")
+        raise DeclarationError(f"{head.where}: expected at least one motor below the heads")
     return list(motors.values())
 
 

@@ -111,7 +111,7 @@ def select(
         nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
     assert nearest is not None
     raise NoDesignError(
-        f"no motor of {len(given)} serves; nearest comes {nearest.motor.name}: {_told(nearest)}"
+        f"no motor of {len(given)} is suitable; nearest is {nearest.motor.name}: {_told(nearest)}"
     )
 
 
@@ -122,4 +122,4 @@ def _worst(choice: Choice) -> float:
 def _told(choice: Choice) -> str:
     """Name the limit that is exceeded most, and by how much."""
     share = 100.0 * choice.shares[choice.governs]
-    return f"{choice.governs} {share:.3g} % of what it bears, with a ratio of {choice.ratio:g}"
+    return f"{choice.governs} {share:.3g} % of its limit, with a ratio of {choice.ratio:g}"

@@ -116,7 +116,7 @@ class Duty:
             lacking = (
                 "the motor's inertia"
                 if self.carried is not None
-                else "what the drive feels, as inertia_at tells it"
+                else "the inertia seen by the drive, from inertia_at"
             )
             raise DeclarationError(f"inertia ratio of '{self.joint}': expected {lacking}")
         ratio = self.carried / (self.ratio**2 * self.inertia)
@@ -197,17 +197,18 @@ def duty_of(
     open_ = int(np.count_nonzero(~np.isfinite(effort)))
     if open_:
         why = (
-            "; joints that rub are at rest there: give what holding() tells, or their friction"
-            " smooth"
+            "; joints with friction are at rest there: use the range of holding(), or give their"
+            " friction smooth="
         )
         if held is not None:
             why = (
-                f"; joints that rub are at rest there, and {held.untold}: give their friction"
-                " smooth"
+                f"; joints with friction are at rest there, and {held.untold}: give their friction"
+                " smooth="
             )
         why = why if solution.resting.any() else ""
         raise DeclarationError(
-            f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{why}"
+            f"the effort of drive '{joint}' is indeterminate at {open_} of {solution.t.size}"
+            f" instants{why}"
         )
     # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from
     # it.

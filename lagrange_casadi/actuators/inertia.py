@@ -52,7 +52,7 @@ def inertia_at(
             else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
         )
         raise DeclarationError(
-            f"inertia at '{joint}': with {why} no drive moves alone, the others at rest"
+            f"inertia at '{joint}': with {why} no drive can move alone while the others are at rest"
         )
     times, p = (
         instants_of(scene.prescribed, scene.timing(t, over), values).t,

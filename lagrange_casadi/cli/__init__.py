@@ -22,8 +22,13 @@ from ..base.standard_streams import lead_nowhere
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..methods import missing
 from ..version import __version__
-from .commands import COMMANDS
+from .commands import GROUPS
 from .echo import echo
+from .help import write_commands
+
+_NAME = "lagrange-casadi"
+_COMPLETE = "_LAGRANGE_CASADI_COMPLETE"
+"""The variable by which shells ask for completion, as click names it."""
 
 _OPTIONS = {
     "resume=True": "--resume",
@@ -55,6 +60,9 @@ class _Unread(Exception):  # noqa: N818 - it is no error
 
 
 class _Commands(click.Group):
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        write_commands(GROUPS, formatter)
+
     def invoke(self, ctx: click.Context) -> Any:
         with _read(), _insistent():
             return super().invoke(ctx)
@@ -64,23 +72,33 @@ class _Commands(click.Group):
             return super().make_context(*arguments, **keywords)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        if args and not args[0].startswith("-") and args[0] not in self.commands:
+        known = ctx.resilient_parsing or args[:1] == [] or args[0] in self.commands
+        if not (known or args[0].startswith("-")):
             raise UnknownNameError("command", args[0], self.commands)
         return super().resolve_command(ctx, args)
 
 
 @click.group(
-    cls=_Commands, commands=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=_Commands,
+    commands=tuple(command for group in GROUPS.values() for command in group),
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
-@click.version_option(__version__, prog_name="lagrange-casadi")
+@click.version_option(__version__, prog_name=_NAME)
 def program() -> None:
-    """Efforts, reactions and section forces of a mechanism that must make a given motion."""
+    """Compute efforts, reactions and section forces of a mechanism with a given motion.
+
+    COMMAND --help describes a command.
+    """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a
     computation that failed.
     """
+    if instruction := os.environ.get(_COMPLETE):
+        from click.shell_completion import shell_complete
+
+        return shell_complete(program, {}, _NAME, _COMPLETE, instruction)
     # Nothing is shown in windows, and what a notebook set is no backend elsewhere.
     os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
@@ -88,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         warnings.filterwarnings("ignore", _NUMPY, FutureWarning)
         warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
-            result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
+            result = program.main(arguments, prog_name=_NAME, standalone_mode=False)
         except PostureError as error:
             from .drawing import drawn_ways
 

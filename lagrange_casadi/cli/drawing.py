@@ -41,7 +41,7 @@ def draw_with_progress(
         (drawn if path else skipped).append(spec.name)
     write_index(solution.case, drawn, folder)
     if skipped:
-        echo(f"note: not drawn, for want of their outputs: {', '.join(skipped)}", err=True)
+        echo(f"note: not drawn, for their outputs were not wanted: {', '.join(skipped)}", err=True)
 
 
 def drawn_ways(error: PostureError) -> str:
@@ -58,6 +58,7 @@ def drawn_ways(error: PostureError) -> str:
             with writing(path) as (file,):
                 file.write(picture.getvalue())
             return (
-                f"; {path} draws {many} that close{'' if many > 1 else 's'}, each with its posture"
+                f"; {path} draws the {many} of these that close{'' if many > 1 else 's'} all"
+                " loops, each with its posture"
             )
     return ""

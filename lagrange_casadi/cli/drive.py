@@ -88,7 +88,7 @@ def drive_command(
             except LagrangeCasadiError as error:
                 if error.exit_status == 2:
                     raise
-                lines.append(f"  none serves: {error}")
+                lines.append(f"  none is suitable: {error}")
                 failed = failed or error
                 continue
             lines += _choice_lines(found, len(catalogue))
@@ -126,7 +126,7 @@ def _choose(
         raise click.UsageError(f"--lead: {why}")
     if slide and not linear and lead is None and not ratios:
         raise click.UsageError(
-            f"drive '{name}' slides: expected --lead, its way in a turn of the motor, or linear"
+            f"drive '{name}' slides: expected --lead, the travel per turn of the motor, or linear"
             " motors"
         )
     turns = 1.0 if lead is None else math.tau / lead
@@ -150,11 +150,11 @@ def _load_lines(load: Duty) -> Iterator[str]:
     if load.carried is not None:
         unit = "kg" if load.linear else "kg m^2"
         yield (
-            f"  it feels an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
+            f"  it drives an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
         )
     if load.coarse:
         yield (
-            "  note: every second instant alone tells a mean or a peak more than 1 % off; take more"
+            "  note: with half the instants a mean or a peak differs by more than 1 %; take more"
             " instants"
         )
 
@@ -164,8 +164,8 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     duty, motor = choice.duty, choice.motor
     force = "N" if duty.linear else "N m"
     yield (
-        f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.5g} W, with"
-        f" a ratio of {duty.ratio:.6g}"
+        f"  smallest suitable of {count} motors: '{motor.name}', {motor.rated_power:.5g} W, with a"
+        f" ratio of {duty.ratio:.6g}"
     )
     for name, share in choice.shares.items():
         governs = " governs" if name == choice.governs else ""

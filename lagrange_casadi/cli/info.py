@@ -22,7 +22,7 @@ from ..studies.sweep.axes import counted
 from ..studies.sweep.checking import progress, unfinished
 from ..studies.sweep.instant_axis import in_words
 from .echo import echo
-from .report import asked_line, peak_line
+from .report import Rows, asked_line
 from .strength_lines import untold_lines
 
 
@@ -90,9 +90,8 @@ def _describe_file(solution: Solution) -> None:
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
         echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
-    echo("peaks:")
-    for name in solution.names():
-        echo(peak_line(solution, solution.peak(name)))
+    for line in Rows.of_all(solution).table():
+        echo(line)
 
 
 def _describe_sweep(identity: Mapping[str, Any]) -> None:
@@ -152,7 +151,7 @@ def _describe_mechanism(description: Description) -> None:
         echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
     echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
     if description.get("bars"):
-        echo(f"  bars, whose spin about their own axis is idle: {', '.join(description['bars'])}")
+        echo(f"  two-force links, whose spin has no effect: {', '.join(description['bars'])}")
 
 
 def _in_plane(joint: Description) -> str:
@@ -186,7 +185,7 @@ def _in_space(joint: Description, description: Description) -> str:
     return (
         told
         if barred or not unmeasured & set(joint["coordinates"])
-        else f"{told}, closes a loop: its angles are not measured"
+        else f"{told}, closes a loop: its angles are not evaluated"
     )
 
 
@@ -197,7 +196,7 @@ def _driven(coordinate: str, joint: Description, description: Description) -> st
     given, drives = coordinate in joint["driven"], description.get("drives")
     if drives is None:
         return ", driven" if given else ""
-    return f"{', driven' if coordinate in drives else ''}{', its motion is given' if given else ''}"
+    return f"{', driven' if coordinate in drives else ''}{', motion given' if given else ''}"
 
 
 def _vector(components: Sequence[float]) -> str:

@@ -15,20 +15,21 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
         f" {_design(found.values, 8)}"
     )
     if found.stopped:
-        yield "stopped: the best design so far; --resume goes on"
+        yield "stopped: the best design so far; --resume continues"
     for limit in found.limits:
         excess = limit.constraint.excess(limit.value)
         kept = (
             "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
         )
-        relaxed = (
-            f", a unit more gains {limit.multiplier:.4g}" if limit.active and found.feasible else ""
-        )
+        relaxed = ""
+        if limit.active and found.feasible:
+            relaxed = f", relaxed by one unit it gains {limit.multiplier:.4g} {found.unit}"
         yield f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}"
     for name, multiplier in found.bounds.items():
         if multiplier and found.feasible:
             end = "least" if multiplier < 0.0 else "largest"
-            yield f"  {name} is at its {end} value, a unit more gains {abs(multiplier):.4g}"
+            gain = f"{abs(multiplier):.4g} {found.unit}"
+            yield f"  {name} is at its {end} value, relaxed by one unit it gains {gain}"
     angle = (
         ""
         if math.isnan(found.transmission)
@@ -40,7 +41,7 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
     )
     yield f"  {ends}, {found.evaluations} designs{angle}"
     if found.feasible:
-        yield f"  first-order conditions to {found.residual:.1e}{_second(found)}"
+        yield f"  residual of the first-order conditions {found.residual:.1e}{_second(found)}"
     if len(found.optima) > 1:
         yield f"  {len(found.optima)} local optima:"
         for one in found.optima:
@@ -62,7 +63,7 @@ def front_lines(front: Front) -> Iterator[str]:
         f" {', '.join(map(str, front.minimised))}"
     )
     if front.stopped:
-        yield "stopped: the front so far; --resume goes on"
+        yield "stopped: the front so far; --resume continues"
     heads = [f"{term} [{unit}]" for term, unit in zip(front.minimised, front.units, strict=True)]
     widths = [max(12, len(head)) for head in heads]
     gains = [f"gain by {term.name}" for term in others]
@@ -89,8 +90,8 @@ def front_lines(front: Front) -> Iterator[str]:
             if not point.optimum.feasible and excess > 0.0:
                 yield f"  {limit.constraint}: {limit.value:.8g}, VIOLATED by {excess:.4g}"
     yield (
-        f"  a gain is what {first} falls by for a unit of the other; {front.evaluations} designs"
-        " were looked at"
+        f"  gain: decrease of {first} per unit of the other objective; {front.evaluations} designs"
+        " evaluated"
     )
     for note in front.notes:
         yield f"  note: {note}"
@@ -101,7 +102,7 @@ def _second(found: Optimum) -> str:
     if math.isnan(found.curvature):
         return ""
     if math.isinf(found.curvature):
-        return ", limits leave nothing free"
+        return ", all parameters are at limits"
     return f", least curvature {found.curvature:.3g}"
 
 

@@ -16,6 +16,8 @@ from ..base.vocabulary import BACKENDS, PRECISIONS
 from ..errors import DeclarationError
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from ..declare.even_points import EvenPoints
     from ..declare.times import Over
     from ..studies.sweep import Axis
@@ -42,7 +44,23 @@ class _Path(click.Path):
         return super().convert(value, parameter, context)
 
 
+class _Case(_Path):
+    """The path of a case, or the name of one that comes with the package."""
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Names of cases, and files."""
+        from click.shell_completion import CompletionItem
+
+        from ..shipped_cases import shipped_cases
+
+        names = [name for name in shipped_cases() if name.startswith(incomplete)]
+        return [*super().shell_complete(ctx, param, incomplete), *map(CompletionItem, names)]
+
+
 PATH = _Path(path_type=Path)
+CASE = _Case(path_type=Path)
 
 
 def even_points(text: str) -> EvenPoints:
@@ -239,46 +257,60 @@ _BACKEND = click.option(
     type=click.Choice(BACKENDS),
     default="auto",
     show_default=True,
-    help="SIMD in C++ (lanes), C, or CasADi's VM.",
+    help="Evaluate with SIMD in C++ (lanes), with C, or with CasADi's virtual machine (vm).",
 )
 _PRECISION = click.option(
     "--precision",
     type=click.Choice(PRECISIONS),
     default="double",
     show_default=True,
-    help="Precision of all arithmetic.",
+    help="Compute in double or in single precision.",
 )
 _NEWTON = click.option(
     "--newton",
     type=int,
     metavar="STEPS",
-    help="Close iterated loops by so many Newton steps from the instant before.",
+    help="Close iterated loops by this number of Newton steps from the instant before; default:"
+    " until they"
+    " close.",
 )
 _TABLE = click.option(
-    "--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn."
+    "--table",
+    type=table,
+    metavar="NODES|ACCURACY",
+    help="Interpolate outputs in a table over one turn, with this number of nodes or this"
+    " accuracy.",
 )
 _FLAGS = click.option(
-    "--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word."
+    "--flags",
+    default="",
+    metavar="FLAGS",
+    help="Pass these further flags to the compiler, as one word.",
 )
 
 Option = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-def settings_by(says: str = "Give a parameter another value; repeatable.") -> Option:
+def settings_by(
+    says: str = "Set a parameter, in SI units or with a unit, as l=0.25 or phi=30deg; repeatable.",
+) -> Option:
     """Values of parameters: ``settings``, to be read by :func:`parameters`."""
     return click.option(
         "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help=says
     )
 
 
-def instants(says: str = "Instants [s]; default: the case's.") -> Option:
+def instants(
+    says: str = "Set the instants [s], both ends included; default: those of the case.",
+) -> Option:
     """Instants by their times: ``t``."""
     return click.option("--t", type=even_points, metavar=EVEN_POINTS, help=says)
 
 
 def wanted(
-    says: str = "effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; "
-    "repeatable.",
+    says: str = "Compute these outputs: effort, reaction:JOINT, section:LINK, motion, a kind such"
+    " as "
+    "section, or all; repeatable. Default: those of the case.",
 ) -> Option:
     """Names of outputs: ``want``."""
     return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
@@ -289,8 +321,9 @@ over = click.option(
     type=steps_over,
     metavar=OVER,
     help=(
-        "Instants in equal steps of a driven joint's coordinate [rad, or as 720deg; m], in place of"
-        " --t."
+        "Set the instants as equal steps of a driven joint's coordinate [rad or m, or with a unit,"
+        " as"
+        " 720deg], in place of --t."
     ),
 )
 """Instants by a drive."""

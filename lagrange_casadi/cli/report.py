@@ -1,86 +1,282 @@
-"""Results in lines of text."""
+"""Results in lines: the largest values first, then one table with a row for each quantity."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import itertools
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ..base.quantities import Output
+from ..declare.description import bends_of
 from ..instants.ordering import error_of, told
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
 
-_NOTHING = 1e-37
-"""Least number that is not zero, in single precision too."""
+_ROUNDING = 5e-7
+"""Errors below this share of the largest value of their unit are rounding."""
+_DIGITS = 6
+_INDETERMINATE = "indeterminate"
+_CARDS = {
+    ("effort", ""): "effort",
+    ("reaction", "resultant"): "reaction force",
+    ("reaction", "moment"): "reaction moment",
+    ("reaction", "mz"): "reaction moment",
+    ("section", "axial"): "axial force",
+    ("section", "shear"): "shear force",
+    ("section", "torsion"): "torsion moment",
+    ("section", "bending"): "bending moment",
+}
 
 
-def peak_line(solution: Solution, peak: Peak) -> str:
-    """A peak with its place, and how far it may be off where that is estimated; of one that is not
-    told, what was found.
+@dataclass(frozen=True)
+class Row:
+    """A quantity with its statistics, its peak and the estimated ``error`` of it in its unit.
+
+    ``found`` and ``peak`` are None if the quantity is statically indeterminate.
     """
-    error = error_of(solution, peak.name)
-    # Of an exact zero the estimate is the least number there is, which tells nobody anything.
-    off = (
-        ""
-        if error is None
-        else f"{'' if abs(peak.value) + error < _NOTHING else f' +- {error:.0e}':<9}"
-    )
-    where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
+
+    output: Output
+    unit: str
+    found: Statistics | None = None
+    peak: Peak | None = None
+    error: float | None = None
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The quantities of a solution, in order."""
+
+    solution: Solution
+    rows: tuple[Row, ...]
+
+    @classmethod
+    def of(
+        cls,
+        solution: Solution,
+        refined: Sequence[Peak] = (),
+        asked: Collection[str] = (),
+        verbose: bool = False,
+    ) -> Rows:
+        """Collect efforts, reactions with their resultants, section forces and user outputs.
+
+        Welds inside bent bars are left out, unless they are ``asked`` for by name or all is to be
+        listed.
+        """
+        peaks = {peak.name: peak for peak in refined}
+        inner = () if verbose else bends_of(solution.description)
+        outputs = [
+            output
+            for output in told(solution)
+            if output.part not in inner or f"reaction:{output.part}" in asked
+        ]
+        return cls(solution, tuple(_row(solution, output, peaks) for output in outputs))
+
+    @classmethod
+    def of_all(cls, solution: Solution) -> Rows:
+        """Collect all quantities of a solution."""
+        return cls(solution, tuple(_row(solution, one, {}) for one in solution.quantities()))
+
+    def cards(self) -> Iterator[str]:
+        """Write the largest effort, reaction and section forces, each with its place and time."""
+        best: dict[tuple[str, str], Row] = {}
+        for row in self.rows:
+            words = _CARDS.get((row.output.group, row.output.member))
+            # Efforts of drives that turn and of drives that slide do not compare.
+            kind = (words or "", row.unit)
+            if (
+                words
+                and row.peak
+                and _size(row.peak) > _size(best[kind].peak if kind in best else None)
+            ):
+                best[kind] = row
+        order = list(dict.fromkeys(_CARDS.values()))
+        for words, unit in sorted(best, key=lambda kind: order.index(kind[0])):
+            row = best[words, unit]
+            if row.peak and not self._nothing(row):
+                line = peak_line(self.solution, row.peak, self._scales[unit])
+                yield card(words, line)
+
+    def table(self, room: int | None = None) -> Iterator[str]:
+        """Write a row for each quantity, or for the most important ones if there is ``room`` for
+        some only.
+        """
+        if not self.rows:
+            return
+        rows = self.rows if room is None or len(self.rows) <= room else self._first(room - 1)
+        yield from _aligned(self._heads(), [self._cells(row) for row in rows])
+        if len(rows) < len(self.rows):
+            yield (
+                f"  {len(rows)} of {len(self.rows)} quantities, the largest of each kind;"
+                " --verbose lists all"
+            )
+
+    def notes(self) -> Iterator[str]:
+        """Say what the words of the table mean."""
+        if any(row.peak is None for row in self.rows):
+            yield (
+                "note: equilibrium does not determine what is indeterminate: the mechanism is"
+                " over-constrained; beams of its links and --elastic may determine it"
+            )
+        if any(row.peak and row.peak.least is not None for row in self.rows):
+            yield (
+                "note: >= marks a peak that was not found between the instants, for too many"
+                " local peaks may be there: use more instants"
+            )
+
+    @cached_property
+    def _scales(self) -> dict[str, float]:
+        """The largest size of each unit."""
+        scales: dict[str, float] = {}
+        for row in self.rows:
+            scales[row.unit] = max(scales.get(row.unit, 0.0), _size(row.peak))
+        return scales
+
+    def _nothing(self, row: Row) -> bool:
+        """Tell what is zero but for rounding, or indeterminate."""
+        return readable(_size(row.peak), row.error, self._scales[row.unit]) == "0"
+
+    def _first(self, count: int) -> tuple[Row, ...]:
+        """Choose the largest of each kind, then the second largest, and so on.
+
+        Components of resultants come after that, and what is zero or indeterminate at the end.
+        """
+        kinds: dict[tuple[bool, str, str], list[Row]] = {}
+        for row in self.rows:
+            output = row.output
+            kind = (self._component(output), output.group, output.member or output.part)
+            kinds.setdefault(kind, []).append(row)
+        ranked = [
+            (component, rank, k, row)
+            for k, ((component, *_), rows) in enumerate(kinds.items())
+            for rank, row in enumerate(sorted(rows, key=lambda row: -_size(row.peak)))
+        ]
+        ranked.sort(key=lambda entry: (self._nothing(entry[3]), *entry[:3]))
+        chosen = {id(row) for *_, row in ranked[:count]}
+        return tuple(row for row in self.rows if id(row) in chosen)
+
+    def _component(self, output: Output) -> bool:
+        """Tell a component of a resultant from a quantity of its own."""
+        table = self.solution.table
+        if output.group == "reaction":
+            planar_moment = output.member == "mz" and "moment" not in table.reactions
+            return output.member not in table.reactions and not planar_moment
+        return output.group == "section" and output.member.endswith(("_y", "_z"))
+
+    def _heads(self) -> list[str]:
+        over = self.solution.over
+        ends = ["min", "max", "mean", "rms"]
+        return ["", "peak", "", over.label if over else "t [s]", "xi/l", *ends]
+
+    def _cells(self, row: Row) -> list[str]:
+        peak, found, scale = row.peak, row.found, self._scales[row.unit]
+        if peak is None or found is None:
+            return [str(row.output), _INDETERMINATE]
+        value = shown(peak, row.error, scale)
+        at = ["", ""] if value == "0" else self._place(peak)
+        others = (found.smallest.value, found.largest.value, found.mean, found.rms)
+        return [
+            str(row.output),
+            value,
+            row.unit,
+            *at,
+            *("" if number is None else readable(number, row.error, scale) for number in others),
+        ]
+
+    def _place(self, peak: Peak) -> list[str]:
+        """Write the time of a peak, or the coordinate of the drive, and the ratio xi/l."""
+        over = self.solution.over
+        at = over.drawn(peak.over) if over and peak.over is not None else peak.t
+        return [f"{at:.5g}", "" if peak.xi is None else ratio(peak.xi)]
+
+
+def card(words: str, line: str) -> str:
+    """Write a line of the first screen: what is largest, and the line of its peak."""
+    return f"  {words:<15} {line.strip()}"
+
+
+def readable(value: float, error: float | None, scale: float) -> str:
+    """Write a number; what is zero but for rounding is 0.
+
+    ``error`` estimates how far the value may be off, ``scale`` is the largest value of its unit.
+    """
+    if error is not None and abs(value) <= error <= _ROUNDING * scale:
+        return "0"
+    return f"{value + 0.0:.{_DIGITS}g}"
+
+
+def ratio(xi: float) -> str:
+    """Write a ratio xi/l."""
+    return f"{round(xi, 4) + 0.0:g}"
+
+
+def shown(peak: Peak, error: float | None, scale: float) -> str:
+    """Write the value of a peak, with its error if that reaches the digits shown."""
+    if peak.least is not None:
+        return f">= {peak.least:.{_DIGITS}g}"
+    value = readable(peak.value, error, scale)
+    return f"{value} +- {error:.0e}" if error is not None and _matters(value, error) else value
+
+
+def _matters(value: str, error: float) -> bool:
+    """Tell whether an error reaches the last digit shown of a value."""
+    size = abs(float(value))
+    if not (math.isfinite(error) and math.isfinite(size)):
+        return False
+    last = 10.0 ** (math.floor(math.log10(size)) + 1 - _DIGITS) if size else math.inf
+    return error >= 0.5 * last
+
+
+def peak_line(solution: Solution, peak: Peak, scale: float | None = None) -> str:
+    """Write a peak with its name, its place, and how far it may be off if that shows."""
+    where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {ratio(peak.xi)}")
     if peak.over is not None and solution.over:
         where = f"{solution.over.shown(peak.over)}, {where}"
-    if peak.least is not None:
-        found = f"{peak.least:.6g} {peak.unit} was found at {where}"
-        return (
-            f"  {peak.name:<28}{'not told':>13} too much hides between the instants, more may help;"
-            f" {found}"
-        )
-    return f"  {peak.name:<28}{peak.value + 0.0:>13.6g}{off} {peak.unit:<4} at {where}"
-
-
-def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
-    """All efforts, reactions with their resultants, and section forces: the peaks, or the refined
-    ones, then means and ends.
-    """
-    peaks = {peak.name: peak for peak in refined}
-    rows = [
-        (output, solution.statistics(output) if solution.determined(output) else None)
-        for output in told(solution)
-    ]
-    for output, found in rows:
-        if found is None:
-            yield (
-                f"  {output!s:<28}{'open':>13} {'':<4} equilibrium does not determine it: the"
-                " mechanism is over-constrained"
-            )
-            continue
-        own = found.peak
-        over = (
-            float(solution.over.values[int(np.argmax(solution.t == own.t))])
-            if solution.over
-            else None
-        )
-        yield peak_line(
-            solution,
-            peaks.get(found.name)
-            or Peak(found.name, own.value, found.unit, own.t, own.xi, over=over),
-        )
-    span = (
-        f"over {solution.t[-1] - solution.t[0]:.5g} s"
-        if solution.t.size > 1
-        else "at the one instant"
+    error = error_of(solution, peak.name)
+    value = shown(peak, error, _size(peak) if scale is None else scale)
+    more = (
+        ""
+        if peak.least is None
+        else ("; the peak between the instants was not found, use more instants")
     )
-    yield f"{span:<30}{'smallest':>13} {'largest':>13} {'mean':>13} {'rms':>13}"
-    yield from (_statistics_line(found) for _, found in rows if found)
+    return f"  {peak.name:<28} {value:>12} {peak.unit:<4} at {where}{more}"
 
 
-def _statistics_line(found: Statistics) -> str:
-    ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
-    means = " ".join(
-        f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}"
-        for value in (found.mean, found.rms)
+def _row(solution: Solution, output: Output, peaks: Mapping[str, Peak]) -> Row:
+    if not solution.determined(output):
+        return Row(output, solution.unit(output))
+    found = solution.statistics(output)
+    own, over = found.peak, solution.over
+    coordinate = None if over is None else float(over.values[int(np.argmax(solution.t == own.t))])
+    peak = Peak(found.name, own.value, found.unit, own.t, own.xi, over=coordinate)
+    return Row(
+        output, found.unit, found, peaks.get(found.name, peak), error_of(solution, found.name)
     )
-    return f"  {found.name:<28}{ends} {means} {found.unit}"
+
+
+def _size(peak: Peak | None) -> float:
+    """The size of a peak, or the largest size that was found of it; 0 of no number."""
+    if peak is None:
+        return 0.0
+    size = abs(peak.value) if peak.least is None else peak.least
+    return 0.0 if math.isnan(size) else size
+
+
+def _aligned(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Write cells in columns: names and units to the left, numbers to the right."""
+    cells = [list(cells) for cells in itertools.zip_longest(*rows, fillvalue="")]
+    heads = [head if any(column) else "" for head, column in zip(heads, cells, strict=False)]
+    widths = [max(map(len, (head, *column))) for head, column in zip(heads, cells, strict=True)]
+    for row in (heads, *zip(*cells, strict=True)):
+        words = [
+            word.ljust(width) if k in (0, 2) else word.rjust(width)
+            for k, (word, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        yield f"  {'  '.join(words)}".rstrip()
 
 
 def asked_line(words: Sequence[Any], slides: bool) -> str:

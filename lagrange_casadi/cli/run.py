@@ -32,13 +32,18 @@ from ..studies.evaluate import evaluate
 from ..studies.peaks import forces, refine, resultants
 from .drawing import draw_with_progress
 from .echo import echo
-from .elastic_lines import elastic_lines
+from .elastic_lines import elastic_card, elastic_lines
 from .options import parameters
 from .replaced import figures_in, replaced_lines
-from .report import report_lines
+from .report import Rows
 from .rows import csv_written, rows_of
 from .slope_lines import slope_lines
-from .strength_lines import strength_lines, untold_lines
+from .strength_lines import strength_cards, strength_lines, untold_lines
+
+_SCREEN = 39
+"""Lines of a screen, but for that of the next prompt."""
+_FEWEST = 8
+"""Rows of the table, however much else there is to say."""
 
 
 def run(
@@ -61,6 +66,7 @@ def run(
     refine_peaks: bool,
     elastic: bool,
     no_certificate: bool,
+    verbose: bool,
 ) -> None:
     """See :func:`.commands.run`."""
     if figures and no_figures:
@@ -104,21 +110,32 @@ def run(
         save(solution, out, dump_specs(loaded.figures))
     say = partial(echo, err=csv is not None and is_standard_output(csv))
     asked = want or scene.wanted
-    for line in _report(scene, solution, asked, scene.timing(t, over), backend, refine_peaks):
-        say(line)
+    names = [*forces(solution), *resultants(solution)] if refine_peaks else ()
+    rows = Rows.of(solution, refine(scene, solution, names) if names else (), want, verbose)
+    strength = scene if refine_peaks else None
+    head = [_head(solution, refine_peaks if rows.rows else None), *rows.cards()]
+    if want or verbose:
+        details = [*strength_lines(solution, asked, strength), *elastic_lines(solution, asked)]
+    else:
+        head += elastic_card(solution, asked)
+        head += strength_cards(solution, asked, strength)
+        details = []
+    rest = [*slope_lines(solution, scene, backend), *details, *rows.notes()]
+    rest += _notes(scene, solution, scene.timing(t, over))
     if folder and not loaded.figures:
         parts = [*beams_of(solution.description), *fitted_of(solution.description)]
-        for line in untold_lines(solution, among("safety", parts, asked)):
-            say(line)
+        rest += untold_lines(solution, among("safety", parts, asked))
     if not no_certificate:
-        say(summary(solution.certificate))
-    for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
-        say(line)
-    say(
+        rest.append(summary(solution.certificate))
+    rest += replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn)
+    rest.append(
         f"wrote {out}"
         + (f" and the figures in {folder}/" if folder else "")
         + (f", and {csv}" if csv else "")
     )
+    room = None if verbose else max(_SCREEN - len(head) - len(rest) - 1, _FEWEST)
+    for line in (*head, *rows.table(room), *rest):
+        say(line)
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
 
@@ -141,26 +158,21 @@ def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
         check_writable(csv)
 
 
-def _report(
-    scene: Scene,
-    solution: Solution,
-    want: Sequence[str],
-    timing: Timing,
-    backend: Backend,
-    refined: bool,
-) -> Iterator[str]:
-    """Peaks, slopes, strength and what elasticity tells, in lines; and notes."""
-    what = "peaks, refined between the instants" if refined else "peaks"
-    used = solution.provenance.backend
-    yield (
-        f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend"
-        f" {used}; {what}:"
+def _head(solution: Solution, refined: bool | None) -> str:
+    """Write what was evaluated, above the largest values if there are any."""
+    span = f" over {solution.t[-1] - solution.t[0]:.5g} s" if solution.t.size > 1 else ""
+    largest = {
+        None: "",
+        False: "; largest at the instants:",
+        True: "; largest, refined between the instants:",
+    }
+    return (
+        f"{solution.case}: {solution.t.size} instants{span}, {solution.xi.size} ratios xi/l,"
+        f" backend {solution.provenance.backend}{largest[refined]}"
     )
-    names = [*forces(solution), *resultants(solution)]
-    yield from report_lines(solution, refine(scene, solution, names) if refined else ())
-    yield from slope_lines(solution, scene, backend)
-    yield from strength_lines(solution, want, scene if refined else None)
-    yield from elastic_lines(solution, want)
-    told = np.array([list(values_of(solution.description).values())])
-    turns = turned.note(scene.prescribed, kinds_of_described(solution.description), timing, told)
+
+
+def _notes(scene: Scene, solution: Solution, timing: Timing) -> Iterator[str]:
+    values = np.array([list(values_of(solution.description).values())])
+    turns = turned.note(scene.prescribed, kinds_of_described(solution.description), timing, values)
     yield from (f"note: {note}" for note in (*solution.notes, turns) if note)

@@ -14,7 +14,7 @@ from ..declare.times import Over
 from ..studies.sizing import Sized, size
 from .echo import echo
 from .options import parameters
-from .strength_lines import safety_lines, told
+from .strength_lines import evaluated, safety_lines
 
 
 def size_command(
@@ -60,15 +60,15 @@ def size_command(
         for line in _lines(sized):
             echo(line)
     for name, why in found.left.items():
-        echo(f"{name}: left as it is, for {why}")
-        for line in told(
+        echo(f"{name}: not sized: {why}")
+        for line in evaluated(
             name,
             lambda link: list(
                 safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding))
             ),
         ):
             echo(line)
-    loads = f"loads were evaluated {found.evaluations} times"
+    loads = f"{found.evaluations} evaluations of the loads"
     echo(
         f"together {found.mass:.6g} kg; {loads}; certificate:"
         f" {'holds' if found.solution.certified else 'fails'}"
@@ -85,6 +85,7 @@ def _lines(sized: Sized) -> list[str]:
     if sized.lighter is not None:
         profile, found = sized.lighter
         lines.append(
-            f"    lighter: '{profile.name}' has {found.factor:.4g} against {found.governs.against}"
+            f"    lighter: '{profile.name}' has a factor of {found.factor:.4g} against"
+            f" {found.governs.against}"
         )
     return lines

@@ -19,7 +19,7 @@ _WORDS = {
     PeakKind.END: "at an end of the instants",
     PeakKind.SWITCH: "at a kink or a jump",
     PeakKind.LINK_END: "at an end of the link",
-    PeakKind.UNTOLD: "at a kink or a jump that nothing explains",
+    PeakKind.UNTOLD: "at a kink or a jump of unknown origin",
 }
 
 
@@ -35,16 +35,16 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
         found = sensitivities(scene, solution, backend=backend)
         changes = found.peaks(names)
     except DeclarationError as error:  # of a table that is very rough
-        yield f"how peaks change cannot be told: {error}"
+        yield f"derivatives of peaks are not available: {error}"
         return
     units = {name: solution.description["parameters"][name]["unit"] for name in by}
-    yield "how peaks change, between the instants too, in their unit for a unit of"
+    yield "derivatives of peaks, between the instants too, per unit of"
     yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
     for name, change in zip(names, changes, strict=True):
         yield _line(name, change, by)
     averaged = [name for name in names if Output.of(name).group in AVERAGED]
     if averaged:
-        yield "how means over time change, and roots of mean squares"
+        yield "derivatives of means over time and of root mean squares"
     for name in averaged:
         yield _line(f"mean:{name}", found.mean(name), by)
         yield _line(f"rms:{name}", found.rms(name), by)
@@ -57,7 +57,7 @@ def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
     ]
     where = _WORDS.get(change.kind) if change.kind is not None else None
     if change.tied:
-        where = f"{where + ', ' if where else ''}as large elsewhere, where it changes otherwise"
+        where = f"{where + ', ' if where else ''}equally large elsewhere, with other derivatives"
     return (
         f"  {name:<28}"
         + " ".join(f"{cell:>{_WIDTH}}" for cell in cells)

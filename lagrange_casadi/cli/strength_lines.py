@@ -13,8 +13,9 @@ from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.parts import untold
 from ..strength.safety import Life, Safety
-from ..strength.stress import StressPeak
+from ..strength.stress import Stress, StressPeak
 from ..studies.strength_peaks import refine_safety, refine_stress
+from .report import card, ratio
 
 _BAR = 40
 _GUESS = 1e3
@@ -24,24 +25,51 @@ _GUESS = 1e3
 def strength_lines(
     solution: Solution, wanted: Sequence[str], scene: Scene | None = None
 ) -> Iterator[str]:
-    """Lines of strength outputs of links that have a beam; of an output that is not asked for by
-    name, why it is not available.
+    """Write the strength of the parts that ``wanted`` names; of a part that is wanted as one of
+    its kind and cannot be evaluated, the reason.
 
-    With its ``scene`` it is that of all times, else that of the instants.
+    Peaks are those of all times if the ``scene`` is given, else those of the instants.
     """
     beams = beams_of(solution.description)
     if links := among("stress", beams, wanted):
         yield "stresses along the links, largest in size:"
         for link in links:
-            yield from told(link, lambda name: list(_stresses(solution, name, scene)))
-    if links := among("safety", [*beams, *fitted_of(solution.description)], wanted):
-        yield "factors of safety, and utilisation, which is one over the least of them:"
-        for link in links:
-            yield from told(link, lambda name: list(safety_lines(_safety(solution, name, scene))))
+            yield from evaluated(link, lambda name: list(_stresses(solution, name, scene)))
+    if parts := among("safety", [*beams, *fitted_of(solution.description)], wanted):
+        yield "factors of safety; utilisation is one over the least of them:"
+        for part in parts:
+            yield from evaluated(
+                part, lambda name: list(safety_lines(_safety(solution, name, scene)))
+            )
     if links := among("life", beams, wanted):
         yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
         for link in links:
-            yield from told(link, lambda name: [_life(solution.life(name))])
+            yield from evaluated(link, lambda name: [_life(solution.life(name))])
+
+
+def strength_cards(
+    solution: Solution, wanted: Sequence[str], scene: Scene | None = None
+) -> Iterator[str]:
+    """Write the largest stress, the least factor of safety of each part, and the shortest life.
+
+    What is ``wanted`` and ``scene`` are as in :func:`strength_lines`.
+    """
+    beams = beams_of(solution.description)
+
+    def stress(link: str) -> tuple[float, str]:
+        peak = _stress_peak(solution, solution.stress(link), "von_mises", False, scene)
+        return -peak.value, card("stress", _peak(link, peak))
+
+    def life(link: str) -> tuple[float, str]:
+        found = solution.life(link)
+        return found.cycles, card("life", _life(found))
+
+    yield from worst(among("stress", beams, wanted), stress)
+    yield from worst(among("life", beams, wanted), life)
+    if parts := among("safety", [*beams, *fitted_of(solution.description)], wanted):
+        yield "least factor of safety of each part:"
+        for part in parts:
+            yield from evaluated(part, lambda name: [_least(_safety(solution, name, scene))])
 
 
 def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
@@ -50,7 +78,7 @@ def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[
     """
     for part, why in untold(solution).items():
         if part not in besides:
-            yield f"note: no factor of safety of '{part}' is told: {why}"
+            yield f"note: no factor of safety of '{part}': {why}"
 
 
 def safety_lines(found: Safety) -> Iterator[str]:
@@ -62,15 +90,34 @@ def safety_lines(found: Safety) -> Iterator[str]:
     for verdict in found.verdicts:
         yield f"    {verdict.against:<18} {verdict.factor:>8.4g} {verdict.where}"
     for word in found.is_open:
-        yield f"    open: {word}"
+        yield f"    not evaluated: {word}"
 
 
-def told(link: str, lines: Callable[[str], Sequence[str]]) -> Iterator[str]:
-    """The lines of a link, or why they cannot be told."""
+def evaluated(part: str, lines: Callable[[str], Sequence[str]]) -> Iterator[str]:
+    """Write the lines of a part, or why it cannot be evaluated."""
     try:
-        yield from lines(link)
+        yield from lines(part)
     except DeclarationError as error:
-        yield f"  {link:<20} {'open':>8} {error}"
+        yield f"  {part:<20} not evaluated: {error}"
+
+
+def worst(parts: Sequence[str], find: Callable[[str], tuple[float, str]]) -> Iterator[str]:
+    """Write the line of the part whose number is least, and why others cannot be evaluated."""
+    found, failures = [], []
+    for part in parts:
+        try:
+            found.append(find(part))
+        except DeclarationError as error:
+            failures.append(f"  {part:<20} not evaluated: {error}")
+    if found:
+        yield min(found)[1]
+    yield from failures
+
+
+def _least(found: Safety) -> str:
+    governs = found.governs
+    fails = ", FAILS" if governs.factor < 1.0 else ""
+    return f"  {found.link:<15} {governs.factor:>8.4g} {governs.against}{fails}: {governs.where}"
 
 
 def _safety(solution: Solution, part: str, scene: Scene | None) -> Safety:
@@ -85,33 +132,40 @@ def _stresses(solution: Solution, link: str, scene: Scene | None) -> Iterator[st
         stress.member.beam.notches
     )
     for kind, notches in asked:
-        if scene is None:
-            yield _peak(link, stress.peak(kind, notches=notches))
-        else:
-            yield _peak(link, refine_stress(scene, solution, link, kind, notches=notches))
+        yield _peak(link, _stress_peak(solution, stress, kind, notches, scene))
+
+
+def _stress_peak(
+    solution: Solution, stress: Stress, kind: str, notches: bool, scene: Scene | None
+) -> StressPeak:
+    if scene is None:
+        return stress.peak(kind, notches=notches)
+    return refine_stress(scene, solution, stress.member.link, kind, notches=notches)
 
 
 def _peak(link: str, peak: StressPeak) -> str:
     where = (
-        f"t = {peak.t:.5g} s, xi/l = {peak.xi:.4f},"
+        f"t = {peak.t:.5g} s, xi/l = {ratio(peak.xi)},"
         f" {peak.fibre}{', with the factors of its notch' if peak.notch else ''}"
     )
-    if peak.least is not None:
-        return (
-            f"  {f'stress:{link}:{peak.kind}':<28}{'not told':>13} at least {peak.least / 1e6:.6g}"
-            f" MPa at {where}"
-        )
-    return f"  {f'stress:{link}:{peak.kind}':<28}{peak.value / 1e6 + 0.0:>13.6g} MPa at {where}"
+    least = peak.least
+    value = f"{peak.value / 1e6 + 0.0:.6g}" if least is None else f">= {least / 1e6:.6g}"
+    more = (
+        ""
+        if least is None
+        else ("; the peak between the instants was not found, use more instants")
+    )
+    return f"  {f'stress:{link}:{peak.kind}':<28} {value:>12} MPa  at {where}{more}"
 
 
 def _life(found: Life) -> str:
     if math.isinf(found.cycles):
         return (
-            f"  {found.link:<20}  endless: no swing is above the endurance limit; nearest at xi/l ="
-            f" {found.xi:.4f}, {found.fibre}"
+            f"  {f'life:{found.link}':<28}  endless: no stress cycle is above the endurance limit;"
+            f" nearest at xi/l = {ratio(found.xi)}, {found.fibre}"
         )
     guess = ", a guess: the S-N line begins at 1000 cycles" if found.cycles < _GUESS else ""
     return (
-        f"  {found.link:<20} {found.cycles:>8.4g} cycles, {found.hours:.4g} h, at xi/l ="
-        f" {found.xi:.4f}, {found.fibre}{guess}"
+        f"  {f'life:{found.link}':<28} {found.cycles:>12.4g} cycles, {found.hours:.4g} h, at xi/l ="
+        f" {ratio(found.xi)}, {found.fibre}{guess}"
     )

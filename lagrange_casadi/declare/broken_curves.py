@@ -28,9 +28,9 @@ class Kink:
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` has the kink."""
         return DeclarationError(
-            f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a"
-            " curve whose slope does not jump, of CasADi's functions: in place of a table, a"
-            " curve(x, y), a polynomial or a Fourier sum"
+            f"{what}: {self}: rates would jump there, and accelerations would be wrong; expected a"
+            " curve with a continuous slope, as curve(x, y) in place of a table, a polynomial or"
+            " a Fourier sum"
         )
 
 
@@ -44,14 +44,14 @@ class Isolated:
     at: Mapping[str, float]
 
     def __str__(self) -> str:
-        return f"its {self.what} where {_place(self.at)} is not that on either side"
+        return f"its {self.what} where {_place(self.at)} differs from its values on both sides"
 
     def refused(self, what: str) -> DeclarationError:
         """The error for ``what`` is isolated at an instant."""
         return DeclarationError(
-            f"{what}: {self}: it is that of this instant alone; expected instants beside it, or a"
-            " curve without if_else, fabs, sign, floor and the like that touch a place there: in"
-            " place of if_else(x == 0, 1, sin(x)/x) a series where x is small"
+            f"{what}: {self}: the value is that of this instant alone; expected other instants, or"
+            " a curve that is continuous there: if_else, fabs, sign and floor are not, so in"
+            " place of if_else(x == 0, 1, sin(x)/x) take a series for small x"
         )
 
 

@@ -17,12 +17,12 @@ def constraint(own: Ownership, name: str, phi: ca.SX) -> Constraint:
     phi = own.expression(f"constraint '{name}'", phi, moving=True)
     if not isinstance(phi, ca.SX) or not ca.depends_on(phi, m.measures.places):
         raise DeclarationError(
-            f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT),"
-            " place(POINT) or direction(LINK)"
+            f"constraint '{name}' depends on no coordinate; expected an expression of"
+            " coordinate(JOINT), place(POINT) or direction(LINK)"
         )
     if ca.depends_on(phi, m.measures.rates):
         raise DeclarationError(
-            f"constraint '{name}' depends on rates; declare it with nonholonomic()"
+            f"constraint '{name}' depends on rates; expected m.nonholonomic() for it"
         )
     return Constraint(name, phi)
 
@@ -35,7 +35,7 @@ def row(own: Ownership, name: str, expression: ca.SX, replaces: Joint) -> Row:
     expression = own.expression(what, expression, moving=True)
     if not isinstance(expression, ca.SX) or not ca.depends_on(expression, m.measures.rates):
         raise DeclarationError(
-            f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)"
+            f"{what} depends on no rate; expected an expression of rate(JOINT) or velocity(POINT)"
         )
     if ca.depends_on(ca.jacobian(expression, m.measures.rates), m.measures.rates):
         raise DeclarationError(f"{what} must be linear in the rates")

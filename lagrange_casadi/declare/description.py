@@ -119,7 +119,9 @@ def check_places(description: Description) -> None:
         *((name, point) for name, load in description["loads"].items() for point in load["points"]),
     ):
         if place["body"] != "ground" and place["body"] not in description["bodies"]:
-            raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
+            raise ValueError(
+                f"'{name}' is at a place on '{place['body']}', which is not a body of the mechanism"
+            )
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -213,6 +215,18 @@ def beams_of(description: Description) -> list[str]:
 def fitted_of(description: Description) -> list[str]:
     """Return the joints that have a pin or a bearing."""
     return [name for name, joint in description["joints"].items() if "fitted" in joint]
+
+
+def bends_of(description: Description) -> list[str]:
+    """Return the welds between the pieces of bent bars, by the names that they get there."""
+    found = []
+    for name, joint in description["joints"].items():
+        bar, bend, number = name.rpartition("_bend_")
+        if bend and number.isdigit() and joint["kind"] == "weld":
+            pieces = joint["parent"]["body"], joint["child"]["body"]
+            if pieces == (f"{bar}_{number}", f"{bar}_{int(number) + 1}"):
+                found.append(name)
+    return found
 
 
 def parts_of(description: Description) -> list[str]:

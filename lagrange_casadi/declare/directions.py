@@ -99,7 +99,7 @@ def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") 
     said = f"{what}{part}"
     if axis is None:
         if second is not None:
-            raise DeclarationError(f"{said}: second goes with axis, at right angles to it")
+            raise DeclarationError(f"{said}: second needs axis, and is at right angles to it")
         return AXES
     u = _unit(f"{said}: axis", vector(f"{said}: axis", axis, own.expression))
     if second is None:
@@ -180,7 +180,9 @@ def between(
     along = minus(tip, base)
     length = _size(along)
     if isinstance(length, float) and length == 0.0:
-        raise DeclarationError(f"{what}: the two places that it lies between are one")
+        raise DeclarationError(
+            f"{what}: expected two different places in between=, got the same one twice"
+        )
     x = times(1 / length, along)
     aside = None
     if beside is None:
@@ -190,7 +192,8 @@ def between(
         part = minus(aside, times(dot(aside, x), x))
         if all(isinstance(component, float) and abs(component) < RIGHT for component in part):
             raise DeclarationError(
-                f"{what}: beside lies along the link, and must tell which way its y axis is"
+                f"{what}: beside lies along the link; expected a direction across it, towards its"
+                " y axis"
             )
         y = _unit(f"{what}: beside", part)
     return Reference(base, Rotation.of(x, y), tip), length, aside
@@ -212,7 +215,7 @@ def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, V
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
         raise DeclarationError(
-            f"{told} must be three moments, or a matrix of three rows, got {inertia!r}"
+            f"{told} must be three moments of inertia or a 3 x 3 matrix, got {inertia!r}"
         )
     rows = [list(vector(told, row, checked)) for row in inertia]
     size = max(

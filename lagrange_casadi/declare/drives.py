@@ -27,14 +27,14 @@ def weighed(
         )
     weights = dict(drives) if isinstance(drives, Mapping) else dict.fromkeys(drives, 1.0)
     if len(weights) < len(drives):
-        raise DeclarationError(f"drives: a joint stands twice in {', '.join(drives)}")
+        raise DeclarationError(f"drives: a joint is listed twice in {', '.join(drives)}")
     for name, weight in weights.items():
         if name in mechanism.joints and name not in mechanism.coordinates:
             axes = ", ".join(axis.coordinate for axis in mechanism.joints[name].axes)
             why = (
-                f"has several coordinates; name one of {axes}"
+                f"has several coordinates; expected one of {axes}"
                 if axes
-                else "has no coordinate that an effort could work along"
+                else "has no coordinate for an effort"
             )
             raise DeclarationError(f"drives: joint '{name}' {why}")
         if name not in mechanism.coordinates:
@@ -48,13 +48,13 @@ def weighed(
             str(s) for s in ca.symvar(weight) if not ca.depends_on(mechanism.symbols, s)
         ]:
             raise DeclarationError(
-                f"drives: the weight of joint '{name}' depends on {', '.join(strange)}, which is no"
-                " parameter"
+                f"drives: the weight of joint '{name}' depends on {', '.join(strange)}, which is"
+                " not a parameter"
             )
     if len(weights) < len(moved):
         raise DeclarationError(
-            f"drives: {len(weights)} cannot make {len(moved)} independent motions; name at least"
-            f" {len(moved)} joints for the motion of {', '.join(moved)}, got"
+            f"drives: {len(weights)} cannot make {len(moved)} independent motions; expected at"
+            f" least {len(moved)} joints for the motion of {', '.join(moved)}, got"
             f" {', '.join(weights) or 'none'}"
         )
     return {name: weights[name] for name in mechanism.coordinates if name in weights}

@@ -57,9 +57,9 @@ def scalar(
             called = ca.Function("expression", ca.symvar(value), [value]).find_functions()
             if any(function.class_name().endswith("Interpolant") for function in called):
                 raise DeclarationError(
-                    f"{what} calls casadi.interpolant, whose C runs in doubles only, and one"
-                    " instant at a time; expected lagrange_casadi.curve(x, y)(ARGUMENT), smooth,"
-                    " or where corners may be table(ARGUMENT, x, y)"
+                    f"{what} calls casadi.interpolant, which works in double precision only, one"
+                    " instant at a time; expected lagrange_casadi.curve(x, y)(ARGUMENT), or"
+                    " table(ARGUMENT, x, y) if corners are allowed"
                 )
             return written_out(value)
         return value
@@ -73,7 +73,8 @@ def scalar(
         ) from None
     if not math.isfinite(found):
         nan = (
-            "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin"
+            "; the functions of math and float() cannot take a symbol: use casadi.sin, casadi.fmax"
+            " and the like"
             if math.isnan(found)
             else ""
         )
@@ -103,7 +104,7 @@ def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expres
         found.append(scalar(what, read, symbols_of(read), "parameter"))
     if len(units) > 1:
         raise DeclarationError(
-            f"{what}: angles and lengths at once; expected those of one coordinate"
+            f"{what}: mixes angles and lengths; expected the unit of one coordinate"
         )
     return found, next(iter(units), "")
 
@@ -127,9 +128,9 @@ def told(error: BaseException) -> str:
     text = one_line(error)
     if "truth value of a CasADi" in text:
         return (
-            "a symbol is neither true nor false before it has a value: use"
-            " casadi.if_else(condition, a, b) for 'if', casadi.logic_and and logic_or for 'and' and"
-            " 'or', casadi.fmin and fmax for 'min' and 'max'"
+            "a symbol has no truth value: use casadi.if_else(condition, a, b) for 'if',"
+            " casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and"
+            " 'max'"
         )
     return f"{type(error).__name__}: {text}"
 

@@ -94,8 +94,8 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     mechanism.own.open(f"fit {what}")
     if joint.kind not in ("revolute", "cylindrical"):
         raise DeclarationError(
-            f"{what}: pins and bearings are fitted to revolute and cylindrical joints, and it is"
-            f" {joint.kind}"
+            f"{what}: expected a revolute or cylindrical joint for a pin or a bearing, got a"
+            f" {joint.kind} one"
         )
     found: dict[str, Fitted] = dict(mechanism.fitted.get(joint.name, {}))
     for part in parts:
@@ -106,7 +106,7 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
                 f" {shown(part)}"
             )
         if kind in found:
-            raise DeclarationError(f"{what}: it has a {kind} part already")
+            raise DeclarationError(f"{what}: the joint already has a {kind} part")
         found[kind] = type(part)(
             **{
                 name: _checked(mechanism, f"{what}: {kind}", name, value)

@@ -39,16 +39,17 @@ def friction(
     _require(what, joint, axis, numbers)
     if numbers.get("static") is not None and "stribeck" not in numbers:
         raise DeclarationError(
-            f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from"
-            " static"
+            f"{what}: static needs stribeck=, the sliding speed [m/s] within which friction falls"
+            " from static to mu"
         )
     if "stribeck" in numbers and "static" not in numbers:
         raise DeclarationError(
-            f"{what}: stribeck goes with static, the friction coefficient at the start of sliding"
+            f"{what}: stribeck needs static=, the friction coefficient at the start of sliding"
         )
     if beside is not None and "smooth" in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' slides and turns at once, and has no smooth sign"
+            f"{what}: joint '{joint.name}' slides and turns at once, for which smooth= is not"
+            " available; leave smooth out"
         )
     return Friction(
         name,
@@ -73,19 +74,19 @@ def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Ax
     if joint.kind not in valid:
         where = "space" if own.mechanism.space else "a plane"
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' is {joint.kind}; in {where} these may rub:"
-            f" {', '.join(valid)}"
+            f"{what}: joint '{joint.name}' is {joint.kind}; in {where} friction is possible in"
+            f" these joints: {', '.join(valid)}"
         )
     if not joint.axes:
         points = [body.name for body in joint.bodies if not body.oriented]
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has"
-            " no direction; declare it as a link with mass, centre and inertia"
+            f"{what}: joint '{joint.name}' has no angle: '{points[0]}' is a point mass; declare it"
+            " as a link with mass, centre and inertia"
         )
     if joint.kind == "spherical":
         if along:
             raise DeclarationError(
-                f"{what}: joint '{joint.name}' rubs along the way in which it turns, and not along"
+                f"{what}: joint '{joint.name}' has its friction along its rotation, not along"
                 f" '{along}'"
             )
         return joint.axes[0], None
@@ -99,25 +100,28 @@ def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Ax
         first, second = joint.axes
         return (first, second) if along == names[0] else (second, first)
     if along and along not in names:
-        raise DeclarationError(f"{what}: joint '{joint.name}' has one coordinate, and no '{along}'")
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' has one coordinate and none called"
+            f" '{along}'; leave along= out"
+        )
     return joint.axes[0], None
 
 
 def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expression]) -> None:
     """Raise for a length or radius that is missing, or that has no meaning."""
     if "mu" not in numbers and "viscous" not in numbers:
-        raise DeclarationError(f"{what}: expected mu, a friction coefficient, or viscous")
+        raise DeclarationError(f"{what}: expected mu=, a friction coefficient, or viscous=")
     if "mu" not in numbers:
         needless = [
             key for key in ("radius", "length", "static", "stribeck", "smooth") if key in numbers
         ]
         if needless:
-            raise DeclarationError(f"{what}: {needless[0]} goes with mu, a friction coefficient")
+            raise DeclarationError(f"{what}: {needless[0]} needs mu=, a friction coefficient")
         return
     if joint.kind == "screw" and "static" in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' is a screw, and a thread has one mu; valid: mu, radius,"
-            " viscous, smooth"
+            f"{what}: joint '{joint.name}' is a screw, whose thread has one friction coefficient;"
+            " valid: mu, radius, viscous, smooth"
         )
     if (
         joint.turned is not None
@@ -126,13 +130,13 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         and "radius" not in numbers
     ):
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' holds its child against turning about its line; expected"
-            " radius, at which it does [m]"
+            f"{what}: joint '{joint.name}' transmits a moment about its axis; expected radius="
+            " [m], at which friction acts against that"
         )
     if axis.kind == "angle" or joint.kind == "cylindrical":
         if "radius" not in numbers:
             raise DeclarationError(
-                f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]"
+                f"{what}: joint '{joint.name}' turns; expected radius=, that of its pin [m]"
             )
         borne = (
             joint.turned is not None
@@ -141,26 +145,28 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         )
         if borne and "length" not in numbers:
             raise DeclarationError(
-                f"{what}: joint '{joint.name}' bears a moment; expected length, from one bearing to"
-                " the other [m]"
+                f"{what}: joint '{joint.name}' transmits a moment; expected length=, the distance"
+                " of its two bearings [m]"
             )
         if "length" in numbers and not borne:
             raise DeclarationError(
-                f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius"
+                f"{what}: joint '{joint.name}' turns and has no guide length; expected radius= in"
+                " place of length="
             )
         return
     if "radius" in numbers and not (joint.turned is not None and joint.bears_moment):
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' slides and has no radius; valid: length"
+            f"{what}: joint '{joint.name}' slides and has no radius; expected length=, the guide"
+            " length [m], in place of radius="
         )
     if joint.bears_moment and "length" not in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' bears a moment; expected length, that of its guidance"
-            " [m], on whose two edges it rests"
+            f"{what}: joint '{joint.name}' transmits a moment; expected length=, the guide length"
+            " [m]"
         )
     if not joint.bears_moment and "length" in numbers:
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' bears no moment, and needs no length of guidance"
+            f"{what}: joint '{joint.name}' transmits no moment; leave length= out"
         )
 
 

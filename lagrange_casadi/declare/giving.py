@@ -21,7 +21,7 @@ def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
         return elastic
     if not isinstance(elastic, (list, tuple)) or not all(isinstance(name, str) for name in elastic):
         raise DeclarationError(
-            f"elastic: expected True, or a list of the links that give way, got {elastic!r}"
+            f"elastic: expected True, or a list of the links that are elastic, got {elastic!r}"
         )
     having = [
         name
@@ -34,8 +34,8 @@ def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
         beam = mechanism.links[name].beam
         if name not in having or beam is None:
             raise DeclarationError(
-                f"elastic: link '{name}' has no beam, which says what it is made of; links with"
-                f" one: {', '.join(having) or 'none'}"
+                f"elastic: link '{name}' has no beam=; links with a beam:"
+                f" {', '.join(having) or 'none'}"
             )
         beam.material.needs(f"elastic link '{name}'", "elasticity")
     return tuple(name for name in having if name in elastic)

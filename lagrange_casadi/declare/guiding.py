@@ -48,9 +48,9 @@ def laws_of(
             expected, what = 1, "joint"
         elif mechanism.space and (name in mechanism.paths or name in mechanism.bodies):
             raise DeclarationError(
-                f"motion of '{name}': in space the motion of a point or a pose is that of a joint:"
-                " declare a free() joint from the ground to it, give that its motion, and name the"
-                " joints that make it by drives=[...]"
+                f"motion of '{name}': in space a point or a pose has no motion of its own; declare"
+                " a free() joint from the ground to it, give that joint the motion, and list the"
+                " joints that drive it in drives="
             )
         elif name in mechanism.paths:
             expected, what = 2, "path"
@@ -88,7 +88,7 @@ def laws_of(
         unit = ANGLE if turns else LENGTH
         if law.unit not in ("", unit):
             raise DeclarationError(
-                f"motion of '{name}': it is told in {law.unit}, and its coordinate is in {unit}"
+                f"motion of '{name}': it is in {law.unit}, but its coordinate is in {unit}"
             )
     return found
 
@@ -109,9 +109,9 @@ def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
 def _check_joint(joint: Joint) -> None:
     if not joint.axes:
         why = (
-            "a weld does not move"
+            "a weld has no coordinate"
             if joint.kind == "weld"
-            else "a point mass has no direction, so a pin at it has no angle"
+            else "a revolute joint at a point mass has no angle"
         )
         raise DeclarationError(f"joint '{joint.name}' cannot be driven: {why}")
 

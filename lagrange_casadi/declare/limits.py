@@ -134,8 +134,8 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
     """
     if link:
         return (
-            f"link '{name}' is known by its centre of mass and inertia only; a section needs to"
-            " know how its mass lies along it, so give it a mass alone or a density"
+            f"link '{name}' has sections only if its mass is given along it: give it a mass alone"
+            " or a density, in place of centre and inertia"
         )
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
 

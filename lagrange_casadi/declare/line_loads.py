@@ -45,8 +45,7 @@ def line_load(
     body = own.point(what, link).body
     if not isinstance(body, Link):
         raise DeclarationError(
-            f"{what}: a line load acts along a link, and '{body.name}' is none; take a force at a"
-            " point"
+            f"{what}: expected a link for a line load, got '{body.name}'; use a force at a point"
         )
 
     def checked(value: Expression) -> Expression:
@@ -65,8 +64,8 @@ def line_load(
         start, end = (own.along(what, place, body) for place in places)
         if isinstance(start, float) and isinstance(end, float) and not start < end:
             raise DeclarationError(
-                f"{what}: between must be two distances from the base that rise, got {start:g} and"
-                f" {end:g} m"
+                f"{what}: between must be two increasing distances from the base, got {start:g}"
+                f" and {end:g} m"
             )
     found = [_powers(what, value, start, end, checked) for value in components]
     many = max(map(len, found))
@@ -87,8 +86,8 @@ def _powers(
     pair = tuple(value) if isinstance(value, tuple | list) else (value,)
     if len(pair) > 2 or not pair:
         raise DeclarationError(
-            f"{what}: expected one value, two, where it begins and where it ends, or a function of"
-            f" the distance from the base [m], got {value!r}"
+            f"{what}: expected one value, two values at its start and end, or a function of the"
+            f" distance from the base [m], got {value!r}"
         )
     first, last = checked(pair[0]), checked(pair[-1])
     return [last, first - last] if len(pair) == 2 else [last]
@@ -119,6 +118,6 @@ def _of_function(
     if found is None or len(found) > HIGHEST + 1:
         raise DeclarationError(
             f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at"
-            " most; take one load for each part of the link on which it is one"
+            " most; use one load for each part of the link on which it is a polynomial"
         )
     return [checked(coefficient) for coefficient in found]

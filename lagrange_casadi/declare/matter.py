@@ -33,13 +33,13 @@ def matter_of(
     if beam is not None and centre is None and mass is None and density is None:
         return Density(beam.course.breaks, tuple(map(tuple, beam.masses())), per_length=True)
     if (mass is None) == (density is None):
-        raise DeclarationError(f"{what}: give its mass, or a density")
+        raise DeclarationError(f"{what}: expected its mass or its density")
     if beam is not None and centre is not None:
         raise DeclarationError(
-            f"{what}: a beam has sections, and where centre and inertia are given there are none"
+            f"{what}: beam= excludes centre= and inertia=, with which a link has no sections"
         )
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
-        raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
+        raise DeclarationError(f"{what}: expected mass, centre and inertia together")
     if density is not None:
         if not isinstance(density, Density):
             raise DeclarationError(
@@ -47,8 +47,8 @@ def matter_of(
             )
         if density.slices is not None and rigid is None:
             raise DeclarationError(
-                f"{what}: second moments of slices are for links in space; in a plane a link is"
-                " slender"
+                f"{what}: second moments of slices are for links in space; leave them out in a"
+                " plane"
             )
         own = _checked(density, f"{what}: density", checked)
         if density.slices is None:

@@ -296,13 +296,13 @@ class Mechanism(Graphs):
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(
-                f"load '{name}': point mass '{place.body.name}' has no axes for its force to turn"
-                " with"
+                f"load '{name}': point mass '{place.body.name}' has no axes; a force that turns"
+                " needs a link"
             )
         if place.body is self.ground:
             raise DeclarationError(
-                f"load '{name}': a force on the ground moves nothing; name a point of a link or a"
-                " point mass"
+                f"load '{name}': a force on the ground has no effect; expected a point of a link"
+                " or a point mass"
             )
         load = Force(name, place, self._load(name, x), self._load(name, y), turning)
         return cast(Force, self.loads.setdefault(name, load))
@@ -327,7 +327,8 @@ class Mechanism(Graphs):
         for end in ends:
             if not end.body.oriented:
                 raise DeclarationError(
-                    f"load '{name}': point mass '{end.body.name}' bears no torque"
+                    f"load '{name}': point mass '{end.body.name}' cannot take a torque; expected a"
+                    " link"
                 )
         load = Torque(name, ends[0], self._load(name, value), ends[1])
         self.loads[name] = load
@@ -453,8 +454,8 @@ class Mechanism(Graphs):
         path = Path(name, self.own.point(f"path '{name}'", point))
         if path.point.body is self.ground:
             raise DeclarationError(
-                f"path '{name}': a point of the ground does not move; name a point of a link or a"
-                " point mass"
+                f"path '{name}': a point of the ground does not move; expected a point of a link"
+                " or a point mass"
             )
         for kind, unit, of in (
             ("", "m", self.place),

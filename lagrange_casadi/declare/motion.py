@@ -54,7 +54,7 @@ class Motion:
         """
         if self.knots:
             raise DeclarationError(
-                "a motion by samples is of the time alone; expected lagrange_casadi.curve(x,"
+                "a motion by samples depends on the time alone; expected lagrange_casadi.curve(x,"
                 " y)(EXPRESSION)"
             )
         try:
@@ -219,12 +219,13 @@ def _scalar(joint: str, law: Motion, t: ca.SX, parameters: ca.SX) -> Expression:
         value = law.graph(t)
     except Exception as error:
         raise DeclarationError(
-            f"the motion of joint '{joint}' is no casadi.SX expression of t: {told(error)[:240]}"
+            f"the motion of joint '{joint}' cannot be made as an expression of the time t"
+            f" (CasADi's functions, numbers without units): {told(error)[:240]}"
         ) from None
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(
-            f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as"
-            " casadi.sin, not math's"
+            f"the motion of joint '{joint}' is not a number; use CasADi's functions, as casadi.sin"
+            " in place of math.sin"
         )
     symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
     return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")

@@ -75,7 +75,7 @@ def move(
     """
     what = f"move '{name}'" if name else "move"
     if (to is None) == (by is None):
-        raise DeclarationError(f"{what}: expected one of to, a place, and by, a way")
+        raise DeclarationError(f"{what}: expected either to=, an end value, or by=, a distance")
     return Move(_named(name), to, by, time, law, Limits(speed, acceleration, jerk))
 
 
@@ -145,11 +145,11 @@ def moves(
         length = _Sum(0.0).then(*times)
         _demand_closure(origin, place, far, demands)
     elif not (isinstance(far, float) and far == 0.0):
-        raise DeclarationError("moves: advance is of a cyclic motion; expected cyclic=True")
+        raise DeclarationError("moves: advance= needs cyclic=True")
     each_demand = tuple(demands.each)
     if len(demands.units) > 1:
         raise DeclarationError(
-            "moves: angles and lengths at once; expected those of one coordinate"
+            "moves: mixes angles and lengths; expected the unit of one coordinate"
         )
     graph = _graph(stretches, place, length, far, each_demand)
     unit = next(iter(demands.units), "")
@@ -276,11 +276,12 @@ def _sequence(parts: Sequence[object]) -> list[Move | Dwell]:
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise DeclarationError(
-            f"moves: two parts are called '{twice}'; expected names of their own, or none"
+            f"moves: two parts are called '{twice}'; expected different names, or none"
         )
     if not any(isinstance(part, Move) for part in each):
         raise DeclarationError(
-            "moves: nothing but dwells; expected a move, or for what stands still polynomial(PLACE)"
+            "moves: there are only dwells; expected a move, or polynomial(VALUE) for a joint at"
+            " rest"
         )
     return each
 
@@ -327,7 +328,7 @@ def _timed(
                 size,
                 True,
                 lambda _: (
-                    f"{what}: it goes nowhere, so that limits give it no time; expected a dwell"
+                    f"{what}: its distance is zero, so limits give no duration; expected a dwell"
                 ),
             )
         )
@@ -342,8 +343,8 @@ def _timed(
         law = rest_law(what, named)
     if "jerk" in told and isinstance(law.jerk, float) and math.isinf(law.jerk):
         raise DeclarationError(
-            f"{what}: accelerations of the law {law.name} jump, so no limit of jerk holds; expected"
-            " another law"
+            f"{what}: accelerations of the law {law.name} jump, so its jerk is infinite; expected"
+            " another law, or no limit of jerk"
         )
     if not limits.told:
         return law, _expression(f"{what}: time", part.time, "s")
@@ -389,14 +390,14 @@ def _filled(
     if period is None:
         if lacking:
             raise DeclarationError(
-                f"{_what(parts[lacking[0]], lacking[0])}: expected a time, or a period of the moves"
-                " to fill up"
+                f"{_what(parts[lacking[0]], lacking[0])}: expected its time, or a period of all"
+                " moves"
             )
         return told
     whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*told)
     if len(lacking) > 1:
         raise DeclarationError(
-            f"moves: {len(lacking)} dwells have no time; at most one can fill up the period"
+            f"moves: {len(lacking)} dwells have no time; expected a time for all but one"
         )
     if not lacking:
         gap = ca.fabs(ca.SX(whole) - total)
@@ -417,7 +418,7 @@ def _filled(
             left,
             True,
             lambda n: (
-                f"moves: the other parts take {readable(n(total))} s, which leaves nothing of the"
+                f"moves: the other parts take {readable(n(total))} s, which is not less than the"
                 f" period of {readable(n(whole))} s"
             ),
         )

@@ -46,8 +46,9 @@ def notes(
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
             yield (
-                f"joint '{name}' is in gimbal lock at t = {near:.6g} s: two of its turns, and all"
-                " their rates, are not told; other instants, or another axis and second, tell them"
+                f"joint '{name}' is in gimbal lock at t = {near:.6g} s: two of its rotations and"
+                " all their rates are not evaluated; choose other instants, or another axis and"
+                " second"
             )
         body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
         if not ways or "density" not in body:
@@ -64,8 +65,8 @@ def notes(
             low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s"
-                f" (xi/l from {low:.4g} to {high:.4g}): beyond its ends it loads the link as"
-                " through a bracket"
+                f" (xi/l from {low:.4g} to {high:.4g}): there its force acts on the end of the"
+                " link as through a rigid bracket"
             )
 
 
@@ -86,8 +87,9 @@ def drawing_notes(description: Description) -> Iterator[str]:
     if rounded := description.get("rounded"):
         angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
         yield (
-            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are"
-            f" taken as parallel or coincident, moved by up to {angle:.2g} rad and {distance:.2g} m"
+            f"loops close only within the rounding of the numbers given, for {', '.join(rounded)}:"
+            " their axes and places are taken as parallel or coincident, moved by up to"
+            f" {angle:.2g} rad and {distance:.2g} m"
         )
 
 
@@ -151,8 +153,11 @@ def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np
         f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s,"
         f" last at t = {last:.6g} s"
     )
-    left = "open there, and NaN: it is left out of peaks, means and strength"
-    return f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is {left}"
+    left = "indeterminate there and NaN; peaks, means and strength leave these instants out"
+    return (
+        f"a joint with friction is at rest {when}: what depends on its friction{frictions} is"
+        f" {left}"
+    )
 
 
 def _along(name: str, joint: Description) -> dict[Output, float]:

@@ -44,13 +44,15 @@ class Ownership:
             )
         if self.mechanism.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(
-                f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'"
+                f"{what}: '{point.body.name}' belongs to another mechanism than"
+                f" '{self.mechanism.name}'"
             )
         place_of = f"{what}: place on '{point.body.name}'"
         x, y, z = (self.expression(place_of, number, "m") for number in point.place)
         if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
             raise DeclarationError(
-                f"{place_of}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism"
+                f"{place_of}: a planar mechanism has no z, got {z}; use SpatialMechanism for one"
+                " in space"
             )
         found, moved = on_link(Point(point.body, x, y, point.end, z), self.at_defaults)
         self.snapped(what, distance=moved)
@@ -88,7 +90,7 @@ class Ownership:
         if not axes:
             raise DeclarationError(f"joint '{joint.name}' has no coordinate")
         if name not in axes:
-            valid = ", ".join(axes) if len(axes) > 1 else "it has one coordinate, without a name"
+            valid = ", ".join(axes) if len(axes) > 1 else "it has one coordinate, which has no name"
             raise DeclarationError(
                 f"joint '{joint.name}' has no coordinate '{name}'; valid: {valid}"
             )
@@ -145,6 +147,6 @@ class Ownership:
         """Raise where nothing can be changed any more."""
         if self.mechanism.frozen:
             raise DeclarationError(
-                f"cannot {what}: mechanism '{self.mechanism.name}' is frozen, a scene has been made"
-                " of it"
+                f"cannot {what}: mechanism '{self.mechanism.name}' is frozen since a scene was"
+                " made of it; declare all parts before the scene"
             )

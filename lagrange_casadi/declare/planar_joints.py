@@ -28,8 +28,8 @@ def in_plane(
         raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
     if kind != "revolute" and not start.body.oriented:
         raise DeclarationError(
-            f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
-            f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
+            f"{what}: its parent '{start.body.name}' is a point mass, which has no direction for"
+            f" {'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
         )
     unit = (
         (1.0, 0.0)

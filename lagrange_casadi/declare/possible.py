@@ -198,7 +198,7 @@ def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     """Conditions that arguments of curves are between the curves' ends."""
     symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
     found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
-    told = f"{what}: what is put into its curve is beyond the curve's ends"
+    told = f"{what}: the argument of its curve is outside the curve's range"
     return [Demand(BEYOND["double"] - far, False, lambda _: told) for far in found]
 
 
@@ -224,7 +224,7 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
         (link.length - end) + END[precision] * link.length,
     )
     rising = Demand(
-        load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins"
+        load.reach, True, lambda number: f"{told(number)}; expected an end greater than the start"
     )
     return [*(Demand(margin, False, beyond) for margin in margins), rising]
 
@@ -252,8 +252,8 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
             yield Demand(number, positive, refusal)
     if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
         steep = (
-            f"friction '{friction.name}': mu times the lead of a radian must be less than radius,"
-            " else no couple drives the screw"
+            f"friction '{friction.name}': mu times the lead per radian must be less than the"
+            " radius; otherwise no torque can drive the screw"
         )
         yield Demand(
             friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep
@@ -332,8 +332,8 @@ def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
     def refusal(number: Evaluator) -> str:
         x, y, z = (readable(number(matter.inertia[k][k])) for k in range(3))
         return (
-            f"{what}: no body has these moments of inertia: about {told} they are {x}, {y}, {z} kg"
-            " m^2, and of principal moments each is at most the sum of the other two"
+            f"{what}: impossible moments of inertia {x}, {y}, {z} kg m^2 about {told}: each"
+            " principal moment must be at most the sum of the other two"
         )
 
     found = []
@@ -387,7 +387,7 @@ def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
 
     def refusal(_: Evaluator) -> str:
         return (
-            f"{what}: no slice has these second moments: yy, zz and yy zz - yz yz must not be"
+            f"{what}: impossible second moments of slices: yy, zz and yy zz - yz yz must not be"
             " negative anywhere along the link"
         )
 
@@ -427,8 +427,8 @@ def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
         mass = number(total)
         if mass == 0.0:
             return (
-                f"mechanism '{name}' is massless: at least one link or point mass needs a mass, or"
-                " a load"
+                f"mechanism '{name}' has neither mass nor load; give at least one link or point"
+                " mass a mass or a load"
             )
         return (
             f"mechanism '{name}': its whole mass must be finite and positive, got"
@@ -493,8 +493,8 @@ def _of_station(what: str, point: Any, precision: Precision, *, space: bool) -> 
         tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
         weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
         return (
-            f"{what}: {there}; what lies beyond an end is a link of its own: {tail}; {weld}; and"
-            " tail.tip in place of the station"
+            f"{what}: {there}; for a point beyond an end declare another link: {tail}; {weld}; and"
+            " use tail.tip as the point"
         )
 
     return [Demand(margin, False, refusal) for margin in margins(point, precision)]

@@ -118,9 +118,7 @@ def read_samples(
             recording, None if period is None else period * _TIMES[time_unit], advance
         )
     elif advance:
-        raise DeclarationError(
-            f"{path.name}: advance is of a periodic motion; expected periodic=True"
-        )
+        raise DeclarationError(f"{path.name}: advance= needs periodic=True")
     noise = _noise(recording, smoothing)
     return _law(recording, noise, points, periodic or period is not None, advance, scales, told_in)
 
@@ -162,7 +160,7 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
                 raise DeclarationError(f"{row.where}: expected a finite number, got {cell!r}")
         if found and not numbers[0] > found[-1][0]:
             raise DeclarationError(
-                f"{row.where}: times must rise, but {cells[0]} follows {found[-1][0]:g}"
+                f"{row.where}: times must increase, but {cells[0]} follows {found[-1][0]:g}"
             )
         found.append(numbers)
     if len(found) < _LEAST:
@@ -182,7 +180,7 @@ def _column(place: str, column: str | int, heads: Sequence[str], many: int) -> i
         return heads.index(column)
     if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= many:
         raise DeclarationError(
-            f"{place}: column {column!r} is none of the {many} there are, numbered from 1"
+            f"{place}: column {column!r} is not one of its {many} columns, numbered from 1"
         )
     return column - 1
 
@@ -195,7 +193,7 @@ def _closed(recording: Recording, period: float | None, advance: float) -> Recor
     end = t[0] + period
     if not t[-1] < end:
         lasts = f"its rows last {t[-1] - t[0]:.6g} s, but the period is {period:.6g} s"
-        raise DeclarationError(f"{recording.name}: {lasts}; expected the rows of one period")
+        raise DeclarationError(f"{recording.name}: {lasts}; expected rows of exactly one period")
     return Recording(
         recording.name, recording.unit, np.append(t, end), np.append(values, values[0] + advance)
     )
@@ -211,8 +209,8 @@ def _noise(recording: Recording, smoothing: float | str) -> float:
         or not 0.0 <= smoothing < math.inf
     ):
         raise DeclarationError(
-            f"{recording.name}: smoothing must be the noise [{recording.unit}], a number that is"
-            f" not negative, or 'estimated', got {smoothing!r}"
+            f"{recording.name}: smoothing expected the noise [{recording.unit}], a number of at"
+            f" least 0, or 'estimated', got {smoothing!r}"
         )
     return float(smoothing)
 
@@ -235,9 +233,9 @@ def _law(
         if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
             beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
             raise DeclarationError(
-                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it is"
-                f" off by {gap:.6g} {recording.unit}; expected advance, or the period of rows that"
-                " do not close"
+                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it"
+                f" is off by {gap:.6g} {recording.unit}; set advance=, or set period= if the last"
+                " row of the period is missing"
             )
         level[-1] = level[0]
     found = _curve(recording.name, t, level, periodic, noise)
@@ -257,11 +255,11 @@ def _law(
         value = value if isinstance(ratio, float) and ratio == 1.0 else ratio * value
         return value if isinstance(offset, float) and offset == 0.0 else offset + value
 
-    every = f", taken at {points} even times" if points else ""
+    every = f", resampled at {points} equally spaced times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
     told = (
         f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g}"
-        f" s{', over and over' if periodic else ''}"
+        f" s{', repeated' if periodic else ''}"
     )
     return Motion(
         graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=told_in

@@ -206,7 +206,7 @@ class Results:
         parts = list(own)
         if isinstance(part, str) and part in [one.name for one in parts]:
             raise DeclarationError(
-                f"expected the {kind} itself, as its declaration returned it, got its name '{part}'"
+                f"expected the {kind} that its declaration returned, got its name '{part}'"
             )
         if not any(part is one for one in parts):
             name = getattr(part, "name", part)

@@ -50,8 +50,8 @@ class Scaled:
             alike = np.abs(off - numbers[:, None] * off[last]) <= _SAME * np.abs(values).max(axis=0)
         if not alike.all():
             raise DeclarationError(
-                f"{what}: parameters must scale and shift all of them alike; expected NUMBER*(one"
-                " expression) + (another), or a motion.expression of lagrange_casadi.curve(times,"
-                " values)"
+                f"{what}: parameters may only scale and shift all of them together; expected"
+                " NUMBERS*(expression) + (expression), or a motion.expression of"
+                " lagrange_casadi.curve(times, values)"
             )
         return cls(numbers.tolist(), column[last] - column[0], column[0])

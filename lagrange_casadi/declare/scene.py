@@ -84,7 +84,8 @@ class Wanted:
             _check_material(mechanism, name)
         if names and not others(names):
             raise DeclarationError(
-                f"output '{names[0]}': sensitivities are of other outputs; want some too, as effort"
+                f"output '{names[0]}': sensitivities need other outputs; want some of these too,"
+                " as effort"
             )
         chosen = set(every if "all" in names else names)
         own = (
@@ -180,13 +181,13 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
     if name in (*_KINDS, *STRENGTH, SENSITIVITY):
         raise DeclarationError(
-            f"output '{name}': mechanism '{mechanism.name}' has none; valid:"
+            f"output '{name}': not an output of mechanism '{mechanism.name}'; valid:"
             f" {', '.join(outputs(mechanism))}"
         )
     if kind in STRENGTH and part in mechanism.links:
         raise DeclarationError(
-            f"output '{name}': link '{part}' has no beam, which says what it is made of; links with"
-            f" one: {', '.join(_made_of_something(mechanism)) or 'none'}"
+            f"output '{name}': link '{part}' has no beam=; links with a beam:"
+            f" {', '.join(_made_of_something(mechanism)) or 'none'}"
         )
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
@@ -271,8 +272,8 @@ class Scene(Graphs):
         guides = [name for name in self.laws if name not in coordinates]
         if guides and self.drives is None:
             raise DeclarationError(
-                f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints"
-                " that make it by drives=[...]"
+                f"motion of '{guides[0].partition('.')[0]}': a guided point or pose has no effort;"
+                " list the joints that drive it in drives="
             )
         object.__setattr__(
             self, "posture", MappingProxyType(rough_posture(self.mechanism, self.posture))
@@ -472,7 +473,8 @@ class Scene(Graphs):
         law, values = self.laws[name], self.values(parameters)
         if not law.stretches:
             raise DeclarationError(
-                f"the motion of joint '{name}' is not made of moves, so it has no timetable"
+                f"the motion of joint '{name}' is not made of moves, so it has no timetable;"
+                " expected a motion by moves()"
             )
         self.checked(values)
         return timetable(
@@ -482,9 +484,8 @@ class Scene(Graphs):
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""
         raise PickleError(
-            "a Scene cannot be pickled: its expressions and laws of motion live in this process"
-            " alone; send a Case from load_case, which the other process loads anew, or call there"
-            " the function that makes the scene"
+            "a Scene cannot be pickled, for its expressions belong to this process; send a Case"
+            " from load_case, or make the scene in the other process"
         )
 
     def __deepcopy__(self, _memo: object = None) -> Scene:

@@ -48,7 +48,9 @@ def shaking(
     if isinstance(mechanism, type) or not hasattr(mechanism, "moving"):
         raise DeclarationError(f"shaking: expected a Mechanism, got {shown(mechanism)}")
     if not mechanism.moving:
-        raise DeclarationError("shaking: declare it after the bodies; there are none")
+        raise DeclarationError(
+            "shaking: there are no bodies yet; call it after all bodies are declared"
+        )
     axes = mechanism.measures.components
     if not isinstance(about, (tuple, list)) or len(about) not in (0, len(axes)):
         raise DeclarationError(

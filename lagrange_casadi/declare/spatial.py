@@ -110,12 +110,11 @@ class SpatialMechanism(Mechanism):
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
         if (length is None) == (between is None):
-            raise DeclarationError(
-                f"{what}: give its length, or the two places that it lies between"
-            )
+            raise DeclarationError(f"{what}: expected its length, or between=, its two ends")
         if beside is not None and between is None:
             raise DeclarationError(
-                f"{what}: beside goes with between; a joint tells how a link of a length is turned"
+                f"{what}: beside needs between; the orientation of a link with a length follows"
+                " from its joint"
             )
         reference, aside = None, None
         if between is not None:
@@ -350,9 +349,9 @@ class SpatialMechanism(Mechanism):
         if self.own.joint(replaces).coordinate is None:
             found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
             raise DeclarationError(
-                f"non-holonomic constraint '{name}': it replaces the drive of a joint of one"
-                f" coordinate, and those of joint '{replaces.name}' are {found}; take a chain of"
-                " joints of one coordinate each"
+                f"non-holonomic constraint '{name}': expected a joint of one coordinate, those of"
+                f" joint '{replaces.name}' are {found}; use a chain of joints of one coordinate"
+                " each"
             )
         return super().nonholonomic(name, expression, replaces=replaces)
 
@@ -388,7 +387,7 @@ class SpatialMechanism(Mechanism):
     def direction(self, link: Link) -> Any:
         """Not in space, where a link has no single angle."""
         raise DeclarationError(
-            "direction: a link in space has no single angle; build from place() of its points, or"
+            "direction: a link in space has no single angle; use place() of its points, or"
             " coordinate()"
         )
 
@@ -422,8 +421,8 @@ class SpatialMechanism(Mechanism):
             (IN_SPACE[kind] and kind not in ("revolute", "spherical")) or kind == "weld"
         ):
             raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to"
-                " carry an axis; make the other body the parent"
+                f"{what}: its parent '{start.body.name}' is a point mass, which has no direction"
+                " for an axis; make the other body the parent"
             )
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
@@ -458,14 +457,13 @@ class SpatialMechanism(Mechanism):
         """
         if turned:
             raise DeclarationError(
-                f"{what}: turned goes with points of bodies; at says all in the reference posture"
+                f"{what}: turned needs points of bodies; at= already sets the reference posture"
             )
         for body in (parent, child):
             if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
                 got = f"a point of '{body.body.name}'" if isinstance(body, Point) else repr(body)
                 raise DeclarationError(
-                    f"{what}: at goes with bodies of '{self.name}', whose points follow from it,"
-                    f" got {got}"
+                    f"{what}: at needs bodies of '{self.name}', not their points, got {got}"
                 )
         assert isinstance(parent, Body)
         assert isinstance(child, Body)
@@ -483,8 +481,8 @@ class SpatialMechanism(Mechanism):
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:
             raise DeclarationError(
-                f"{what}: '{body.name}' has no place in the reference posture; declare it between"
-                " two places, or give the joint points of its bodies"
+                f"{what}: '{body.name}' has no position in the reference posture; declare it with"
+                " between=, or give the joint points of its bodies"
             )
         return self.references[body.name]
 

@@ -89,8 +89,8 @@ def smoothed(
     if not distance < line:
         what = "a constant" if periodic else "a straight line"
         raise DeclarationError(
-            f"curve: a smoothing of {distance:g} leaves but {what}, from which the root mean square"
-            f" distance of the points is {line:.6g}; expected less"
+            f"curve: a smoothing of {distance:g} leaves only {what}, with a root mean square"
+            f" residual of {line:.6g}; expected less"
         )
     low, high = -16.0, 24.0
     for _ in range(_HALVINGS):

@@ -255,8 +255,8 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
     if not np.isfinite(t).all():
         raise DeclarationError(
             f"over: {timing.count} coordinates of joint '{timing.joint}' from"
-            f" {_shown(timing, even[0])} to {_shown(timing, even[1])} cannot be told apart in time:"
-            " its motion nearly rests there"
+            f" {_shown(timing, even[0])} to {_shown(timing, even[1])} are too close in time: its"
+            " motion is nearly at rest there; expected fewer points or another range"
         )
     return Instants(t, DriveAxis(timing.joint, timing.unit, coordinates))
 
@@ -279,12 +279,12 @@ def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
         f"t = {way.t[0]:.6g} s, at {told(way.d[0])}",
     )
     said = {
-        Missed.STANDS_STILL: f"stands still, and does not go {asked}",
+        Missed.STANDS_STILL: f"is at rest and does not go {asked}",
         Missed.OTHER_WAY: (
-            f"goes the other way than {asked} at t = {way.t[0]:.6g} s; START and STOP are in the"
-            " order of time"
+            f"goes in the opposite direction to {asked} at t = {way.t[0]:.6g} s; expected START"
+            " and STOP in the order of time"
         ),
-        Missed.TURNS_BACK: f"does not go {asked} all the way: it turns back at {where}",
+        Missed.TURNS_BACK: f"does not go {asked}: it reverses at {where}",
         Missed.ENDS: f"does not go {asked}: its samples end at {where}",
         Missed.NEVER: f"does not go {asked}",
     }[why]

@@ -58,14 +58,19 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
     whole = math.copysign(360.0 * max(1, round(float(most))), turns[0])
     begin = round(math.degrees(float(first[0])), _PLACES) + 0.0
     asked = (
-        f"instants over {joint}={begin:.6g}deg:{begin + whole:.6g}deg:{timing.count} make it whole"
+        f"instants over {joint}={begin:.6g}deg:{begin + whole:.6g}deg:{timing.count} make it a"
+        " whole number"
     )
     if most - least > _WHOLE * most:
         return (
             f"drive '{joint}' makes {least:.3g} to {most:.3g} turns, not the same in every design;"
             f" {asked}"
         )
-    return f"drive '{joint}' makes {least:.3g} of a turn; {asked}" if least < 1.0 - _WHOLE else ""
+    return (
+        f"drive '{joint}' makes {least:.3g} of a revolution; {asked}"
+        if least < 1.0 - _WHOLE
+        else ""
+    )
 
 
 def _goes_round(law: Reaching, start: Array, stop: Array, turns: Array, p: Array) -> bool:

@@ -38,7 +38,8 @@ def without_fitted(fitted: Iterable[str], names: Sequence[str], what: str) -> No
     for joint in fitted:
         if f"safety:{joint}" in (texts(names) or ()):
             raise DeclarationError(
-                f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}"
+                f"output 'safety:{joint}': {what} have no strength of pins and bearings; want"
+                f" reaction:{joint}"
             )
 
 
@@ -49,6 +50,6 @@ def without_life(names: Sequence[str], what: str) -> None:
     for name in texts(names) or ():
         if name.partition(":")[0] == "life":
             raise DeclarationError(
-                f"output '{name}': {what} tell instants, and a life is that of a whole cycle;"
-                " evaluate it"
+                f"output '{name}': {what} have instants, but a life needs a whole cycle; use"
+                " evaluate"
             )

@@ -78,9 +78,9 @@ class Vibration:
         told += f", {self.frequency / self.cycle:.4g} times that of the cycle"
         off = f"{100 * self.excess:.3g} %" if self.excess < 10 else "many times"
         if self.enough:
-            return f"{told}; by swinging its bending is off by {off} at most"
+            return f"{told}; resonance changes its bending by {off} at most"
         which = f"harmonic {self.harmonic}, {self.harmonic * self.cycle:.5g} Hz"
-        return f"{told}; rigid links are not enough: by {which}, bending is off by {off}"
+        return f"{told}; rigid links are not enough: {which}, changes its bending by {off}"
 
 
 @public
@@ -194,12 +194,12 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
 def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
     """Reason why there are no harmonics; empty if there are."""
     if t.size < _FEWEST:
-        return "of so few instants harmonics cannot be told"
+        return "harmonics need more instants"
     steps = np.diff(t)
     if steps.max() - steps.min() > _UNEVEN * (t[-1] - t[0]):
-        return "instants are not equally far apart, so harmonics cannot be told"
+        return "harmonics need equally spaced instants"
     if any(abs(force[-1] - force[0]) > _CYCLE * whole for force in forces):
-        return "its bending does not end as it began, so harmonics cannot be told"
+        return "harmonics need a whole cycle: its bending does not end as it began"
     return ""
 
 

@@ -111,12 +111,12 @@ def belt(
     if not numbers.of(distance) > numbers.of(reach):
         told = "the sum" if crossed else "the difference"
         raise DeclarationError(
-            f"{what}: its centres are {numbers.of(distance):.6g} m apart, and {told} of its radii"
-            f" is {numbers.of(reach):.6g} m"
+            f"{what}: its centres are {numbers.of(distance):.6g} m apart; expected more than"
+            f" {told} of its radii, {numbers.of(reach):.6g} m"
         )
     fits.append(
         Fit(
-            "its pulleys are {got} m beside each other along their axes; expected {meant} m",
+            "its pulleys are offset by {got} m along their axes; expected {meant} m",
             beside,
             0.0,
             scale,

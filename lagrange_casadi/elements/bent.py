@@ -43,7 +43,7 @@ class Bent:
         """A corner: 0 is the base. Raises :class:`.DeclarationError` for a number of none."""
         if type(number) is not int or not 0 <= number < len(self.corners):
             raise DeclarationError(
-                f"'{self.pieces[0].name}': corner {number!r} is none of 0 to"
+                f"'{self.pieces[0].name}': there is no corner {number!r}, expected 0 to"
                 f" {len(self.corners) - 1}"
             )
         return self.corners[number]
@@ -77,7 +77,7 @@ def bent_bar(
         _place(mechanism, f"{what}: corner {k}", corner, size) for k, corner in enumerate(corners)
     ]
     if (mass is None) == (per_length is None):
-        raise DeclarationError(f"{what}: give its mass, or what it has per_length")
+        raise DeclarationError(f"{what}: expected mass= or per_length=")
     mass = None if mass is None else mechanism.own.expression(f"{what}: mass", mass, "kg")
     per_length = (
         None
@@ -88,7 +88,7 @@ def bent_bar(
     lengths = [_length(way) for way in ways]
     for k, length in enumerate(lengths):
         if isinstance(length, float) and not length > 0.0:
-            raise DeclarationError(f"{what}: corners {k} and {k + 1} lie on each other")
+            raise DeclarationError(f"{what}: corners {k} and {k + 1} coincide")
     whole = sum(lengths[1:], lengths[0])
     pieces = []
     for k, length in enumerate(lengths):

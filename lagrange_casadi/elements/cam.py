@@ -231,7 +231,7 @@ def layout_of(
     if held.body is not follower.child.body:
         raise DeclarationError(
             f"{what}: its point must be on '{follower.child.body.name}', which joint"
-            f" '{follower.name}' leads"
+            f" '{follower.name}' guides"
         )
     radius = (
         0.0

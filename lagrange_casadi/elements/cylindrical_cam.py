@@ -154,7 +154,7 @@ def cylindrical_cam(
     if held.body is not follower.child.body:
         raise DeclarationError(
             f"{what}: its point must be on '{follower.child.body.name}', which joint"
-            f" '{follower.name}' leads"
+            f" '{follower.name}' guides"
         )
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
@@ -232,8 +232,8 @@ def _groove(
     side = float(ahead(0.0, values))
     if not abs(side) > 0.0:
         raise DeclarationError(
-            f"{what}: the drum does not pass by the roller; expected it off the axis, and a"
-            " follower along it"
+            f"{what}: the drum's surface does not pass the roller; expected the roller off the"
+            " axis, and a follower along the axis"
         )
     normal, bend = (normal, bend) if side > 0.0 else (times(-1.0, normal), -bend)
     return Groove(x, place, normal, way, axis, centre, bend)

@@ -188,7 +188,7 @@ def _teeth(
         return [own.expression(f"{what}: {word}", value, unit) for value in listed]
 
     if (module is None) == (radii is None):
-        raise DeclarationError(f"{what}: give module and teeth, or radii")
+        raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
     names = ("pressure_angle", "helix_angle")
     pressure, helix = (
         own.expression(f"{what}: {one}", angle, "rad")
@@ -205,7 +205,7 @@ def _teeth(
         fits += whole(what, "numbers of teeth", value)
     if module is not None:
         if z is None:
-            raise DeclarationError(f"{what}: give module and teeth, or radii")
+            raise DeclarationError(f"{what}: expected module= and teeth=, or radii=")
         size = own.expression(f"{what}: module", module, "m")
         fits += positive(what, "module", size)
         cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
@@ -271,7 +271,7 @@ def loss_of(
     """The law of a loss. Raises :class:`.DeclarationError` for numbers that cannot be."""
     own = mechanism.own
     if (mu is None) == (pitch.kind == "crossed") or (mu is not None and efficiency is not None):
-        raise DeclarationError(f"{what}: expected mu of crossed axes, efficiency of others")
+        raise DeclarationError(f"{what}: expected mu= for crossed axes, efficiency= for others")
     if mu is not None:
         value = own.expression(f"{what}: mu", mu)
         fits = at_least(what, "mu must not be negative", value, 0.0, value)

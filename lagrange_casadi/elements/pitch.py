@@ -99,7 +99,7 @@ def _parallel(what: str, numbers: Numbers, first: Course, second: Course, teeth:
     _refuse_beside(what, numbers, beside, r1 + r2)
     fits.append(
         Fit(
-            "its gears are {got} m beside each other along their axes; expected {meant} m",
+            "its gears are offset by {got} m along their axes; expected {meant} m",
             beside,
             0.0,
             r1 + r2,
@@ -245,7 +245,10 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
     if abs(numbers.of(distance) - numbers.of(radius)) > FITTING * numbers.of(radius):
         raise DeclarationError(f"{what}: {fit.refusal(numbers.of(distance), numbers.of(radius))}")
     _refuse_beside(what, numbers, beside, radius)
-    fits = fit, Fit("its rack is {got} m beside its gear; expected {meant} m", beside, 0.0, radius)
+    fits = (
+        fit,
+        Fit("its rack is offset by {got} m from its gear; expected {meant} m", beside, 0.0, radius),
+    )
     e = along(across, distance)
     t = cross(u, e)
     force = minus(t, times(_tan(teeth.helix), u))
@@ -267,8 +270,8 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
 def _refuse_beside(what: str, numbers: Numbers, beside: Expression, size: Expression) -> None:
     if abs(numbers.of(beside)) > FITTING * numbers.of(size):
         raise DeclarationError(
-            f"{what}: its parts are {numbers.of(beside):.6g} m beside each other along the axis;"
-            " expected centres in one plane"
+            f"{what}: its parts are offset by {numbers.of(beside):.6g} m along the axis; expected"
+            " centres in one plane"
         )
 
 

@@ -97,13 +97,13 @@ def planetary(
         )
     if type(planets) is not int or planets < 1 or (of_sun + of_ring) % planets:
         raise DeclarationError(
-            f"{what}: {planets!r} planets cannot be evenly round; expected a number that divides"
+            f"{what}: {planets!r} planets cannot be evenly spaced; expected a number that divides"
             f" {of_sun + of_ring}, the teeth of sun and ring together"
         )
     apart = of_planet + 2
     if planets > 1 and apart > (of_sun + of_planet) * math.sin(math.pi / planets):
         raise DeclarationError(
-            f"{what}: {planets} planets of {of_planet} teeth have no room round a sun of {of_sun}"
+            f"{what}: {planets} planets of {of_planet} teeth do not fit around a sun of {of_sun}"
         )
     size = own.expression(f"{what}: module", module, "m")
     positive(what, "module", size)

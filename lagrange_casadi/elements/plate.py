@@ -30,7 +30,8 @@ class Plate:
         """A corner, the first is 0. Raises :class:`.DeclarationError` for a number of none."""
         if type(number) is not int or not 0 <= number < len(self.corners):
             raise DeclarationError(
-                f"'{self.link.name}': corner {number!r} is none of 0 to {len(self.corners) - 1}"
+                f"'{self.link.name}': there is no corner {number!r}, expected 0 to"
+                f" {len(self.corners) - 1}"
             )
         return self.corners[number]
 
@@ -74,7 +75,7 @@ def plate(
             tuple(mechanism.own.expression(f"{what}: corner {k}", number, "m") for number in corner)
         )
     if (mass is None) == (per_area is None):
-        raise DeclarationError(f"{what}: give its mass, or what it has per_area")
+        raise DeclarationError(f"{what}: expected mass= or per_area=")
     _refuse_crossing(what, places)
     area, x, y, second = area_of(places)
     if isinstance(area, float) and area == 0.0:
@@ -129,8 +130,8 @@ def _refuse_crossing(what: str, places: Sequence[Any]) -> None:
     for (i, first), (j, second) in itertools.combinations(enumerate(edges), 2):
         if j - i not in (1, count - 1) and _cross(*first, *second):
             raise DeclarationError(
-                f"{what}: the edges from corners {i} and {j} cross; expected the corners in their"
-                " order round it"
+                f"{what}: the edges from corners {i} and {j} cross; expected the corners in order"
+                " around the plate"
             )
 
 

@@ -175,9 +175,7 @@ def _normals(what: str, points: Array) -> tuple[Array, Array]:
     closed = np.vstack([points, points[:1]])
     steps = np.hypot(*np.diff(closed, axis=0).T)
     if not steps.min() > 1e-9 * size:
-        raise DeclarationError(
-            f"{what}: points {int(np.argmin(steps)) + 1} and the next lie on each other"
-        )
+        raise DeclarationError(f"{what}: points {int(np.argmin(steps)) + 1} and the next coincide")
     way = np.concatenate([[0.0], np.cumsum(steps)])
     slopes = [
         [cell[1] for cell in curve(way.tolist(), row.tolist(), periodic=True).cells]
@@ -192,7 +190,7 @@ def _normals(what: str, points: Array) -> tuple[Array, Array]:
         < math.pi
     ):
         raise DeclarationError(
-            f"{what}: its points do not go round the cam's shaft, which is at (0, 0)"
+            f"{what}: its points do not enclose the cam's shaft, which is at (0, 0)"
         )
     return points, np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
 
@@ -207,8 +205,7 @@ def _sliding(
     reach = np.hypot(*pitch.T)
     if reach.min() < abs(offset):
         raise DeclarationError(
-            f"profile: the follower's line passes beside it, {abs(offset):.6g} m from the cam's"
-            " shaft"
+            f"profile: the follower's line misses it, at {abs(offset):.6g} m from the cam's shaft"
         )
     height = np.sqrt(reach**2 - offset**2)
     place = offset * np.array([up[1], -up[0]]) + height[:, None] * up
@@ -226,13 +223,17 @@ def _swinging(
     if flat:
         sine = np.sum(at * normal, axis=1) / reach
         if np.abs(sine).max() >= 1.0:
-            raise DeclarationError("profile: the follower's pin is too near: the profile passes it")
+            raise DeclarationError(
+                "profile: the follower's pin is too close: the profile passes it"
+            )
         angle = np.arcsin(sine)
         return line + side * (angle + math.pi / 2) - _direction(normal), angle
     pitch = at + radius * normal
     cosine = (arm**2 + reach**2 - np.sum(pitch**2, axis=1)) / (2.0 * arm * reach)
     if np.abs(cosine).max() >= 1.0:
-        raise DeclarationError("profile: the follower does not reach all of it, or is too near")
+        raise DeclarationError(
+            "profile: the follower is too short to reach all of it, or too close"
+        )
     angle = np.arccos(cosine)
     turned = line + side * angle
     place = away + arm * np.column_stack([np.cos(turned), np.sin(turned)])

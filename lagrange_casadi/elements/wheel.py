@@ -48,7 +48,7 @@ def wheel(
     """
     what, own = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
-        raise DeclarationError(f"{what}: give its mass, or its width and density")
+        raise DeclarationError(f"{what}: expected mass=, or width= and density=")
     outer, inner = (
         own.expression(f"{what}: radius", radius, "m"),
         own.expression(f"{what}: bore", bore, "m"),

@@ -179,9 +179,9 @@ def _refuse_unmeasured(
         return
     bars = [bar.link.name for bar in tree.bars if joint in bar.joints]
     why = (
-        f"the spin of bar '{bars[0]}' is idle and moves nothing"
+        f"the spin of two-force link '{bars[0]}' about its own axis moves nothing"
         if bars
-        else "the joint closes a loop, where its turns are not told"
+        else "the joint closes a loop, where its rotations are not evaluated"
     )
     raise DeclarationError(f"drive '{name}': {why}; drive another joint")
 

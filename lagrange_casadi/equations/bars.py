@@ -131,10 +131,9 @@ def unaimed(link: str) -> str:
     declared.
     """
     return (
-        f"link '{link}' is a bar that spins freely about its line, and its cross-section is not"
-        " round, so its stresses depend on how it is turned; declare it between= two places with"
-        " beside=, the direction of its y axis, or take a universal joint for one of its spherical"
-        " ones"
+        f"link '{link}' can spin freely about its own axis, and its cross-section is not round, so"
+        " its stresses are not determined; declare it with between= and beside=, the direction of"
+        " its y axis, or use a universal joint for one of its spherical ones"
     )
 
 
@@ -160,8 +159,9 @@ def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
             first, second = (joint.name for joint in own)
             found.append(
                 f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is"
-                " idle: give one of their turns a motion, or the link its mass alone, so that it"
-                " is a bar; where one of them rubs, make the other one universal"
+                " not determined: give one of their rotations a motion, or the link its mass"
+                " alone, so that it is a two-force link; if one of them has friction, make the"
+                " other one universal"
             )
     return found
 

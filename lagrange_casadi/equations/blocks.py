@@ -352,13 +352,15 @@ def _require_freedom(
     advice = (
         f"drive {freedom} of the joints {', '.join(movable)}"
         if freedom > 0
-        else "take a joint, a constraint or a link away"
+        else "remove a joint, a constraint or a link"
     )
     lacking = [c.told_as for c in multibody.coordinates if c not in told]
     if slopes is None and lacking:
-        advice = f"give a rough posture of {', '.join(lacking)} too"
+        advice = f"also give a rough posture of {', '.join(lacking)}"
     elif freedom == driven:
-        advice = "but these over-determine some loops and leave others loose; drive other joints"
+        advice = (
+            "but these over-determine some loops and leave others undetermined; drive other joints"
+        )
     elif freedom > driven:
         advice += "".join(
             f"; {spin}"

@@ -303,8 +303,8 @@ def _least_energy(scene: Scene, acting: Mapping[Column, Any], borne: _Borne) -> 
     for name, value in borne.frictions.items():
         if ca.depends_on(ca.SX(value), borne.free):
             raise DeclarationError(
-                f"elastic: friction '{name}' follows a reaction that equilibrium leaves open;"
-                " elasticity tells it without friction"
+                f"elastic: cannot be combined with friction '{name}', whose reaction is statically"
+                " indeterminate; leave one of them out"
             )
     open_ = any(ca.depends_on(ca.SX(value), borne.free) for value in acting.values())
     return least_energy(scene.mechanism, scene.elastic, acting, borne.free) if open_ else None
@@ -390,7 +390,7 @@ def _value(
             str(key.part) for key in found if isinstance(key, Output) and key.group == "effort"
         )
         raise DeclarationError(
-            f"an output is made of {asked.output}, and joint '{asked.output.part}' is no drive;"
+            f"an output is made of {asked.output}, but joint '{asked.output.part}' is not a drive;"
             f" drives: {drives}"
         )
     return found[asked.output]

@@ -129,7 +129,7 @@ def no_rates(
     if not points:
         raise DeclarationError(
             f"velocities or tangent are not finite at any of {_TRIALS} random points, so they"
-            " cannot be checked"
+            " cannot be checked; expected expressions that are finite for most coordinates"
         )
     return sorted(found)
 

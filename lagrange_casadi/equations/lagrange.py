@@ -137,8 +137,8 @@ class LagrangeSystem:
                 _expect(name, getattr(self, name), size)
         if self.tangent is None and p != n:
             raise DeclarationError(
-                f"{p} coordinates and {n} rates: say by 'tangent' how coordinates change with the"
-                " rates"
+                f"{p} coordinates and {n} rates: set 'tangent', the derivatives of coordinates by"
+                " the rates"
             )
         if self.tangent is not None and ca.SX(self.tangent).shape != (p, n):
             raise DeclarationError(
@@ -181,7 +181,7 @@ class LagrangeSystem:
             for kind in kinds:
                 if ca.depends_on(graph, getattr(self, kind)):
                     advice = (
-                        "; put what does into 'forces'"
+                        "; move such terms into 'forces'"
                         if name == "force_function" and kind != "accelerations"
                         else ""
                     )
@@ -195,8 +195,8 @@ class LagrangeSystem:
             for symbol in ca.symvar(graph) if self.time is None and not fixed else ():
                 if symbol.name() in _TIMES:
                     raise DeclarationError(
-                        f"{name} depends on '{symbol}': give time={symbol} if it is the time, else"
-                        " give the parameter another name"
+                        f"{name} depends on '{symbol}': set time={symbol} if it is the time, else"
+                        " rename the parameter"
                     )
 
     def _check_rates(self) -> None:
@@ -207,9 +207,8 @@ class LagrangeSystem:
         if wrong:
             raise DeclarationError(
                 f"tangent{'' if self.drift is None else ' and drift'}:"
-                f" {_listed('coordinate', wrong)} no function of coordinates whose rates are the"
-                " given rates; the angular velocity of a body in space, for one, is the rate of no"
-                " coordinates"
+                f" {_listed('coordinate', wrong)} not integrable to coordinates; the angular"
+                " velocity of a body in space, for example, is not the rate of coordinates"
             )
         # Along what bears no energy, forces do work whatever it is.
         symbols = {symbol.element_hash() for symbol in ca.symvar(ca.SX(self.kinetic))}
@@ -223,13 +222,12 @@ class LagrangeSystem:
         )
         wrong = [bearing[k] for k in own]
         if wrong:
-            late = (
-                "" if self.time is not None else ", or it depends on time and 'time' is not given"
-            )
+            late = "" if self.time is not None else ", or it depends on time and 'time' is not set"
             raise DeclarationError(
-                f"velocity_graphs: {_listed('velocity', wrong)} no rate of a place or angle in axes"
-                f" at rest, for d/dt(dw/dq') is not dw/dq{late}; of a body that turns in space take"
-                " the velocities of points or axes, not its angular velocity"
+                f"velocity_graphs: {_listed('velocity', wrong)} not integrable, not the rate of a"
+                f" position or angle in fixed axes: d/dt(dw/dq') differs from dw/dq{late}; for a"
+                " body that rotates in space use the velocities of points or axes in place of its"
+                " angular velocity"
             )
 
     @property

@@ -150,7 +150,7 @@ class Completion:
             else []
         )
         found += [why for _, why in loaded if why != _NO_BEAM]
-        return (*found, "some bend no link") if idle else tuple(found)
+        return (*found, "some do not deform any link") if idle else tuple(found)
 
     def dumps(self) -> str:
         """Write it as text."""

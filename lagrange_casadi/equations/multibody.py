@@ -328,8 +328,8 @@ def rates_along(
 def _refuse_three(joint: Joint) -> None:
     if joint.turns > 2:
         raise DeclarationError(
-            f"joint '{joint.name}' closes a loop, and the angles of a joint that turns about three"
-            " axes are not measured there"
+            f"joint '{joint.name}' closes a loop, where the angles of a joint with three axes of"
+            " rotation are not evaluated"
         )
 
 

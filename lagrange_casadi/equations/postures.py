@@ -132,8 +132,8 @@ class Undecided:
         names = [c.told_as for c in missing]
         self.lacking.append((block.joints, [(c.told_as, c.kind != "slide") for c in missing]))
         self.words.append(
-            f"the loops closed by {block.joints} have no closed form; give a rough posture of"
-            f" {', '.join(names)} too"
+            f"the loops closed by {block.joints} have no closed form; also give a rough posture of"
+            f" {', '.join(names)}"
         )
 
     def refusal(self, multibody: Multibody) -> PostureError:
@@ -158,9 +158,9 @@ class Undecided:
             lines.append(
                 "posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}"
             )
-        say = f"say which by {' or '.join(lines)}" if self.ways else lines[0]
+        say = f"choose one by {' or '.join(lines)}" if self.ways else lines[0]
         after = (
-            " or the like: each loop is told as it is with the first way of those before it"
+            ", for example; each loop is listed for the first assembly of the loops before it"
             if len(self.ways) > 1
             else ""
         )

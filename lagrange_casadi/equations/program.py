@@ -226,7 +226,7 @@ class Program(Graphs):
         """Send it as its text. Raises :class:`.PickleError` where that would not tell all."""
         if self.identity is None:
             raise PickleError(
-                f"the scene of '{self.data.name}' cannot be pickled: it calls a function that lives"
-                " in this process alone; expected expressions of CasADi's own functions"
+                f"the scene of '{self.data.name}' cannot be pickled: it calls a function of this"
+                " process alone; expected expressions of CasADi's own functions"
             )
         return Program.loads, (self.dumps(),)

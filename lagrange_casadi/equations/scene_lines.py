@@ -25,7 +25,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     """
     mechanism = scene.mechanism
     drives = scene.laws if scene.weights is None else scene.weights
-    yield f"freedoms: {len(scene.laws)}, driven at {', '.join(drives) or 'nothing'}"
+    yield f"degrees of freedom: {len(scene.laws)}, driven at {', '.join(drives) or 'nothing'}"
     symbol, word = ca.SX.sym("t"), "drive" if scene.weights is None else "motion"
     for joint, law in scene.laws.items():
         yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
@@ -54,7 +54,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     ]
     if any(name not in scene.posture for name in reference_posture(mechanism)):
         postures.append(
-            f"{'else ' if postures else ''}that of reference, in which the parts are declared"
+            f"{'else ' if postures else ''}the reference posture, in which the parts are declared"
         )
     yield f"posture: {', '.join(postures) or 'none'}"
     if scene.elastic:
@@ -77,7 +77,7 @@ def _constraint(constraint: Constraint) -> str:
         f"{mesh.first.body.name} and {mesh.second.body.name}"
         for mesh in constraint.transmission.meshes
     )
-    return f"{told}; it acts where these touch: {pairs}"
+    return f"{told}; it acts at the contacts: {pairs}"
 
 
 def _law(law: Motion, symbol: ca.SX) -> str:
@@ -89,8 +89,7 @@ def _law(law: Motion, symbol: ca.SX) -> str:
         return law.told
     if law.stretches:
         return (
-            f"{len(law.stretches)} moves and"
-            f" dwells{', over and over' if law.period is not None else ''}"
+            f"{len(law.stretches)} moves and dwells{', repeated' if law.period is not None else ''}"
         )
     return f"{_short(law.graph(symbol))} of the time t"
 

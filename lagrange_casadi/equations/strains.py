@@ -29,9 +29,9 @@ def moduli_of(beam: Beam, what: str, *, space: bool) -> Moduli:
     found = beam.material.needs(what, "elasticity", "shear_modulus")
     for shape in beam.course.shapes() if space else ():
         if shape.properties().torsion is None:
-            how = "give its properties by beams.given, with its torsion"
+            how = "use beams.given with its properties, torsion included"
             raise DeclarationError(
-                f"{what}: for torsion of a {shape.kind} there is no formula; {how}"
+                f"{what}: there is no formula for torsion of a {shape.kind}; {how}"
             )
     return found
 

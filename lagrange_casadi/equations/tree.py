@@ -116,9 +116,9 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         if joint.kind == "screw":
             # Where its bodies are does not tell how often it has turned.
             raise DeclarationError(
-                f"joint '{joint.name}' is a screw between bodies that drives and other screws place"
-                " already; drive the screw itself, or let it go and tie their coordinates by a"
-                " constraint"
+                f"joint '{joint.name}' is a screw between bodies whose positions already follow"
+                " from drives and other screws; drive the screw itself, or replace it by a"
+                " constraint between their coordinates"
             )
     return Tree(tuple(branches), tuple(waiting), bars)
 
@@ -133,12 +133,12 @@ def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Seque
             continue
         if mechanism.space:
             raise DeclarationError(
-                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it,"
-                " which holds nothing"
+                f"'{body.name}' is connected by two-force links only; declare a free() joint from"
+                " the ground to it, which transmits no force"
             )
         raise DeclarationError(
-            f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need"
-            " be) that slides in its stead"
+            f"link '{body.name}' is connected by sliding on a point only; pin it to a point mass,"
+            " of mass 0 if need be, that slides in its place"
         )
 
 
@@ -167,12 +167,16 @@ def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
             or (link.beside is None and link in turned)
         ):
             continue
-        told = "beside tells its y axis" if link.beside is not None else "between tells how it lies"
+        told = (
+            "beside= gives its y axis"
+            if link.beside is not None
+            else ("between= gives its position")
+        )
         way_out = "leave beside out" if link.beside is not None else "give its length"
         raise DeclarationError(
-            f"link '{link.name}': {told} in the reference posture, and none of its joints is told"
-            f" there; give one of them at=, the place where it is, or {way_out} and tell by turned"
-            " how the link is turned"
+            f"link '{link.name}': {told} in the reference posture, but none of its joints has a"
+            f" position there; give one of them at=, its position, or {way_out} and give turned=,"
+            " the orientation of the link"
         )
 
 
@@ -198,17 +202,17 @@ def _refuse_driven(
     following = [axis.coordinate for axis in axes if axis.coordinate not in given]
     if following:
         raise DeclarationError(
-            f"joint '{joint.name}': of every joint of its loop some motion is given, so none is"
-            f" left to close it, and {', '.join(following)} cannot follow; give one of them no"
-            " motion, and say by drives=[...] what bears efforts"
+            f"joint '{joint.name}': every joint of its loop has a given motion, so"
+            f" {', '.join(following)} cannot follow; remove the motion of one joint (it may still"
+            " be listed in drives=)"
         )
     if joint.kind == "slot" and joint.child.body.oriented:
         raise DeclarationError(
-            f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop"
+            f"joint '{joint.name}' is a slot and cannot be driven; drive another joint of its loop"
         )
     raise DeclarationError(
-        f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints"
-        " already place its bodies"
+        f"the drive of joint '{joint.name}' is redundant: the positions of its bodies already"
+        " follow from the other driven joints; remove one of these drives"
     )
 
 

@@ -83,9 +83,9 @@ def count_turns(
     ):
         if rule is None:
             raise DeclarationError(
-                f"{', '.join(users[turned.name])}: the angle of '{turned.name}' is seen with its"
-                " turns, but how many it makes does not follow from the angles of the drives;"
-                " expected its sine and cosine, or an angle that goes round with them"
+                f"{', '.join(users[turned.name])}: the angle of '{turned.name}' enters with its"
+                " number of revolutions, which cannot be determined from the drives; use its sine"
+                " and cosine, or the angle of a drive"
             )
         about = (
             ca.dot(ca.DM(rule.turns), counted) + rule.centre

@@ -170,13 +170,15 @@ def compiled(
         except CompilerError as error:
             if backend != "auto" or language == "c":
                 raise
-            warn(f"{error}; scalar C serves")
+            warn(f"{error}; using scalar C")
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if rung.precision == "single":
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
-        warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly")
+        warn(
+            f"no C or C++ compiler found ({_TRIED}): using CasADi's virtual machine, which is slow"
+        )
     return None
 
 

@@ -325,10 +325,10 @@ def cycle_of(graph: Program, p: Array, rates: tuple[float, float]) -> Cycle:
             return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
     names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
     wound = bool(graph.checks("turned"))
+    why = "; a load that depends on a number of revolutions may not repeat" if wound else ""
     raise DeclarationError(
-        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}',"
-        f" but {_listed(names)} do not"
-        f" repeat{'; a load that sees an angle with its turns may wind up' if wound else ''}"
+        f"table: expected columns that repeat after at most {TURNS} turns of joint"
+        f" '{drive.joint}', but {_listed(names)} do not repeat{why}"
     )
 
 

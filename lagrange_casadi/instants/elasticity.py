@@ -20,8 +20,16 @@ class Elasticity:
     def notes(self) -> tuple[str, ...]:
         """Results in lines."""
         told = (
-            [f"equilibrium leaves {len(self.told)} series open that least strain energy tells"]
+            [
+                (
+                    f"{len(self.told)} statically indeterminate series are determined by least"
+                    " strain energy"
+                )
+            ]
             if self.told
             else []
         )
-        return (*told, *(f"elasticity leaves forces open: {reason}" for reason in self.reasons))
+        return (
+            *told,
+            *(f"elasticity does not determine some forces: {reason}" for reason in self.reasons),
+        )

@@ -53,7 +53,7 @@ def held_notes(held: Mapping[str, Holding]) -> Iterator[str]:
     for name, found in held.items():
         there = found.least < found.largest
         if found.untold:
-            yield f"held at rest: effort:{name} is not told: {found.untold}"
+            yield f"held at rest: effort:{name} is not evaluated: {found.untold}"
         elif there.any():
             least, largest = found.least[there].min(), found.largest[there].max()
             yield (

@@ -77,7 +77,7 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
             reasons.append(
                 (
                     (tried[:, held.columns.index(doubt)] > OPEN["double"]).any(axis=0),
-                    "equilibrium leaves it open",
+                    "equilibrium does not determine it",
                 )
             )
         reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
@@ -127,7 +127,10 @@ def _tried(held: HeldEfforts, inputs: list[Any]) -> tuple[Array, _Reasons]:
     if len(resting) > _MOST:
         return first[None], [
             *why,
-            (np.ones(first.shape[1], bool), f"{len(resting)} frictions rest, of at most {_MOST}"),
+            (
+                np.ones(first.shape[1], bool),
+                (f"{len(resting)} frictions are at rest, at most {_MOST} are supported"),
+            ),
         ]
     found = []
     for chosen in itertools.product((1.0, -1.0), repeat=len(resting)):

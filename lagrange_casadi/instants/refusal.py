@@ -29,8 +29,8 @@ from .rules import limits, passes_dead_centre
 from .rung import Rung
 
 _JAM = (
-    "friction there has no force that holds its law, or several; expected less mu, a longer guide,"
-    " or a push nearer to its line"
+    "friction has no unique solution there (jamming); reduce mu, lengthen the guide, or push"
+    " closer to its axis"
 )
 _TRIALS, _WIDE = 100, 0.1
 
@@ -219,11 +219,11 @@ class _Broken:
         if bound.kind in ("CLOSURE", "BRANCH"):
             return self._loop(bound)
         if bound.kind == "BEYOND":
-            far = f"by {share_beyond(value):.3g} of what is between them"
-            return f"the {part}: what is put into its curve is beyond the curve's ends {at}, {far}"
+            far = f"by {share_beyond(value):.3g} of that range"
+            return f"the {part}: the argument of its curve is outside the curve's range {at}, {far}"
         if bound.kind == "GAP":
             what = (
-                f"what was found for the loop closed by {self.graph.data.closing(part)} does not"
+                f"the solution of the loop closed by {self.graph.data.closing(part)} does not"
                 " close it"
             )
             return f"{what} {at}: a gap of {abs(value):.3g} m"
@@ -234,18 +234,19 @@ class _Broken:
                 f" not fit {at}: {gap}"
             )
         if bound.kind == "TURNED":
-            what = f"the angle of '{part}', which a load sees with its turns,"
+            what = f"the angle of '{part}', on whose number of revolutions a load depends,"
             if abs(value) <= self.most[k]:
                 return (
-                    f"{what} goes most of a turn from the instant {at} to the next: take more"
-                    " instants"
+                    f"{what} changes by most of a turn from the instant {at} to the next: take"
+                    " more instants"
                 )
             swing = (
-                f"swings {math.degrees(value):.3g} deg from the middle of its swing over the"
-                f" scene's motion {at}"
+                f"is {math.degrees(value):.3g} deg from the middle of its range over the scene's"
+                f" motion {at}"
             )
             further = (
-                "it might be a turn further; take defaults and a motion that show how far it goes"
+                "its number of revolutions cannot be determined; take defaults and a motion that"
+                " cover its range"
             )
             return f"{what} {swing}: {further}"
         if bound.kind == "JAM":
@@ -253,7 +254,7 @@ class _Broken:
             return f"{what} '{part}': the mechanism jams {at}: {_JAM}"
         if bound.kind == "SLIP":
             return (
-                f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it"
+                f"the law of friction '{part}' has a relative residual of {value:.3g} {at}: it"
                 " nearly jams"
             )
         return f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
@@ -284,14 +285,14 @@ class _Broken:
                 else f"lies along its beside {at}"
             )
             return (
-                f"bar '{part}' {lies}, which then tells no y axis; choose a direction that stays"
+                f"bar '{part}' {lies}, so its y axis is undefined; choose a direction that stays"
                 " across it"
             )
         if bound.column in self.graph.checks("hold").values():
-            where_to = f"cannot make the motion {after if passes else at}"
+            where_to = f"cannot produce the motion {after if passes else at}"
             return (
-                f"the drives {part} {where_to}: it can go on there without moving them; drive other"
-                " joints"
+                f"the drives {part} {where_to}: the mechanism can move there while they are at"
+                " rest; drive other joints"
             )
         if not passes:
             return (
@@ -304,6 +305,6 @@ class _Broken:
             else ""
         )
         return (
-            f"the loop closed by {closed} passes a dead centre {after}, and can go on in two"
+            f"the loop closed by {closed} passes a dead centre {after}, and can continue in two"
             f" ways{near}"
         )

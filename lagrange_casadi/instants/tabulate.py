@@ -57,8 +57,8 @@ def tabulate(
     for output in graph.outputs:
         if output.group in LARGEST_ALONG:
             raise DeclarationError(
-                f"table: {output} is no polynomial of the rate; want section:{output.part}, and"
-                " tell its strength"
+                f"table: {output} is not a polynomial of the rate; want section:{output.part} in"
+                " place of it, and evaluate strength from the solution"
             )
     largest = _largest(rates)
     cycle = cycle_of(graph, p, largest)
@@ -89,7 +89,7 @@ def tabulate(
     column = column_of(best.columns[int(np.argmax(best.errors))])
     worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
     raise DeclarationError(
-        f"table: an accuracy of {accuracy:g} is not reached; the best is {best.error:.2g}, with"
+        f"table: an accuracy of {accuracy:g} is not possible; the best is {best.error:.2g}, with"
         f" {best.nodes} nodes, and {worst} is the worst there"
     )
 

@@ -99,7 +99,7 @@ def tolerance(solution: Solution) -> float:
 def failure(solution: Solution) -> str:
     """Describe the residuals of a solution that fail."""
     worse = ", ".join(f"{name} {value:.2g}" for name, value in solution.failed.items())
-    return f"the certificate fails: {worse}, and no more than {solution.tolerance:.2g} is rounding"
+    return f"the certificate fails: {worse}, but at most {solution.tolerance:.2g} is rounding"
 
 
 def summary(residuals: Mapping[str, Array]) -> str:
@@ -107,9 +107,7 @@ def summary(residuals: Mapping[str, Array]) -> str:
     parts = [
         f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"
     ]
-    said = "certificate: " + (
-        ", ".join(parts) if parts else "nothing to check, for want of outputs"
-    )
+    said = "certificate: " + (", ".join(parts) if parts else "nothing to check without outputs")
     worst = float(np.max(residuals.get("condition", np.ones(1))))
     return said + (
         f"; near a dead centre, where the loops magnify errors by {worst:.3g}"

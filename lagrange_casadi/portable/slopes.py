@@ -70,8 +70,8 @@ def check_rung(rung: Rung) -> None:
     """Raise :class:`.DeclarationError` for a rung by which exported C computes no derivatives."""
     if rung.precision == "single" or rung.newton is not None or rung.table is not None:
         raise DeclarationError(
-            f"export: output '{SENSITIVITY}' goes with double precision, loops that are closed, and"
-            " no table; want the others alone"
+            f"export: output '{SENSITIVITY}' needs double precision, no Newton steps and no table;"
+            " leave it out of wanted"
         )
 
 

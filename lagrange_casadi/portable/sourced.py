@@ -65,8 +65,7 @@ def sourced(
     rung.check(compiled)
     if not compiled.driven:
         raise DeclarationError(
-            f"export: '{data.name}' has no drive, and C without inputs computes nothing;"
-            " evaluate it"
+            f"export: '{data.name}' has no drive, so C would have no inputs; use evaluate"
         )
     scene.checked(values)
     checked_span(compiled.laws, data.timing, values)

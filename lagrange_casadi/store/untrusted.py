@@ -52,7 +52,7 @@ def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:
 def check_shape(value: Any, shape: Shape, what: str) -> None:
     """Raise ``ValueError`` for what came from JSON and has another shape, with the place."""
     if place := _misfit(value, shape, what):
-        raise ValueError(f"{place} is not what it should be")
+        raise ValueError(f"{place} is not of the expected kind")
 
 
 def shown(value: str) -> str:

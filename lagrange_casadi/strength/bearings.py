@@ -94,12 +94,14 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
         )
     if any(not solution.determined(member) for member in members):
         raise DeclarationError(
-            f"equilibrium leaves the reaction of joint '{joint}' open, so its strength is open"
+            f"the reaction of joint '{joint}' is statically indeterminate, so its strength is not"
+            " evaluated"
         )
     across, along = _forces(solution, joint)
     if not (counts := counted(np.stack([across, along]))).any():
         raise DeclarationError(
-            f"joint '{joint}': friction is at rest at all instants, so its strength is open"
+            f"joint '{joint}': friction is at rest at all instants, so its strength is"
+            " indeterminate"
         )
     # What does not count is no load: it is below every peak, and loads a bearing over no way.
     across, along = (np.where(counts, force, 0.0) for force in (across, along))
@@ -116,7 +118,8 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
             left += missing
         elif rate is None:
             left.append(
-                f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not told"
+                f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not"
+                " evaluated"
             )
         else:
             verdicts += _rolling(part, across, along, rate, solution.t)
@@ -189,7 +192,7 @@ def _plain(
     if bearing.speed is None and bearing.heating is None:
         return found, []
     if rate is None:
-        return found, ["plain bearing: its joint's motion was not wanted, or is not told"]
+        return found, ["plain bearing: its joint's motion was not wanted, or is not evaluated"]
     speed = np.abs(rate) * d / 2
     if bearing.speed is not None:
         found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))

@@ -81,8 +81,7 @@ class Member:
         if "beam" not in body:
             having = ", ".join(beams_of(solution.description))
             raise DeclarationError(
-                f"link '{link}' has no beam, which says what it is made of; links with one:"
-                f" {having or 'none'}"
+                f"link '{link}' has no beam=; links with a beam: {having or 'none'}"
             )
         space = in_space(solution.description)
         if open_ := [
@@ -90,7 +89,8 @@ class Member:
         ]:
             names = " and ".join(open_)
             raise DeclarationError(
-                f"link '{link}': equilibrium does not determine {names}, so its strength is open"
+                f"link '{link}': equilibrium does not determine {names}, so its strength is not"
+                " evaluated"
             )
         member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
@@ -110,7 +110,8 @@ class Member:
             return self
         if not counts.any():
             raise DeclarationError(
-                f"link '{self.link}': friction is at rest at all instants, so its strength is open"
+                f"link '{self.link}': friction is at rest at all instants, so its strength is"
+                " indeterminate"
             )
         return self.during(np.flatnonzero(counts))
 
@@ -199,7 +200,7 @@ class Member:
         )
         if twist > _TWIST * (twist + bending):
             kind = self.beam.course.cells[0][0].kind
-            how = "give its properties by beams.given, with its torsion, or by beams.analysed"
+            how = "use beams.given with its properties, torsion included, or beams.analysed"
             raise DeclarationError(
                 f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula;"
                 f" {how}"

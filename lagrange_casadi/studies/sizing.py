@@ -284,7 +284,7 @@ class _Search:
                     tried[choice[name]] = self.judge(solution, name, choice[name])
             if not changed:
                 return choice
-        raise NoDesignError(f"size: loads and profiles do not settle within {_TURNS} evaluations")
+        raise NoDesignError(f"size: loads and profiles do not converge within {_TURNS} evaluations")
 
     def _told_none(self, solution: Solution, name: str, tried: Iterable[int]) -> str:
         whole = {k: self.judge(solution, name, k, whole=True) for k in tried}
@@ -369,11 +369,11 @@ def _slot(
     )
     for name in profiles[0].dimensions:
         if lacking := [shape.kind for shape in shapes if name not in shape.dimensions]:
-            raise _UnfitError(f"{name} is no dimension of its {lacking[0]}")
+            raise _UnfitError(f"{name} is not a dimension of its {lacking[0]}")
         symbols = [shape.dimensions[name] for shape in shapes]
         found = {str(s) for s in symbols if isinstance(s, ca.SX) and s.is_symbolic()}
         if len(found) != 1:
-            raise _UnfitError(f"its {name} is no parameter, so no profile can set it")
+            raise _UnfitError(f"its {name} is not a parameter, so a profile cannot set it")
         own[name] = found.pop()
     slot = _Slot(own, ())
     weights = []

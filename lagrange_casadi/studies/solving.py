@@ -64,8 +64,7 @@ def solve(
     gives = scene.elastic
     if gives and rung.table is not None:
         raise DeclarationError(
-            "elastic: a table has no place for what equilibrium leaves open; evaluate without a"
-            " table"
+            "elastic: a table cannot hold statically indeterminate forces; evaluate without a table"
         )
     names = scene.wanted if request.wanted is None else request.wanted
     graph = compile_scene(scene, names, parameters=values)
@@ -173,8 +172,8 @@ def checked_laws(data: ModelData, span: tuple[float, float], p: tuple[float, ...
     if beyond.size:
         at, joint = beyond[0]
         raise DeclarationError(
-            f"the motion of joint '{laws.joints[joint]}': what is put into its curve is beyond the"
-            f" curve's ends at t = {t[at]:.6g} s"
+            f"the motion of joint '{laws.joints[joint]}': the argument of its curve is outside the"
+            f" curve's range at t = {t[at]:.6g} s"
         )
 
 

@@ -77,8 +77,8 @@ def refine_safety(
             refined = found.buckled(verdict, as_column(solution.description, found.member))
         if refined is None:
             left.append(
-                f"{verdict.against}: less than {verdict.factor:.4g}, that of the instants, may hide"
-                " between them"
+                f"{verdict.against}: between the instants it may be less than"
+                f" {verdict.factor:.4g}; take more instants"
             )
         else:
             verdicts.append(refined)

@@ -77,9 +77,7 @@ def tool_deflection(
     pushed, pushes, body = with_push(scene, point)
     links = beams_of(template(scene).content)
     if not links:
-        raise DeclarationError(
-            "tool_deflection: no link has a beam, which says what it is made of; all are rigid"
-        )
+        raise DeclarationError("tool_deflection: no link has a beam=, so all are rigid")
 
     asked: dict[str, Any] = {
         "t": t,

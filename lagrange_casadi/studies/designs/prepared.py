@@ -380,7 +380,7 @@ class Prepared:
         if status != Status.OK:
             # It says where, and why.
             self._explain(dict(zip(self.parameters, p[0].tolist(), strict=True)))
-            raise AssemblyError(f"there is no result: {Status(status).meaning}")
+            raise AssemblyError(f"no result: {Status(status).meaning}")
 
 
 @public

@@ -87,7 +87,7 @@ class KeptOutputs:
             *(Output("section", link, force) for link in links for force in table.forces),
         ]
         if not names:
-            raise DeclarationError("designs: nothing is wanted that has a peak")
+            raise DeclarationError("designs: no wanted output has a peak")
         units = tuple(output.unit(data.kinds) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(data, link, at, table) for link in links)

@@ -71,7 +71,7 @@ class Tired:
             return []
         if not fatigue.stands(members[None])[0]:
             raise DeclarationError(
-                f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone"
+                f"a load moves along link '{self.link}'; its fatigue is available in sweeps only"
             )
         histories = fatigue.histories(members[None], look.p[None])
         bound, _ = histories.bounds(self.material)

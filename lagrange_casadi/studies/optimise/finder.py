@@ -56,8 +56,7 @@ class Finder:
         if idle := [name for name in question.box.names if not finder._matters(name)]:
             named = ", ".join(f"'{name}'" for name in idle)
             raise DeclarationError(
-                f"over: nothing that is minimised or limited depends on {named}: leave out what"
-                " does not matter"
+                f"over: no objective or limit depends on {named}; remove it from over="
             )
         return finder
 

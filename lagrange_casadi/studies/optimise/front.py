@@ -116,7 +116,7 @@ class _Fronts:
         except KeyboardInterrupt:
             self.search.stopped = True
         if not self.kept:
-            raise NoDesignError("optimise: stopped before a design was looked at")
+            raise NoDesignError("optimise: stopped before a design was evaluated")
         return self.search.whole(self._result)
 
     def _result(self) -> Front:

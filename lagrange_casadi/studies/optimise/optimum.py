@@ -215,6 +215,6 @@ def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
         if abs(rate) * look.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
             time = look.time(point)
             yield (
-                f"{term} is at a kink or a jump, at t = {time:.6g} s: how that time changes is told"
-                " by differences"
+                f"{term} is at a kink or a jump, at t = {time:.6g} s: the derivative of that time"
+                " is taken by finite differences"
             )

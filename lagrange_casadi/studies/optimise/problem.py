@@ -75,7 +75,8 @@ class Box:
             high.append(b)
             if name in (parameters or {}):
                 raise DeclarationError(
-                    f"over: parameter '{name}' is chosen, and set to a value as well"
+                    f"over: parameter '{name}' is in over= and set to a value as well; expected"
+                    " one of both"
                 )
         values = scene.values(parameters)
         places = tuple(list(declared).index(name) for name in names)
@@ -170,12 +171,11 @@ class Question:
         for objective in objectives:
             if objective.kind == "min":
                 raise DeclarationError(
-                    "minimise: a smallest value has no least one that could be told; use"
-                    f" max:{objective.name}"
+                    f"minimise: a smallest value cannot be an objective; use max:{objective.name}"
                 )
         if len(set(objectives)) < len(objectives):
             raise DeclarationError(
-                f"minimise: a term is there twice: {', '.join(map(str, objectives))}"
+                f"minimise: a term is listed twice: {', '.join(map(str, objectives))}"
             )
         if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
             raise DeclarationError(

@@ -66,7 +66,7 @@ class Search:
         """
         trails = self._ways(problem, starts)
         if not trails:
-            raise NoDesignError("optimise: stopped before a design was looked at")
+            raise NoDesignError("optimise: stopped before a design was evaluated")
         self.evaluations += sum(trail.evaluations + 1 for trail in trails)
         best = min(trails, key=lambda trail: trail.merit)
         stopped = self.stopped

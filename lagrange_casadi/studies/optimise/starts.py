@@ -83,6 +83,10 @@ def _with_results(
         names = ", ".join(
             name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open
         )
-        why = f": {names} is open for all of them" if names else "; evaluate one to see why"
+        why = (
+            f": {names} is indeterminate for all of them"
+            if names
+            else ("; evaluate one to see why")
+        )
         raise NoDesignError(f"optimise: no design within the bounds has a result{why}")
     return found

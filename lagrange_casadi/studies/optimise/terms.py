@@ -66,8 +66,7 @@ class Term:
                     break
                 if kind in _AVERAGES and output.group not in AVERAGED:
                     raise DeclarationError(
-                        f"'{text}': means are of {', '.join(AVERAGED)} alone; of '{name}' there is"
-                        f" peak:{name}"
+                        f"'{text}': means exist of {', '.join(AVERAGED)} only; use peak:{name}"
                     )
                 return cls(kind, str(output))
         if text.strip() in parameters:
@@ -145,8 +144,7 @@ class Constraint:
             raise DeclarationError(f"'{text}': {advice}")
         if not least and term.kind == "min":
             raise DeclarationError(
-                f"'{text}': use max:{term.name}, for a smallest value can be limited from below"
-                " only"
+                f"'{text}': use max:{term.name}, a smallest value can be limited from below only"
             )
         if term.kind == "peak" and limit < 0.0:
             raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")

@@ -148,7 +148,7 @@ class Values:
                 raise DeclarationError(f"values must be finite, got {value}")
         if len(set(numbers)) < len(numbers):
             twice = next(value for value in numbers if numbers.count(value) > 1)
-            raise DeclarationError(f"the value {twice:g} is given twice")
+            raise DeclarationError(f"the value {twice:g} is listed twice")
 
     def __str__(self) -> str:
         # Values that are those of a range are told as it is, for they make the same sweep.

@@ -79,7 +79,8 @@ def carry_out(
 def _kept(folder: Folder, plan: Plan) -> str:
     kept = folder.done()
     return (
-        f"{grouped(kept)} of {counted(plan.size)} are kept in {folder.path}: go on with resume=True"
+        f"{grouped(kept)} of {counted(plan.size)} are kept in {folder.path}: continue with"
+        " resume=True"
         if kept
         else "nothing was done yet"
     )

@@ -85,7 +85,7 @@ def resting_note(
     if not lines:
         return ""
     return (
-        f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were looked at"
+        f"{lines[0]}; so it is in {len(lines)} of {some.size} designs that were evaluated"
         if some.size > 1
         else lines[0]
     )

@@ -1,0 +1,495 @@
+"""The commands for many designs and for design: what each is asked.
+
+What a command does is imported when it is run.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from ..base.room import MOST_THREADS
+from ..base.vocabulary import (
+    BACKENDS,
+    CRITERIA,
+    KEEPS,
+    POINTS,
+    SAMPLES,
+    YIELDING,
+)
+from .help import command
+from .options import (
+    AXIS,
+    BOUNDS,
+    CASE,
+    EVEN_POINTS,
+    PATH,
+    axis,
+    bounds,
+    even_points,
+    instants,
+    length,
+    over,
+    ratios,
+    settings_by,
+    share,
+    tolerance,
+    untabled_rung,
+    wanted,
+)
+
+
+@command()
+@click.argument("case", type=CASE)
+@click.option(
+    "--grid",
+    "axes",
+    type=axis,
+    metavar=AXIS,
+    multiple=True,
+    help="Sweep a parameter over a range or a list of values, in SI units or with a unit;"
+    " repeatable, the"
+    " last varies fastest.",
+)
+@click.option(
+    "--designs",
+    type=PATH,
+    metavar="FILE.csv",
+    help="Sweep the designs of a list: one row of parameter names, then one row per design.",
+)
+@settings_by("Set a parameter that is not swept, as l=0.25 or phi=30deg; repeatable.")
+@instants()
+@over
+@click.option(
+    "--xi",
+    type=even_points,
+    metavar=EVEN_POINTS,
+    help="Also store the peak over time of the section forces at each of these ratios xi/l.",
+)
+@wanted("Compute these outputs, as info CASE lists them; all leaves out the motion; repeatable.")
+@click.option(
+    "--keep",
+    type=click.Choice(KEEPS),
+    default="peaks",
+    show_default=True,
+    help="Store of each design its peaks only, its section laws as well, or all outputs over time"
+    " as"
+    " well.",
+)
+@untabled_rung
+@click.option(
+    "--workers",
+    type=click.IntRange(1, MOST_THREADS),
+    metavar="N",
+    help="Use this number of threads; default: one per core.",
+)
+@click.option(
+    "--dask",
+    metavar="ADDRESS",
+    help="Evaluate on the cluster of this Dask scheduler, as tcp://HOST:8786.",
+)
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Continue a sweep that was stopped; start it if there is none.",
+)
+@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.option(
+    "--out", type=PATH, help="Write the sweep to this HDF5 file; default: <case>_sweep.h5 here."
+)
+def sweep(**given: Any) -> None:
+    """Compute CASE for each design of a grid or a list.
+
+    CASE is a folder with a case.py, a Python file, or a name that the command cases lists. One HDF5
+    file stores, for each design, the peaks of the outputs with their times and places, and the
+    means of efforts. A sweep that was stopped continues with --resume. The commands best, table and
+    plot read the file.
+
+    \b
+    lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
+    lagrange-casadi best slider_crank_sweep.h5 --minimise peak:section:rod:bending
+    """
+    from .sweep import sweep
+
+    sweep(**given)
+
+
+@command()
+@click.argument("file", metavar="FILE.h5", type=PATH)
+@click.option(
+    "--minimise",
+    multiple=True,
+    metavar="COLUMN",
+    help="Minimise this column; of two objectives, list their Pareto front.",
+)
+@click.option("--maximise", multiple=True, metavar="COLUMN", help="Maximise this column.")
+@click.option(
+    "--where",
+    multiple=True,
+    metavar="NAME<NUMBER",
+    help="Choose only designs that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
+)
+@click.option(
+    "--count",
+    type=click.IntRange(1),
+    metavar="N",
+    help="List this number of designs; default: the best one, or the whole front.",
+)
+@click.option(
+    "--column", "columns", multiple=True, metavar="COLUMN", help="List this column too; repeatable."
+)
+@click.option("--csv", type=PATH, metavar="OUT.csv", help="Also write the designs as CSV.")
+def best(**given: Any) -> None:
+    """List the best designs of the sweep FILE.h5.
+
+    Peaks are compared by their size, whatever their sign.
+    """
+    from .best import best
+
+    best(**given)
+
+
+@command()
+@click.argument("file", metavar="FILE.h5", type=PATH)
+@click.option(
+    "--where",
+    multiple=True,
+    metavar="NAME<NUMBER",
+    help="Choose only rows that satisfy this: <, <=, >, >=, == or !=, in SI units; repeatable.",
+)
+@click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    metavar="COLUMN",
+    help="List this column; repeatable. Default: the main peaks.",
+)
+@click.option(
+    "--rows",
+    type=click.IntRange(1),
+    default=20,
+    show_default=True,
+    metavar="N",
+    help="List this number of rows.",
+)
+@click.option(
+    "--csv",
+    type=PATH,
+    metavar="OUT.csv",
+    help="Write all rows as CSV; default: all columns without axes.",
+)
+def table(**given: Any) -> None:
+    """List the designs of the sweep FILE.h5, or write them as CSV.
+
+    A row is a design; for columns with a value at each xi or t, it is a design at one of these.
+    """
+    from .table import table
+
+    table(**given)
+
+
+@command()
+@click.argument("case", type=CASE)
+@click.option(
+    "--minimise",
+    required=True,
+    multiple=True,
+    metavar="TERM",
+    help="Minimise peak:QUANTITY, max:, mean: or rms: of one, or a parameter; repeated: find the"
+    " Pareto"
+    " front.",
+)
+@click.option(
+    "--over",
+    "bounds",
+    type=bounds,
+    multiple=True,
+    required=True,
+    metavar=BOUNDS,
+    help="Choose this parameter between two bounds, in SI units or with a unit; repeatable.",
+)
+@click.option(
+    "--subject-to",
+    "limits",
+    multiple=True,
+    metavar="'TERM<=NUMBER'",
+    help="Keep within this limit, in SI units, as 'peak:effort:O<=12'; repeatable.",
+)
+@click.option(
+    "--starts",
+    type=int,
+    default=4,
+    show_default=True,
+    metavar="NUMBER",
+    help="Start from this number of designs.",
+)
+@click.option(
+    "--screen",
+    type=int,
+    default=256,
+    show_default=True,
+    metavar="NUMBER",
+    help="Choose the starts among this number of designs.",
+)
+@click.option(
+    "--points",
+    type=int,
+    default=POINTS,
+    show_default=True,
+    metavar="NUMBER",
+    help="Find at most this number of points of a front.",
+)
+@click.option(
+    "--transmission",
+    type=float,
+    default=0.05,
+    show_default=True,
+    metavar="SINE",
+    help="Keep the sine of all transmission angles above this number.",
+)
+@settings_by("Set a parameter that is not chosen, as l=0.25 or phi=30deg; repeatable.")
+@instants()
+@click.option(
+    "--backend",
+    type=click.Choice(BACKENDS),
+    default="auto",
+    show_default=True,
+    help="Evaluate designs with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
+    " (vm).",
+)
+@click.option(
+    "--dask",
+    metavar="ADDRESS",
+    help="Search on the cluster of this Dask scheduler, as tcp://HOST:8786.",
+)
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Continue a search that was stopped; start it if there is none.",
+)
+@click.option("--force", is_flag=True, help="Start anew and replace the file.")
+@click.option(
+    "--out",
+    type=PATH,
+    help="Write history and result to this HDF5 file; default: <case>_optimum.h5 here.",
+)
+@click.option(
+    "--figure", type=PATH, help="Draw the history into this file; default: <case>_optimum.png here."
+)
+def optimise(**given: Any) -> int:
+    """Find the design of CASE with the least peak or mean.
+
+    Limits hold over the whole motion. For several terms it finds their Pareto front: designs of
+    which none is better in all terms. A search that was stopped keeps the best design so far, and
+    continues with --resume.
+    """
+    from .optimise import optimise
+
+    return optimise(**given)
+
+
+@command("size")
+@click.argument("case", type=CASE)
+@click.option(
+    "--profiles",
+    type=PATH,
+    metavar="FILE.csv",
+    help="Choose from this table: a column name, and one column per dimension [m]. Default:"
+    " profiles.csv"
+    " next to the case.",
+)
+@click.option(
+    "--safety",
+    type=float,
+    default=2.0,
+    show_default=True,
+    metavar="FACTOR",
+    help="Demand this factor of safety at least.",
+)
+@click.option(
+    "--deflection",
+    type=share,
+    metavar="SHARE",
+    help="Limit the deflection across a link over its length, as 1/500. Default: no limit.",
+)
+@click.option(
+    "--link",
+    "links",
+    multiple=True,
+    metavar="LINK",
+    help="Size this link; repeatable. Default: all that profiles fit.",
+)
+@click.option(
+    "--criterion",
+    type=click.Choice(CRITERIA),
+    default="goodman",
+    show_default=True,
+    help="Count mean stress in fatigue by this criterion.",
+)
+@click.option(
+    "--yielding",
+    type=click.Choice(YIELDING),
+    default="von_mises",
+    show_default=True,
+    help="Compare this equivalent stress with the yield strength.",
+)
+@settings_by()
+@instants()
+@over
+def size(**given: Any) -> None:
+    """Choose the lightest safe profile for each link of CASE.
+
+    The loads follow the masses of the chosen profiles.
+    """
+    from .size import size_command
+
+    size_command(**given)
+
+
+@command("drive")
+@click.argument("case", type=CASE)
+@click.option(
+    "--motors",
+    type=PATH,
+    metavar="FILE.csv",
+    help="Choose from this catalogue; default: motors.csv next to the case.",
+)
+@click.option(
+    "--drive",
+    "drives",
+    multiple=True,
+    metavar="JOINT",
+    help="Choose a motor for this drive; repeatable. Default: all drives.",
+)
+@click.option(
+    "--ratio",
+    "ratios",
+    multiple=True,
+    callback=ratios,
+    metavar="NUMBER,...",
+    help="Set the gear ratio, turns of the motor per turn of the drive; the best of several is"
+    " taken."
+    " Default: 1.",
+)
+@click.option(
+    "--lead",
+    type=length,
+    metavar="LENGTH",
+    help="Set the travel per turn [m] of the screw or belt of a sliding drive.",
+)
+@click.option(
+    "--efficiency",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="SHARE",
+    help="Set the efficiency of the gearbox, from 0 to 1.",
+)
+@click.option(
+    "--inertia",
+    type=float,
+    default=0.0,
+    metavar="NUMBER",
+    help="Add this moment of inertia to that of the motor's rotor [kg m^2].",
+)
+@settings_by()
+@instants(
+    "Set the instants [s] over a whole cycle, both ends included; default: those of the case."
+)
+@over
+@click.option(
+    "--plot",
+    type=PATH,
+    metavar="FILE.png",
+    help="Draw torque over speed into this file, .png, .pdf or .svg.",
+)
+def drive(**given: Any) -> None:
+    """Choose the smallest motor that suits each drive of CASE.
+
+    It lists the speeds, torques and power that a cycle demands, and the reserves of the motor.
+    """
+    from .drive import drive_command
+
+    drive_command(**given)
+
+
+@command()
+@click.argument("case", type=CASE)
+@click.option(
+    "--tolerance",
+    "within",
+    type=tolerance,
+    multiple=True,
+    required=True,
+    metavar="NAME=VALUE",
+    help="Set the tolerance of a parameter, plus or minus this value [SI unit, unit or %];"
+    " repeatable.",
+)
+@settings_by()
+@instants()
+@over
+@wanted("Compute these outputs, as in run; repeatable. Default: those of the case.")
+@click.option(
+    "--samples",
+    type=int,
+    default=SAMPLES,
+    show_default=True,
+    metavar="NUMBER",
+    help="Draw this number of designs at random.",
+)
+@click.option(
+    "--backend",
+    type=click.Choice(BACKENDS),
+    default="auto",
+    show_default=True,
+    help="Evaluate designs with SIMD in C++ (lanes), with C, or with CasADi's virtual machine"
+    " (vm).",
+)
+@click.option(
+    "--csv",
+    "out",
+    type=PATH,
+    metavar="FILE.csv",
+    help="Write the peaks of all designs as CSV, one row per design.",
+)
+def tolerances(**given: Any) -> None:
+    """Compute the scatter of the peaks of CASE within tolerances.
+
+    It lists the share of each tolerance in the scatter.
+    """
+    from .tolerances import tolerances
+
+    tolerances(**given)
+
+
+@command()
+@click.argument("case", type=CASE)
+@settings_by()
+@instants()
+@over
+@wanted()
+@click.option(
+    "--accuracy",
+    type=float,
+    metavar="ERROR",
+    help="Recommend the fastest method whose error, over the peak, is within this number.",
+)
+@click.option(
+    "--out", type=PATH, help="Write the numbers to this JSON file; default: <case>_trade.json here."
+)
+@click.option(
+    "--figure",
+    type=PATH,
+    help="Draw time over error into this file; default: <case>_trade.png here.",
+)
+def trade(**given: Any) -> None:
+    """Measure time and error of each evaluation method on CASE.
+
+    Methods differ in backend, precision, Newton steps, tables and compiler flags.
+    """
+    from .trade import trade
+
+    trade(**given)
