@@ -53,8 +53,8 @@ CALL = Call(
         "xi": "double*",
         "mean": "double*",
         "rms": "double*",
-        "history": "double*",
-        "iterated": "double*",
+        "history": "real*",
+        "iterated": "real*",
         "tops": "double*",
     },
 )
@@ -127,7 +127,7 @@ class Reduction:
         """Rows of one design that are kept while it is evaluated, beside those of times and
         iterated coordinates.
         """
-        return len(self.curves) + self.places + len(self.checks) + 1 + len(self.watches)
+        return len(self.curves) + self.places + len(self.checks) + len(self.watches)
 
     def tables(self, precision: Precision) -> Tables:
         """The curves as the search takes them."""
@@ -138,7 +138,7 @@ def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: 
     """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates
     instants alone.
     """
-    parts = Parts.of(graph, stages)
+    parts = Parts.of(graph, stages, len(reduction.watches))
     text = emit_scene(graph, stages, newton, parts)
     text += print_functions(
         {"matter_of": reduction.matter, "status_of": graph.status},
@@ -177,7 +177,7 @@ def _macros(
         "LARGEST": _real(float(numbers.max)),
         **{
             name.upper(): sizes[name]
-            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")
+            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs", "outputs")
         },
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
@@ -187,7 +187,6 @@ def _macros(
         "PLACES": reduction.places,
         "CHECKED": curves + reduction.places,
         "WATCHES": len(reduction.watches),
-        "OUTPUTS": sizes["columns"] - len(reduction.watches),
         "CHECKS": checks,
         "BOUNDS": len(graph.bounds),
         "DOUBTS": len(reduction.doubts),

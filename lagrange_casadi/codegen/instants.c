@@ -31,11 +31,6 @@ static void designs_split(double t, designs_real* moment) {
   if (DESIGNS_NT > 1) moment[DESIGNS_NT - 1] = (designs_real) (t - moment[0]);
 }
 
-/* The columns of a pack: one function, so that a scene's instant is compiled into it once. */
-static void designs_columns(const designs_now* now, casadi_real* at, casadi_real* y) {
-  scene_columns(now->parameters, now->constants, at, y);
-}
-
 /* The columns at LANES times, each near an instant. */
 static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
   designs_real lane[DESIGNS_NT][LANES], moment[DESIGNS_NT], place[DESIGNS_SOME(DESIGNS_NZ)][LANES], z[DESIGNS_SOME(DESIGNS_NZ)];
@@ -58,7 +53,7 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  designs_columns(now, at, y);
+  scene_columns(now->parameters, now->constants, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -87,20 +82,16 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
   return 0;
 }
 
-/* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
-   watched. */
-static void designs_sample(designs_now* now, double* history) {
-  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum;
-  casadi_real most[DESIGNS_CURVES];
+/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
+static void designs_sample(designs_now* now, const lagrange_casadi_instants* instants) {
+  casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   designs_real* row;
   casadi_int i, j;
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
-    for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
-    for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
-    designs_columns(now, at, y);
+    scene_pack(instants, now->parameters, now->constants, i, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
@@ -109,14 +100,7 @@ static void designs_sample(designs_now* now, double* history) {
     }
     for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
     for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
-    sum = scene_sum(y, DESIGNS_OUTPUTS);
-    memcpy(row, &sum, sizeof sum);
-    for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(row += stride, y + DESIGNS_OUTPUTS + k, sizeof *y);
-    if (history) {
-      for (k = 0; k < DESIGNS_OUTPUTS; ++k) {
-        for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);
-      }
-    }
+    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) memcpy(row, y + DESIGNS_OUTPUTS + k, sizeof *y);
   }
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     now->most[k] = 0;
@@ -206,7 +190,6 @@ static casadi_real designs_broken(const casadi_real* checks, const casadi_real* 
 /* Why an instant has no result, or DESIGNS_OK; that it is at rest only where nothing else is wrong. */
 static int designs_why(const designs_now* now, casadi_int i) {
   casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, rule;
-  designs_real x;
   int k, why;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
     const designs_real* row = designs_row(now, DESIGNS_CHECKED + k);
@@ -222,20 +205,19 @@ static int designs_why(const designs_now* now, casadi_int i) {
   rule = designs_broken(checks, now->limits, beside, iterated);
   why = designs_status[(int) designs_lane(&rule, 0)];
   if (why != DESIGNS_OK) return why;
-  x = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS)[i];
-  return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
+  return now->status[i] == DESIGNS_NOT_FINITE ? DESIGNS_NOT_FINITE : DESIGNS_OK;
 }
 
 /* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
 static int designs_refused(designs_now* now) {
-  const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
+  const designs_real* row;
   casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, worst;
   designs_real lane[LANES];
   casadi_int i, j;
   int k, bad = 0, why;
   now->rests = 0;
   designs_bind(now);
-  for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
+  for (i = 0; i < now->n; ++i) bad |= now->status[i] == DESIGNS_NOT_FINITE;
   worst = (designs_real) 0;
   iterated = (designs_real) 0;
   for (i = 0; DESIGNS_BOUNDS && i < now->n; i += LANES) {
