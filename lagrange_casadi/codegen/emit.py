@@ -77,6 +77,7 @@ START = f"""\
 #define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
 #define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
 #define lanes_where_less(x, y) ((x) < (y))
+#define lanes_any_nan(x) ((x) != (x))
 #endif
 #ifdef __GNUC__
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))
@@ -99,6 +100,15 @@ WIDE = """
 """What follows is for packs."""
 
 _PACK = """
+/* A pack that lies in rows; compilers copy memory in halves, and read what they wrote at once. */
+LANES_INLINE casadi_real scene_load(const {real}* from) {{
+  casadi_real pack;
+  memcpy(&pack, from, sizeof pack);
+  return pack;
+}}
+
+LANES_INLINE void scene_store({real}* to, casadi_real pack) {{ memcpy(to, &pack, sizeof pack); }}
+
 /* The columns y of a pack of instants: at begins with its times; its iterated coordinates come
    after what the drive gives. */
 static void scene_columns(const casadi_real* parameters, const casadi_real* constants,
@@ -144,15 +154,15 @@ LANES_INLINE casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
    instant. */
 LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const {real}* from,
                               casadi_int rows, casadi_int i, casadi_real* pack) {{
-  const casadi_int many = call->n - i;
+  const casadi_int many = call->n - i, stride = call->stride;
   {real} lanes[LANES];
   casadi_int j, k;
-  for (k = 0; k < rows; ++k, from += call->stride) {{
+  for (k = 0; k < rows; ++k, from += stride) {{
     if (many >= LANES) {{
-      memcpy(pack + k, from + i, sizeof lanes);
+      pack[k] = scene_load(from + i);
     }} else {{
       for (j = 0; j < LANES; ++j) lanes[j] = from[i + (j < many ? j : many - 1)];
-      memcpy(pack + k, lanes, sizeof lanes);
+      pack[k] = scene_load(lanes);
     }}
   }}
 }}
@@ -162,25 +172,24 @@ LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const {real}
    nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite. */
 LANES_INLINE void scene_pack(const lagrange_casadi_instants* call, const casadi_real* parameters,
                              const casadi_real* constants, casadi_int i, casadi_real* y) {{
-  const casadi_int many = call->n - i < LANES ? call->n - i : LANES;
-  {real} lanes[LANES];
+  const casadi_int many = call->n - i < LANES ? call->n - i : LANES, apart = call->apart;
+  {real} *out = call->out ? call->out + i : 0, lanes[LANES];
   casadi_real at[{inputs}], sum;
-  casadi_int j, k, bad = 0;
+  casadi_int j, k;
   scene_taken(call, call->t, {nt}, i, at);
   scene_taken(call, call->z, {nz}, i, at + {place});
   scene_columns(parameters, constants, at, y);
-  if (call->out && many == LANES) {{
-    for (k = 0; k < {outputs}; ++k) memcpy(call->out + k*call->apart + i, y + k, sizeof lanes);
-  }} else if (call->out) {{
-    const size_t size = (size_t) many*sizeof({real});
-    for (k = 0; k < {outputs}; ++k) memcpy(call->out + k*call->apart + i, y + k, size);
+  if (out && many == LANES) {{
+    for (k = 0; k < {outputs}; ++k) scene_store(out + k*apart, y[k]);
+  }} else if (out) {{
+    for (k = 0; k < {outputs}; ++k) memcpy(out + k*apart, y + k, (size_t) many*sizeof *out);
   }}
   sum = scene_sum(y, {outputs});
   sum = sum - sum;
-  memcpy(lanes, &sum, sizeof lanes);
-  for (j = 0; j < LANES; ++j) bad |= !(lanes[j] == 0);
-  for (j = 0; bad && j < many; ++j)
-    if (!(lanes[j] == 0) && call->status[i + j] == {OK}) call->status[i + j] = {NOT_FINITE};
+  if (!lanes_any_nan(sum)) return;
+  scene_store(lanes, sum);
+  for (j = 0; j < many; ++j)
+    if (lanes[j] != lanes[j] && call->status[i + j] == {OK}) call->status[i + j] = {NOT_FINITE};
 }}
 """
 
