@@ -11,7 +11,7 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
   search.stride = now->stride;
   search.t = now->t;
   search.rows = now->rows + LANES;
-  search.watched = search.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1)*now->stride;
+  search.watched = search.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS)*now->stride;
   search.most = now->most;
   search.open = open;
   search.rests = now->rests;
@@ -33,15 +33,13 @@ static int designs_peaks(designs_now* now, double* value, double* t, double* xi)
 
 /* Everything of one design; a design without a result leaves nothing but why. */
 static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
-                       double* rms, double* history) {
+                       double* rms, designs_real* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
-  lagrange_casadi_instants follow;
+  lagrange_casadi_instants instants;
   const casadi_real* given[1];
   casadi_real* found[1];
-  casadi_int i;
   int j, k, why;
   (void) z;
-  (void) follow;
   for (k = 0; k < DESIGNS_NP; ++k) {
     if (!(p[k] - p[k] == 0)) return DESIGNS_INVALID;
     designs_split(p[k], pair);
@@ -57,26 +55,26 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
     if (!(margin >= 0 && margin <= DESIGNS_LARGEST) || (k < DESIGNS_POSITIVE && margin == 0)) return DESIGNS_IMPOSSIBLE;
   }
   if (!(now->t[now->n - 1] >= now->t[0])) return DESIGNS_NO_INSTANTS;
+  instants.p = now->p;
+  instants.out = history;
+  instants.apart = now->n;
   if (DESIGNS_NZ) {
     for (k = 0; k < DESIGNS_NZ; ++k) z[k] = (designs_real) guess[k];
     designs_split(now->t[0], pair);
-    follow.n = follow.stride = 1;
-    follow.t = pair;
-    follow.p = now->p;
-    follow.guess = follow.z = z;
-    follow.status = &why;
-    DESIGNS_BEGIN(&follow);
-    follow.n = now->n;
-    follow.stride = now->stride;
-    follow.t = now->times;
-    follow.z = now->z;
-    follow.status = now->status;
-    DESIGNS_FOLLOW(&follow);
-    for (k = 0; k < DESIGNS_NZ; ++k) {
-      for (i = now->n; i < now->n + LANES; ++i) now->z[k*now->stride + i] = now->z[k*now->stride + now->n - 1];
-    }
+    instants.n = instants.stride = 1;
+    instants.t = pair;
+    instants.guess = instants.z = z;
+    instants.status = &why;
+    DESIGNS_BEGIN(&instants);
   }
-  designs_sample(now, history);
+  instants.n = now->n;
+  instants.stride = now->stride;
+  instants.t = now->times;
+  instants.z = now->z;
+  instants.status = now->status;
+  memset(now->status, 0, (size_t) now->n*sizeof *now->status);
+  DESIGNS_FOLLOW(&instants);
+  designs_sample(now, &instants);
   why = designs_refused(now);
   if (why != DESIGNS_OK || !value) return why;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
@@ -98,8 +96,8 @@ static void designs_timed(designs_now* now, const double* t) {
   int k;
   now->t = t;
   now->half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
-  for (i = 0; i < now->stride; ++i) {
-    designs_split(t[i < n ? i : n - 1], moment);
+  for (i = 0; i < n; ++i) {
+    designs_split(t[i], moment);
     for (k = 0; k < DESIGNS_NT; ++k) now->times[k*now->stride + i] = moment[k];
   }
 }
@@ -129,8 +127,8 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     double* values = call->value ? call->value + d*DESIGNS_QUANTITIES : 0;
     double *times = values ? call->peak_t + d*DESIGNS_QUANTITIES : 0, *places = values ? call->xi + d*DESIGNS_QUANTITIES : 0;
     double *means = values ? call->mean + d*DESIGNS_EFFORTS : 0, *squares = values ? call->rms + d*DESIGNS_EFFORTS : 0;
-    double* whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
-    double* closed = call->iterated ? call->iterated + d*DESIGNS_NZ*n : 0;
+    designs_real* whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
+    designs_real* closed = call->iterated ? call->iterated + d*DESIGNS_NZ*n : 0;
     int why;
     if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
     now.bent = call->bent + d*call->bent_apart;

@@ -17,7 +17,7 @@ from ..base.status import Status
 from ..base.vocabulary import Precision
 from ..declare.limits import END
 from ..equations.program import Program
-from ..equations.turns import LEAP
+from ..equations.status import NEAR, outside
 from ..summits.panels import TOPS
 from ..summits.sharpness import Watch
 from .calls import Call
@@ -53,16 +53,16 @@ CALL = Call(
         "xi": "double*",
         "mean": "double*",
         "rms": "double*",
-        "history": "double*",
-        "iterated": "double*",
+        "history": "real*",
+        "iterated": "real*",
         "tops": "double*",
     },
 )
 """Arguments of :data:`DESIGNS`; the C says which it reads and writes."""
 
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
-"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants,
-or the mechanism's extent.
+CHECKS = ("CLOSURE", "BRANCH", "ROW", "TURNED")
+"""Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other
+instants.
 """
 
 INSIDE, ROUNDS = 17, 7
@@ -78,24 +78,23 @@ class Reduction:
 
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of
     each of ``links``. ``units`` numbers the units of all of them, ``efforts`` says which have
-    means. ``checks`` are the columns of a graph's bounds with their kinds and limits, then those of
-    ``ROWSIZE``; ``doubts`` are the checks that leave a quantity open, by number of both.
+    means. ``checks`` are the columns of a graph's bounds with their kinds, then the sizes of rows'
+    terms; ``doubts`` are the checks that leave a quantity open, by number of both.
     ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them
     not zero either: the first is the mechanism's extent [m]. Then comes what ``sections.c`` takes
-    for each link. ``watches`` are what the last columns are watched for, ``knots`` times of kinks:
-    see :class:`.Sharpness`.
+    for each link, and the limits of bounds. ``watches`` are what the last columns are watched for,
+    ``knots`` times of kinks: see :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
     links: tuple[Along, ...]
     units: tuple[int, ...]
     efforts: tuple[int, ...]
-    checks: tuple[tuple[int, str, float], ...]
+    checks: tuple[tuple[int, str], ...]
     doubts: tuple[tuple[int, int], ...]
     matter: Any
     positive: int
     margins: int
-    near: float
     statuses: Mapping[str, int]
     watches: tuple[Watch, ...]
     knots: tuple[float, ...]
@@ -125,7 +124,7 @@ class Reduction:
         """Rows of one design that are kept while it is evaluated, beside those of times and
         iterated coordinates.
         """
-        return len(self.curves) + self.places + len(self.checks) + 1 + len(self.watches)
+        return len(self.curves) + self.places + len(self.checks) + len(self.watches)
 
     def tables(self, precision: Precision) -> Tables:
         """The curves as the search takes them."""
@@ -136,10 +135,10 @@ def emit_designs(graph: Program, stages: Stages, newton: int | None, reduction: 
     """The whole C file, as that of :func:`.emit`, with :data:`DESIGNS` in place of what evaluates
     instants alone.
     """
-    parts = Parts.of(graph, stages)
+    parts = Parts.of(graph, stages, len(reduction.watches))
     text = emit_scene(graph, stages, newton, parts)
     text += print_functions(
-        {"matter_of": reduction.matter, "status_of": graph.status},
+        {"matter_of": reduction.matter, "status_of": graph.status, "beside_of": graph.beside},
         stages.precision,
         prefix="matter",
         packs=True,
@@ -170,27 +169,27 @@ def _macros(
         "FABS": function_name("fabs", precision),
         "HALF": "((DESIGNS_REAL) 0.5)",
         "SIXTH": "((DESIGNS_REAL) 1/6)",
-        "LEAP": _real(LEAP),
         "CLOSE": _real(8 * float(numbers.eps)),
         "LARGEST": _real(float(numbers.max)),
         **{
             name.upper(): sizes[name]
-            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs")
+            for name in ("nt", "np", "nz", "columns", "constants", "place", "inputs", "outputs")
         },
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
+        "LIMITS": reduction.matter.size1_out(0) - len(graph.bounds),
         "POSITIVE": reduction.positive,
         "QUANTITIES": quantities,
         "CURVES": curves,
         "PLACES": reduction.places,
         "CHECKED": curves + reduction.places,
         "WATCHES": len(reduction.watches),
-        "OUTPUTS": sizes["columns"] - len(reduction.watches),
         "CHECKS": checks,
         "BOUNDS": len(graph.bounds),
         "DOUBTS": len(reduction.doubts),
         "EFFORTS": len(reduction.efforts),
-        "NEAR": _real(reduction.near),
+        "NEAR": _real(NEAR),
+        "OUTSIDE": _real(outside(graph)),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
         "TOPS": TOPS,
@@ -213,9 +212,7 @@ def _defined(macros: Mapping[str, object]) -> str:
 
 
 def _tables(graph: Program, reduction: Reduction) -> str:
-    columns, kinds, limits = (
-        zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",), (0.0,))
-    )
+    columns, kinds = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("",))
     sizes = itertools.count(len(graph.bounds))
     beside = [next(sizes) if bound.kind == "ROW" else -1 for bound in graph.bounds] or [-1]
     statuses = [Status.OK, *(rule.status for rule in graph.rules)]
@@ -233,7 +230,6 @@ def _tables(graph: Program, reduction: Reduction) -> str:
             ),
             _table("int", "designs_sized", beside),
             _table("int", "designs_status", map(int, statuses)),
-            _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_effort", reduction.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
             _table(

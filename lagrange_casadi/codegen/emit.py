@@ -48,6 +48,7 @@ INSTANTS = Call(
         "guess": "real*",
         "z": "real*",
         "out": "real*",
+        "apart": "long long",
         "status": "int*",
     },
 )
@@ -77,6 +78,7 @@ START = f"""\
 #define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
 #define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
 #define lanes_where_less(x, y) ((x) < (y))
+#define lanes_any_nan(x) ((x) != (x))
 #endif
 #ifdef __GNUC__
 #define LAGRANGE_CASADI_EXPORT LAGRANGE_CASADI_C __attribute__((visibility("default")))
@@ -99,10 +101,19 @@ WIDE = """
 """Definitions for packs of instants."""
 
 _PACK = """
+/* A pack that lies in rows; compilers copy memory in halves, and read what they wrote at once. */
+LANES_INLINE casadi_real scene_load(const {real}* from) {{
+  casadi_real pack;
+  memcpy(&pack, from, sizeof pack);
+  return pack;
+}}
+
+LANES_INLINE void scene_store({real}* to, casadi_real pack) {{ memcpy(to, &pack, sizeof pack); }}
+
 /* The columns y of a pack of instants: at begins with its times; its iterated coordinates come
    after what the drive gives. */
-LANES_INLINE void scene_columns(const casadi_real* parameters, const casadi_real* constants,
-                                casadi_real* at, casadi_real* y) {{
+static void scene_columns(const casadi_real* parameters, const casadi_real* constants,
+                          casadi_real* at, casadi_real* y) {{
   casadi_real *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
   const casadi_real* arg[5];
   casadi_real* res[3];
@@ -139,6 +150,48 @@ LANES_INLINE casadi_real scene_sum(const casadi_real* y, casadi_int columns) {{
   for (; k < columns; ++k) sum[0] = sum[0] + y[k];
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }}
+
+/* So many rows of a pack of instants that begins at i; the last pack is filled up with the last
+   instant. */
+LANES_INLINE void scene_taken(const lagrange_casadi_instants* call, const {real}* from,
+                              casadi_int rows, casadi_int i, casadi_real* pack) {{
+  const casadi_int many = call->n - i, stride = call->stride;
+  {real} lanes[LANES];
+  casadi_int j, k;
+  for (k = 0; k < rows; ++k, from += stride) {{
+    if (many >= LANES) {{
+      pack[k] = scene_load(from + i);
+    }} else {{
+      for (j = 0; j < LANES; ++j) lanes[j] = from[i + (j < many ? j : many - 1)];
+      pack[k] = scene_load(lanes);
+    }}
+  }}
+}}
+
+/* The columns y of a pack of instants t that begins at i, where iterated coordinates are z. Unless
+   out is NULL, out[k*apart + i] becomes column k at instant i. status[i], {OK} where there is
+   nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite. */
+LANES_INLINE void scene_pack(const lagrange_casadi_instants* call, const casadi_real* parameters,
+                             const casadi_real* constants, casadi_int i, casadi_real* y) {{
+  const casadi_int many = call->n - i < LANES ? call->n - i : LANES, apart = call->apart;
+  {real} *out = call->out ? call->out + i : 0, lanes[LANES];
+  casadi_real at[{inputs}], sum;
+  casadi_int j, k;
+  scene_taken(call, call->t, {nt}, i, at);
+  scene_taken(call, call->z, {nz}, i, at + {place});
+  scene_columns(parameters, constants, at, y);
+  if (out && many == LANES) {{
+    for (k = 0; k < {outputs}; ++k) scene_store(out + k*apart, y[k]);
+  }} else if (out) {{
+    for (k = 0; k < {outputs}; ++k) memcpy(out + k*apart, y + k, (size_t) many*sizeof *out);
+  }}
+  sum = scene_sum(y, {outputs});
+  sum = sum - sum;
+  if (!lanes_any_nan(sum)) return;
+  scene_store(lanes, sum);
+  for (j = 0; j < many; ++j)
+    if (lanes[j] != lanes[j] && call->status[i + j] == {OK}) call->status[i + j] = {NOT_FINITE};
+}}
 """
 
 _DRIVE = """  arg[0] = at;
@@ -150,47 +203,12 @@ _DRIVE = """  arg[0] = at;
 """
 
 _EVALUATE = """
-/* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i]
-   is iterated coordinate k there. status[i], {OK} where there is nothing to say against the
-   instant, becomes {NOT_FINITE} where a value is not finite.{single} */
+/* The columns of n instants, for parameters p.{single} */
 LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
-  const casadi_int n = call->n, stride = call->stride;
-  const {real} *t = call->t, *z = call->z;
-  {real}* out = call->out;
-  int* status = call->status;
-  casadi_int i, j, k, many;
-  {real} lanes[LANES];
-  casadi_real at[{inputs}], y[{rows}], parameters[{given}], constants[{fixed}], sum;
-  casadi_real* place = at + {place};
+  casadi_real y[{rows}], parameters[{given}], constants[{fixed}];
+  casadi_int i;
   scene_constants(call->p, parameters, constants);
-  for (i = 0; i < n; i += LANES) {{
-    many = n - i < LANES ? n - i : LANES;
-    if (many == LANES) {{
-      for (k = 0; k < {nt}; ++k) memcpy(at + k, t + k*stride + i, sizeof lanes);
-      for (k = 0; k < {nz}; ++k) memcpy(place + k, z + k*stride + i, sizeof lanes);
-    }} else {{
-      /* The last pack is filled up with the last instant. */
-      for (k = 0; k < {nt}; ++k) {{
-        for (j = 0; j < LANES; ++j) lanes[j] = t[k*stride + i + (j < many ? j : many - 1)];
-        memcpy(at + k, lanes, sizeof lanes);
-      }}
-      for (k = 0; k < {nz}; ++k) {{
-        for (j = 0; j < LANES; ++j) lanes[j] = z[k*stride + i + (j < many ? j : many - 1)];
-        memcpy(place + k, lanes, sizeof lanes);
-      }}
-    }}
-    scene_columns(parameters, constants, at, y);
-    if (many == LANES) {{
-      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
-    }} else {{
-      const size_t size = (size_t) many*sizeof({real});
-      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, size);
-    }}
-    sum = scene_sum(y, {columns});
-    memcpy(lanes, &sum, sizeof lanes);
-    for (j = 0; j < many; ++j)
-      if (!(lanes[j] - lanes[j] == 0) && status[i + j] == {OK}) status[i + j] = {NOT_FINITE};
-  }}
+  for (i = 0; i < call->n; i += LANES) scene_pack(call, parameters, constants, i, y);
 }}
 """
 
@@ -282,17 +300,19 @@ class Parts:
     sizes: dict[str, Any]
 
     @classmethod
-    def of(cls, graph: Program, stages: Stages) -> Parts:
-        """Make the parts of a scene."""
+    def of(cls, graph: Program, stages: Stages, watched: int = 0) -> Parts:
+        """Make the parts of a scene, whose last columns are ``watched``: no outputs."""
         constants, instant = hoisted(stages.instant)
         narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
         wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
         sizes = _sizes(graph, stages) | {"constants": constants.size1_out(0)}
         place = sizes["nt"] + sizes["nc"] + 2 * sizes["nd"]
         room = {"given": sizes["nt"] * sizes["np"], "fixed": sizes["constants"]}
-        sizes |= {"place": place, "inputs": place + sizes["nz"]} | {
-            name: max(1, size) for name, size in room.items()
-        }
+        sizes |= {
+            "place": place,
+            "inputs": place + sizes["nz"],
+            "outputs": sizes["columns"] - watched,
+        } | {name: max(1, size) for name, size in room.items()}
         return cls(narrow, wide, sizes)
 
 

@@ -15,7 +15,7 @@ typedef struct {
   const signed char* bent;
   double* tops;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
-  casadi_real limits[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)];
+  casadi_real terms[DESIGNS_SOME(DESIGNS_BOUNDS)];
 } designs_now;
 
 static designs_real designs_lane(const casadi_real* pack, int lane) {
@@ -29,11 +29,6 @@ static designs_real* designs_row(const designs_now* now, int k) { return now->ro
 static void designs_split(double t, designs_real* moment) {
   moment[0] = (designs_real) t;
   if (DESIGNS_NT > 1) moment[DESIGNS_NT - 1] = (designs_real) (t - moment[0]);
-}
-
-/* The columns of a pack: one function, so that a scene's instant is compiled into it once. */
-static void designs_columns(const designs_now* now, casadi_real* at, casadi_real* y) {
-  scene_columns(now->parameters, now->constants, at, y);
 }
 
 /* The columns at LANES times, each near an instant. */
@@ -58,7 +53,7 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   }
   memcpy(at, lane, sizeof lane);
   if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
-  designs_columns(now, at, y);
+  scene_columns(now->parameters, now->constants, at, y);
 }
 
 /* The instant that is nearest to a time. */
@@ -81,42 +76,32 @@ static int designs_asked(void* of, long long count, const double* t, unsigned lo
   }
   designs_at(now, times, near, y);
   designs_curves(y, now->matter, need, value, place);
-  for (k = 0; k < DESIGNS_CURVES; ++k) memcpy(out + k*apart, value + k, sizeof *value);
-  for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(out + (DESIGNS_CURVES + k)*apart, place + k, sizeof *place);
-  for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(out + (DESIGNS_CHECKED + k)*apart, y + DESIGNS_OUTPUTS + k, sizeof *y);
+  for (k = 0; k < DESIGNS_CURVES; ++k) scene_store(out + k*apart, value[k]);
+  for (k = 0; k < DESIGNS_PLACES; ++k) scene_store(out + (DESIGNS_CURVES + k)*apart, place[k]);
+  for (k = 0; k < DESIGNS_WATCHES; ++k) scene_store(out + (DESIGNS_CHECKED + k)*apart, y[DESIGNS_OUTPUTS + k]);
   return 0;
 }
 
-/* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
-   watched. */
-static void designs_sample(designs_now* now, double* history) {
-  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum;
-  casadi_real most[DESIGNS_CURVES];
+/* All instants, as rows of curves, of their places along links, of what is checked, and of what is watched. */
+static void designs_sample(designs_now* now, const lagrange_casadi_instants* given) {
+  const lagrange_casadi_instants instants = *given;
+  casadi_real y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], most[DESIGNS_CURVES];
   const casadi_int stride = now->stride;
   designs_real* row;
   casadi_int i, j;
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
-    for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
-    for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
-    designs_columns(now, at, y);
+    scene_pack(&instants, now->parameters, now->constants, i, y);
     designs_curves(y, now->matter, ~0ull, value, place);
     row = now->rows + LANES + i;
     for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
-      memcpy(row, value + k, sizeof *value);
+      scene_store(row, value[k]);
       most[k] = designs_larger(most[k], designs_size(value[k]));
     }
-    for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
-    for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
-    sum = scene_sum(y, DESIGNS_OUTPUTS);
-    memcpy(row, &sum, sizeof sum);
-    for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(row += stride, y + DESIGNS_OUTPUTS + k, sizeof *y);
-    if (history) {
-      for (k = 0; k < DESIGNS_OUTPUTS; ++k) {
-        for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);
-      }
-    }
+    for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) scene_store(row, place[k]);
+    for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) scene_store(row, y[designs_checked[k]]);
+    for (k = 0; k < DESIGNS_WATCHES; ++k, row += stride) scene_store(row, y[DESIGNS_OUTPUTS + k]);
   }
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     now->most[k] = 0;
@@ -151,22 +136,7 @@ static int designs_dead_between(const designs_now* now, int check, casadi_int i)
     start = t[best > 0 ? best - 1 : 0];
     stop = t[best < DESIGNS_INSIDE - 1 ? best + 1 : best];
   }
-  return !(lowest > designs_limit[check]);
-}
-
-static designs_real designs_sine(designs_real closure) { return closure > 0 && closure <= DESIGNS_LARGEST ? DESIGNS_ROOT(closure) : 0; }
-
-/* Whether, straight on from either side, the sine of a loop's transmission angle meets zero before the next instant. */
-static int designs_passes(const designs_now* now, int check, casadi_int i) {
-  const designs_real *row = designs_row(now, DESIGNS_CHECKED + check), open = DESIGNS_NZ ? 1 : -1;
-  designs_real here, next, left, right;
-  if (i + 1 >= now->n) return 0;
-  here = designs_sine(row[i]);
-  next = designs_sine(row[i + 1]);
-  left = i > 0 ? 2*here - designs_sine(row[i - 1]) : open;
-  right = i + 2 < now->n ? 2*next - designs_sine(row[i + 2]) : open;
-  if (!(left < 0 && right < 0 && here < DESIGNS_NEAR && next < DESIGNS_NEAR)) return 0;
-  return DESIGNS_NZ || designs_dead_between(now, check, i);
+  return !(lowest > designs_lane(now->matter + DESIGNS_LIMITS + check, 0));
 }
 
 /* The largest of what is checked over all instants. */
@@ -178,24 +148,53 @@ static designs_real designs_most(const designs_now* now, int check) {
   return most;
 }
 
-/* What the checks of a design must keep to, and beside rows the largest of their terms: the same at all instants. */
-static void designs_bind(designs_now* now) {
-  const designs_real extent = designs_lane(now->matter, 0);
-  int k;
+/* What the checks of a design are beyond its instants, and the largest terms of rows. Whether what is beside them can break a rule. */
+static int designs_bind(designs_now* now) {
+  int k, kind, near = 0;
+  casadi_int i;
   for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    const int kind = designs_kind[k], open = kind == DESIGNS_IS_OPEN || kind == DESIGNS_IS_OPEN_MOMENT;
-    now->limits[k] = open ? (designs_real) INFINITY : kind == DESIGNS_IS_GAP ? designs_limit[k]*extent : designs_limit[k];
-    now->beside[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (designs_real) 0;
+    designs_real* row = designs_row(now, DESIGNS_CHECKED + k);
+    kind = designs_kind[k];
+    now->terms[k] = kind == DESIGNS_IS_ROW ? designs_most(now, designs_sized[k]) : (designs_real) 0;
+    row[-1] = row[now->n] = row[now->n + 1] = kind == DESIGNS_IS_TURNED ? row[now->n - 1] : DESIGNS_OUTSIDE;
+    near |= kind == DESIGNS_IS_TURNED;
+    if (kind != DESIGNS_IS_CLOSURE && kind != DESIGNS_IS_BRANCH) continue;
+    for (i = 0; i < now->n; ++i) near |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
   }
+  return near;
 }
 
-/* The first rule that each of a pack of instants breaks, by number, or zero. */
-static casadi_real designs_broken(const casadi_real* checks, const casadi_real* limits, const casadi_real* beside, casadi_real iterated) {
-  const casadi_real* arg[4];
+/* The first rule that each of a pack of instants breaks, by number, or zero; the pack begins at i, near is what designs_bind tells. */
+DESIGNS_INLINE casadi_real designs_broken(const designs_now* now, int near, casadi_int i) {
+  casadi_real seen[4][DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated = (designs_real) 0, rule;
+  designs_real lane[LANES];
+  const casadi_real* arg[5];
   casadi_real* res[1];
-  casadi_real rule;
-  arg[0] = checks;
-  arg[1] = limits;
+  int j, k, side;
+  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
+    seen[1][k] = scene_load(designs_row(now, DESIGNS_CHECKED + k) + i);
+    beside[k] = now->terms[k];
+  }
+  if (near) {
+    for (side = 0; side < 4; ++side) {
+      for (k = 0; k < DESIGNS_BOUNDS; ++k) seen[side][k] = scene_load(designs_row(now, DESIGNS_CHECKED + k) + i + side - 1);
+      arg[side] = seen[side];
+    }
+    arg[4] = now->terms;
+    res[0] = beside;
+    beside_of(arg, res);
+  }
+  /* The closed forms can be asked. */
+  for (k = 0; near && DESIGNS_NZ == 0 && k < DESIGNS_BOUNDS; ++k) {
+    if (designs_kind[k] != DESIGNS_IS_CLOSURE) continue;
+    scene_store(lane, beside[k]);
+    for (j = 0; j < LANES && i + j < now->n; ++j) lane[j] = lane[j] > 0 && designs_dead_between(now, k, i + j);
+    beside[k] = scene_load(lane);
+  }
+  for (j = 0; DESIGNS_NZ && j < LANES; ++j) lane[j] = i + j < now->n ? (designs_real) now->status[i + j] : 0;
+  if (DESIGNS_NZ) iterated = scene_load(lane);
+  arg[0] = seen[1];
+  arg[1] = now->matter + DESIGNS_LIMITS;
   arg[2] = beside;
   arg[3] = &iterated;
   res[0] = &rule;
@@ -203,75 +202,34 @@ static casadi_real designs_broken(const casadi_real* checks, const casadi_real* 
   return rule;
 }
 
-/* Why an instant has no result, or DESIGNS_OK; that it is at rest only where nothing else is wrong. */
-static int designs_why(const designs_now* now, casadi_int i) {
-  casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], beside[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, rule;
-  designs_real x;
-  int k, why;
-  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    const designs_real* row = designs_row(now, DESIGNS_CHECKED + k);
-    checks[k] = row[i];
-    beside[k] = now->beside[k];
-    if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
-      beside[k] = (designs_real) designs_passes(now, k, i);
-    } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
-      beside[k] = i + 1 < now->n ? row[i + 1] - row[i] : 0;
-    }
-  }
-  iterated = (designs_real) now->status[i];
-  rule = designs_broken(checks, now->limits, beside, iterated);
-  why = designs_status[(int) designs_lane(&rule, 0)];
-  if (why != DESIGNS_OK) return why;
-  x = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS)[i];
-  return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
-}
-
 /* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
 static int designs_refused(designs_now* now) {
-  const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
-  casadi_real checks[DESIGNS_SOME(DESIGNS_BOUNDS)], iterated, worst;
-  designs_real lane[LANES];
-  casadi_int i, j;
-  int k, bad = 0, why;
+  const casadi_real none = (designs_real) 0;
+  const int near = designs_bind(now);
+  casadi_real rule;
+  casadi_int i;
+  int j, why, finite = 1;
   now->rests = 0;
-  designs_bind(now);
-  for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
-  worst = (designs_real) 0;
-  iterated = (designs_real) 0;
-  for (i = 0; DESIGNS_BOUNDS && i < now->n; i += LANES) {
-    for (k = 0; k < DESIGNS_BOUNDS; ++k) memcpy(checks + k, designs_row(now, DESIGNS_CHECKED + k) + i, sizeof *checks);
-    if (DESIGNS_NZ) {
-      for (j = 0; j < LANES; ++j) lane[j] = (designs_real) now->status[i + j < now->n ? i + j : now->n - 1];
-      memcpy(&iterated, lane, sizeof iterated);
+  for (i = 0; i < now->n; ++i) finite &= now->status[i] != DESIGNS_NOT_FINITE;
+  for (i = 0; i < now->n; i += LANES) {
+    rule = designs_broken(now, near, i);
+    if (finite && !lanes_where_less(none, rule)) continue;
+    for (j = 0; j < LANES && i + j < now->n; ++j) {
+      why = designs_status[(int) designs_lane(&rule, j)];
+      if (why == DESIGNS_OK && now->status[i + j] == DESIGNS_NOT_FINITE) why = DESIGNS_NOT_FINITE;
+      if (why != DESIGNS_OK && why != DESIGNS_AT_REST) return why;
+      now->rests |= why == DESIGNS_AT_REST;
     }
-    worst = designs_larger(worst, designs_broken(checks, now->limits, now->beside, iterated));
-  }
-  for (j = 0; j < LANES; ++j) bad |= designs_lane(&worst, (int) j) > 0;
-  /* What is seen beside other instants. */
-  for (k = 0; k < DESIGNS_BOUNDS; ++k) {
-    row = designs_row(now, DESIGNS_CHECKED + k);
-    if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
-      for (i = 0; i < now->n; ++i) bad |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
-    } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
-      for (i = 0; i + 1 < now->n; ++i) bad |= !(row[i + 1] - row[i] <= DESIGNS_LEAP && row[i] - row[i + 1] <= DESIGNS_LEAP);
-    }
-  }
-  if (!bad) return DESIGNS_OK;
-  for (i = 0; i < now->n; ++i) {
-    why = designs_why(now, i);
-    if (why != DESIGNS_OK && why != DESIGNS_AT_REST) return why;
-    now->rests |= why == DESIGNS_AT_REST;
   }
   return DESIGNS_OK;
 }
 
 /* Whether equilibrium leaves open, at any instant, what a check tells of. */
 static int designs_is_open(const designs_now* now, int check) {
-  const designs_real* row = designs_row(now, DESIGNS_CHECKED + check);
-  const designs_real beside = designs_kind[check] == DESIGNS_IS_OPEN_MOMENT ? designs_lane(now->matter, 0) : 1;
+  const designs_real *row = designs_row(now, DESIGNS_CHECKED + check), limit = designs_lane(now->matter + DESIGNS_LIMITS + check, 0);
   casadi_int i;
   int open = 0;
-  for (i = 0; i < now->n; ++i) open |= !(row[i] <= designs_limit[check]*beside);
+  for (i = 0; i < now->n; ++i) open |= !(row[i] <= limit);
   return open;
 }
 
@@ -306,7 +264,7 @@ static double designs_mean(const designs_now* now, int k, int squared) {
     last = last*last;
   }
   for (i = 0; i + LANES <= n; i += LANES) {
-    memcpy(&part, row + i, sizeof part);
+    part = scene_load(row + i);
     sum = sum + (squared ? part*part : part);
   }
   for (k = 0; k < LANES; ++k) whole += designs_lane(&sum, k);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -138,6 +138,7 @@ class Library:
             guess=None if guess is None else guess.ctypes.data,
             z=z.ctypes.data,
             out=None if out is None else out.ctypes.data,
+            apart=rows.strides[0] // rows.itemsize,
             status=status.ctypes.data,
         )
         entry(call)
@@ -212,10 +213,8 @@ class DesignsLibrary:
         stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
         hidden = np.zeros((len(bent), stride), np.int8)
         hidden[:, : bent.shape[1]] = bent
-        room = np.zeros(
-            (self.reduction.rows + self.guess.size + 2) * stride + _LINE,
-            DTYPES[self.search.precision],
-        )
+        dtype = DTYPES[self.search.precision]
+        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + _LINE, dtype)
         room = room[-room.ctypes.data // room.itemsize % _LINE :]
         status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
         arrays: dict[str, npt.NDArray[Any] | None] = {
@@ -226,6 +225,13 @@ class DesignsLibrary:
             "room": room,
         }
         arrays |= {"statuses": status, "hiding": hiding, "iterated": None, "tops": None, **results}
+        single = {
+            name: np.empty(array.shape, dtype)
+            for name in ("history", "iterated")
+            if (array := arrays.get(name)) is not None and array.dtype != dtype
+        }
+        rounded = [(arrays[name], own) for name, own in single.items()]
+        arrays |= single
         search, within = self.search.call(self.tables, _CUT)
         call = CALL.made(
             search=ctypes.addressof(search),
@@ -241,8 +247,7 @@ class DesignsLibrary:
                 name: None if array is None else array.ctypes.data for name, array in arrays.items()
             },
         )
-        # The arrays live as long as what reads and writes them.
-        return functools.partial(_enter, self.entry, call, (arrays, search, within))
+        return functools.partial(_enter, self.entry, call, rounded, (arrays, search, within))
 
 
 def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> None:
@@ -258,8 +263,11 @@ def _share(run: Callable[[int], None], starts: Iterable[int], threads: int) -> N
         pool.shutdown(cancel_futures=True)
 
 
-def _enter(entry: Any, call: Any, arrays: object) -> None:
+def _enter(entry: Any, call: Any, rounded: Sequence[tuple[Any, Array]], _kept: object) -> None:
+    """Call, with what must live as long as the call's addresses; then widen what was rounded."""
     entry(call)
+    for array, own in rounded:
+        array[...] = own
 
 
 def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:

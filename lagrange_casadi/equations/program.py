@@ -22,7 +22,7 @@ from .iteration import NewtonLoop
 from .least_energy import Completion
 from .mobility import stations_of
 from .model_data import ModelData
-from .status import Bound, Rule, bounds_of, rules_of, status_of
+from .status import Bound, Rule, beside_of, bounds_of, rules_of, status_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +85,13 @@ class Program(Graphs):
         :attr:`rules` that is broken.
         """
         return status_of(self)
+
+    @property
+    def beside(self) -> Any:
+        """The function ``beside(before, checks, next, after, most)``: what :attr:`status` sees of
+        other instants.
+        """
+        return beside_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
         """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``

@@ -9,7 +9,7 @@ differentiation: no difference of large numbers is taken.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,7 +24,7 @@ from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.kinematics import describe_coordinate, where
 from ..equations.program import Program
 from ..errors import DeclarationError
-from .rules import passes_dead_centre
+from .rules import beside
 
 TURNS = 4
 """Number of the longest periods."""
@@ -232,8 +232,9 @@ class Drive:
             here = self.settle(angles[i : i + 1], here)
             places[:, i] = here[:, 0]
         values = self.terms_at(angles, places)
-        for name, closure in self._closures(values[0]):
-            passes = passes_dead_centre(closure)
+        columns = (bound.column for bound in self.graph.bounds)
+        found = dict(zip(columns, beside(self.graph, values[0], 0.0), strict=True))
+        for name, passes in self._closures(found):
             if passes.any():
                 near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passes))])
                 raise DeclarationError(
@@ -262,7 +263,7 @@ class Drive:
             at = where([(self.joint, "angle", angles[i])])
             raise DeclarationError(f"table: '{self.graph.names[k]}' is not finite at rest{at}")
 
-    def _closures(self, columns: Array) -> Iterator[tuple[str, Array]]:
+    def _closures(self, columns: Array | Mapping[int, Array]) -> Iterator[tuple[str, Array]]:
         """The closures among the columns, with the beginning of a message."""
         for closing, k in self.graph.checks("closure").items():
             yield f"table: the loop closed by {self.graph.data.closing(closing)}", columns[k]

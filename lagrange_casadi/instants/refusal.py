@@ -22,10 +22,10 @@ from ..declare.ends import share_beyond
 from ..equations.iteration import LARGEST_STEP
 from ..equations.kinematics import where
 from ..equations.program import Program
-from ..equations.status import Bound, Rule
+from ..equations.status import Bound, Rule, outside
 from ..errors import AssemblyError
 from .backends import Evaluated, run
-from .rules import limits, passes_dead_centre
+from .rules import beside, limits
 from .rung import Rung
 
 _JAM = (
@@ -97,23 +97,15 @@ def _first_broken(
 def _beside(
     graph: Program, out: Array, most: Sequence[float], t: Array, p: Array, rung: Rung
 ) -> Array:
-    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`: they depend on
-    several instants.
+    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`.
+
+    If a closed form may come to zero before the next instant, the zero is looked for.
     """
-    found = np.zeros((len(graph.bounds), t.size))
+    found = beside(graph, out, outside(graph))
     for k, (bound, limit) in enumerate(zip(graph.bounds, most, strict=True)):
-        column = np.asarray(out[bound.column], float)
-        if bound.kind in ("CLOSURE", "BRANCH"):
-            passes = passes_dead_centre(column, ends=graph.newton is None)
-            if graph.newton is None and passes.any():
-                after = np.flatnonzero(passes)
-                passes[after] = _dead_between(graph, bound, limit, t[after], t[after + 1], p, rung)
-            found[k] = passes
-        elif bound.kind == "TURNED":
-            found[k] = np.diff(column, append=column[-1:])
-        elif bound.kind == "ROW":
-            # Where all stands still, what rounding leaves of rates violates nothing.
-            found[k] = np.fmax.reduce(out[bound.size], initial=0.0)
+        after = np.flatnonzero(found[k])
+        if bound.kind == "CLOSURE" and graph.newton is None and after.size:
+            found[k, after] = _dead_between(graph, bound, limit, t[after], t[after + 1], p, rung)
     return found
 
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from ..arithmetic.compensated import ROUNDING
+from ..arithmetic.interpret import interpret, numpy_arithmetic
 from ..base.arrays import Array, Expression
 from ..base.vocabulary import Precision
 from ..codegen.emit import NEWTON_LOST
@@ -35,9 +35,6 @@ _DEAD = 64.0
 
 SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 """Largest relative residual of friction laws."""
-
-NEAR = 0.3
-"""Sines of the transmission angle below which a loop may pass a dead centre."""
 
 EXTENSIVE = ("GAP", "OPEN_MOMENT")
 """Kinds whose limit is a share of the mechanism's extent."""
@@ -98,16 +95,20 @@ def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
     return math.sqrt(square) if graph.iterates(closure) else square
 
 
-def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
-    """After which instants a loop may pass a dead centre: straight on from either side its
-    transmission angle's sine meets zero.
-
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With
-    ``ends`` the first interval and the last are looked at too, each from its one side.
+def beside(graph: Program, out: Array, outside: float) -> Array:
+    """What stands beside the checks of each instant of columns ``out`` (columns, t), (bounds, t):
+    see :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
     """
-    found = np.zeros(closure.size, dtype=bool)
-    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
-    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
-    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
-    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
-    return found
+    count = out.shape[-1]
+    seen = [
+        np.pad(row, (1, 2), constant_values=row[-1] if bound.kind == "TURNED" else outside)
+        for bound in graph.bounds
+        for row in [np.asarray(out[bound.column], float)]
+    ]
+    most = [
+        np.fmax.reduce(out[bound.size], initial=0.0) if bound.kind == "ROW" else 0.0
+        for bound in graph.bounds
+    ]
+    shifted = [[row[k : k + count] for row in seen] for k in range(4)]
+    (found,) = interpret(graph.beside, [*shifted, most], numpy_arithmetic())
+    return np.array([np.broadcast_to(row, count) for row in found], float).reshape(-1, count)

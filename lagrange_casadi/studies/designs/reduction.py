@@ -14,7 +14,6 @@ from ...base.quantities import AVERAGED, Output, compared
 from ...base.status import Status
 from ...base.symbolic import symbolic
 from ...base.tables import Table, table_of
-from ...base.vocabulary import Precision
 from ...codegen.designs import Reduction
 from ...codegen.link_curves import Along, matter_of
 from ...codegen.stages import Stages, compensated, plain, stages_for
@@ -24,7 +23,7 @@ from ...equations.program import Program
 from ...equations.spreads import spreads_of
 from ...errors import DeclarationError
 from ...instants.laws import made_of
-from ...instants.rules import NEAR, limit
+from ...instants.rules import limits
 from ...instants.rung import Rung
 from ...summits.sharpness import Sharpness
 
@@ -91,15 +90,14 @@ class KeptOutputs:
         units = tuple(output.unit(data.kinds) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(data, link, at, table) for link in links)
-        matter, positive, margins = _matter(data, links, along, rung.precision)
+        matter, positive, margins = _matter(graph, links, along, rung)
         columns = {column for columns in chosen.values() for column in columns}
         rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
         columns |= {k for row in rows for k in row if k >= 0}
         sharpness = Sharpness.of(graph, sorted(columns))
-        checks = _checks(graph, rung)
-        doubted = {
-            k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")
-        }
+        checks = [(bound.column, bound.kind) for bound in graph.bounds]
+        doubted = {k: number for number, (k, kind) in enumerate(checks) if kind.startswith("OPEN")}
+        sizes = [(bound.size, "SIZE") for bound in graph.bounds if bound.kind == "ROW"]
         made = {name: _made_of(graph, name, table) for name in names}
         doubts = [
             (doubted[graph.doubtful[n]], k)
@@ -112,12 +110,11 @@ class KeptOutputs:
             links=along,
             units=tuple(compared(units)),
             efforts=tuple(names.index(name) for name in efforts),
-            checks=tuple(checks),
+            checks=(*checks, *sizes),
             doubts=tuple(doubts),
             matter=matter,
             positive=positive,
             margins=margins,
-            near=NEAR,
             statuses={status.name: int(status) for status in Status},
             watches=sharpness.watches,
             knots=sharpness.knots,
@@ -164,32 +161,21 @@ def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
     return list(quantity.components(table))
 
 
-def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
-    """Limits of a graph's columns for the emitted C; last are the sizes of the terms of rows."""
-    found = [
-        (bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton))
-        for bound in graph.bounds
-    ]
-    return [
-        *found,
-        *((bound.size, "ROWSIZE", 0.0) for bound in graph.bounds if bound.kind == "ROW"),
-    ]
-
-
 @symbolic
 def _matter(
-    data: ModelData, links: list[str], along: tuple[Along, ...], precision: Precision
+    graph: Program, links: list[str], along: tuple[Along, ...], rung: Rung
 ) -> tuple[ca.Function, int, int]:
     """Numbers of the parts for the reduction, and how many of them must be positive, and not
     negative.
     """
-    symbols = data.symbols
-    positive, others = data.margins[precision].in_order(symbols)
+    data, symbols = graph.data, graph.data.symbols
+    positive, others = data.margins[rung.precision].in_order(symbols)
     positive = [data.extent(symbols), *positive]
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
         length, density = data.matter(link, symbols)
         rest += matter_of(part, length, density.cells)
+    rest += limits(graph, rung.precision, rung.newton, positive[0])
     out = ca.densify(
         ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest)))
     )
