@@ -26,9 +26,9 @@ from ...equations.derive import compile_scene
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.rung import Rung
 from ...instants.solution import Solution
+from ...sensitivity.peaks import MeanSlopes
 from ..evaluate import evaluate
 from .engine import DesignEngine
-from .gradients import MeanSlopes
 from .outcome import KEPT, Outcome
 
 _Values: TypeAlias = Mapping[str, Any] | None
