@@ -14,9 +14,8 @@ from truth import truth
 from lagrange_casadi import derive, load_case
 from lagrange_casadi.base.quantities import FORCES, Output
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.sensitivity.curvatures import Curvatures, unit_ways
 from lagrange_casadi.sensitivity.series import at_instants
-from lagrange_casadi.sensitivity.slopes import Slopes
+from lagrange_casadi.sensitivity.slopes import Slopes, unit_ways
 from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
@@ -130,7 +129,7 @@ def test_second_derivatives_too(name):
         np.array(list(values.values())),
         [k for k, x in values.items() if x != 0.0][-2:],
     )
-    curvatures = Curvatures.of(slopes := made(scene), Rung("vm"))
+    slopes = made(scene)
     names = [
         (q, xi)
         for q in slopes.points.quantities
@@ -143,9 +142,8 @@ def test_second_derivatives_too(name):
     times = np.full(chosen.size, t)
     z = slopes.iterated(np.linspace(start, t, 20), p, times)
     numbers = [list(values).index(name) for name in (one, other)]
-    found = curvatures.at(
-        times, z, p, chosen, xi, np.full(chosen.size, np.nan), unit_ways(numbers, p.size)
-    ).changes[:, 2:]
+    ways = unit_ways(numbers, p.size)
+    found = slopes.bends(times, z, p, chosen, xi, None, ways).changes[:, 2:]
     found = found[:, :, [2 + number for number in numbers]]
     np.testing.assert_allclose(
         found[:, 0, 1], found[:, 1, 0], rtol=0, atol=1e-12 * np.abs(found).max()

@@ -22,7 +22,7 @@ from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.instants.derivatives import derivatives
 from lagrange_casadi.motion import harmonic, samples
-from lagrange_casadi.sensitivity.total import total
+from lagrange_casadi.sensitivity.jacobian import total
 
 pytestmark = pytest.mark.quick
 

@@ -1,5 +1,5 @@
-"""The C of one function at many points: each of its arguments has a row for every point, for every
-few, or one for all.
+"""The C of one function at many points, for packs of points at once: each of its arguments has a
+row for every point, for every few, or one for all.
 """
 
 from __future__ import annotations
@@ -9,43 +9,75 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..base.arrays import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded, packed
-from .emit import START
+from .emit import START, WIDE
 from .printer import print_functions
+
+CHOSEN = "chosen"
+"""The argument that is a row of a unit matrix; the number of the row is given in its place."""
 
 _ENTRY = "lagrange_casadi_batch"
 
 _LOOP = """
 /* n points. Of each argument NAME the row of point i is NAME + i/NAME_every times its size, the
    first where NAME_every is 0. */
+static casadi_int row(casadi_int i, long long every) {{
+  return every > 1 ? i/every : every*i;
+}}
+
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
-  casadi_int i;
-  const double* arg[{arg}];
-  double* res[1];
-  for (i = 0; i < call->n; ++i) {{
-{lines}
+  casadi_int i, j, k, of;
+  double lane[{given} + 1][LANES], told[{found}][LANES];
+  casadi_real at[{given} + 1], y[{found}];
+  const casadi_real* arg[{many}];
+  casadi_real* res[1];
+  memset(lane, 0, sizeof lane);
+{arguments}
+  res[0] = y;
+  for (i = 0; i < call->n; i += LANES) {{
+    for (j = 0; j < LANES; ++j) {{
+      /* The last pack is filled up with the last point. */
+      of = i + j < call->n ? i + j : call->n - 1;
+{rows}
+    }}
+    memcpy(at, lane, sizeof lane);
     at_once(arg, res);
+    memcpy(told, y, sizeof told);
+    for (j = 0; j < LANES; ++j) {{
+      of = i + j < call->n ? i + j : call->n - 1;
+      for (k = 0; k < {found}; ++k) call->found[of*{found} + k] = told[k][j];{cleared}
+    }}
   }}
 }}
 """
+_ROW = (
+    "      for (k = 0; k < {size}; ++k)"
+    " lane[{first} + k][j] = call->{name}[row(of, call->{name}_every)*{size} + k];"
+)
+_ONE = "lane[{first} + call->{name}[row(of, call->{name}_every)]][j] = {value};"
 
 
 @dataclass(frozen=True, eq=False)
 class BatchLibrary:
     """The loaded code of a function ``at_once``, whose arguments and result are dense columns."""
 
-    function: Any
     call: Call
     entry: Any
 
-    def evaluate(self, n: int, given: Mapping[str, tuple[Array, int]], into: Array) -> None:
+    def evaluate(
+        self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]], into: Array
+    ) -> None:
         """Fill ``into`` (n, result) for n points: of each argument, by name, its rows and for how
         many points one is.
         """
-        arrays = {name: np.ascontiguousarray(rows, float) for name, (rows, _) in given.items()}
+        arrays = {
+            name: np.ascontiguousarray(rows, np.intc if name == CHOSEN else float)
+            for name, (rows, _) in given.items()
+        }
         every = {f"{name}_every": each for name, (_, each) in given.items()}
         pointers = {name: array.ctypes.data for name, array in arrays.items()}
         self.entry(self.call.made(n=n, **pointers, **every, found=into.ctypes.data))
@@ -58,22 +90,41 @@ def _names(function: Any) -> list[str]:
 def _call(function: Any) -> Call:
     members = {"n": "long long"}
     for name in _names(function):
-        members |= {name: "const double*", f"{name}_every": "long long"}
+        members |= {
+            name: "const int*" if name == CHOSEN else "const double*",
+            f"{name}_every": "long long",
+        }
     return Call("lagrange_casadi_batch_call", members | {"found": "double*"})
 
 
 def emit_batch(function: Any) -> str:
     """The C of a function of one output at many points; the same text in every process."""
-    lines = [
-        f"    arg[{k}] = call->{name} + (call->{name}_every ? i/call->{name}_every :"
-        f" 0)*{function.numel_in(k)};"
-        for k, name in enumerate(_names(function))
-    ]
-    lines.append(f"    res[0] = call->found + i*{function.numel_out(0)};")
+    arguments, rows, cleared, first = list[str](), list[str](), "", 0
+    for k, name in enumerate(_names(function)):
+        arguments.append(f"  arg[{k}] = at + {first};")
+        size = function.numel_in(k)
+        if name == CHOSEN:
+            rows.append(f"      {_ONE.format(first=first, name=name, value=1)}")
+            cleared = f"\n      {_ONE.format(first=first, name=name, value=0)}"
+        else:
+            rows.append(_ROW.format(first=first, name=name, size=size))
+        first += size
     call = _call(function)
-    text = START + call.text() + print_functions({"at_once": function}, "double", prefix="batch")
+    text = (
+        START
+        + call.text()
+        + WIDE
+        + print_functions({"at_once": function}, "double", prefix="batch", packs=True)
+    )
     return text + _LOOP.format(
-        entry=_ENTRY, call=call.name, lines="\n".join(lines), arg=len(_names(function))
+        entry=_ENTRY,
+        call=call.name,
+        given=first,
+        found=function.numel_out(0),
+        many=len(arguments),
+        arguments="\n".join(arguments),
+        rows="\n".join(rows),
+        cleared=cleared,
     )
 
 
@@ -82,6 +133,6 @@ def load_batch(function: Any, compiler: Compiler, extra: Sequence[str] = ()) -> 
     source = packed(emit_batch(function), compiler)
     library, call = loaded(source, compiler, tuple(extra)), _call(function)
     try:
-        return BatchLibrary(function, call, call.declare(getattr(library, _ENTRY)))
+        return BatchLibrary(call, call.declare(getattr(library, _ENTRY)))
     except AttributeError as error:
         raise broken(compiler, error) from None

@@ -116,20 +116,6 @@ class Timing:
         start, stop, around = (_values(bound, p) for bound in (self.start, self.stop, self.around))
         return start, stop, around
 
-    def bound_slopes(self, p: Array) -> Array:
-        """The derivatives of start and stop by all parameters, at ``p`` (parameters,): (2,
-        parameters).
-        """
-        found = np.zeros((2, p.size))
-        for row, bound in zip(found, (self.start, self.stop), strict=True):
-            if isinstance(bound, str):
-                row[:] = (
-                    ca.densify(_function(bound).factory("slopes", ["p"], ["jac:bound:p"])(p))
-                    .full()
-                    .ravel()
-                )
-        return found
-
     def ends(self, symbols: Expression) -> tuple[Operand, Expression]:
         """Start and stop as expressions of the parameters' symbols."""
         start, stop = (

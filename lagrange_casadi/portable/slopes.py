@@ -17,8 +17,8 @@ from ..declare.wanted_names import SENSITIVITY
 from ..equations.program import Program
 from ..errors import DeclarationError
 from ..instants.rung import Rung
+from ..sensitivity.jacobian import total
 from ..sensitivity.series import at_instants
-from ..sensitivity.total import total
 from .contract import Contract, Setting
 from .text import comment, indented, template
 

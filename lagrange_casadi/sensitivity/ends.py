@@ -2,53 +2,68 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..base.arrays import Array
+from ..base.symbolic import symbolic_property
 from ..declare.laws import Laws
 from ..declare.times import Timing
 
 
-def end_slopes(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
-    """The derivatives by all parameters of the first and the last instant, (2, parameters) [s].
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """The first and the last of ``instants`` that a ``timing`` asks for, with parameters ``p``;
+    without a timing they stand still.
 
-    Where instants are asked for by a drive, that of coordinate = bound at its time.
+    Where they are asked for by a drive, an end is where its coordinate is at a bound.
     """
-    if timing.shared or not p.size:
-        return np.zeros((2, p.size))
-    bounds = timing.bound_slopes(p)
-    if not timing.joint:
-        return bounds
-    motion = laws.only([timing.joint]).motion
-    rates = np.array([float(motion(time, p)[1]) for time in (first, last)])
-    t, values = motion.sx_in()
-    slope = ca.Function(
-        "slope", [t, values], [ca.densify(ca.jacobian(motion(t, values)[0], values))]
-    )
-    own = np.stack([slope(time, p).full().ravel() for time in (first, last)])
-    return np.asarray((bounds - own) / rates[:, None])
 
+    laws: Laws
+    timing: Timing | None
+    instants: Array
+    p: Array
 
-def end_bends(laws: Laws, timing: Timing, first: float, last: float, p: Array) -> Array:
-    """Second derivatives by all parameters, (2, parameters, parameters) [s]."""
-    if timing.shared or not p.size:
-        return np.zeros((2, p.size, p.size))
-    t, values = ca.SX.sym("t"), ca.SX.sym("p", p.size)
-    along: Any = t
-    if timing.joint:
-        along = laws.only([timing.joint]).motion(t, values)[0]
-    found = []
-    for time, bound in zip((first, last), timing.ends(values), strict=True):
-        hessian, gradient = ca.hessian(ca.SX(along - bound), ca.vertcat(t, values))
-        told = ca.Function("bends", [t, values], [ca.densify(gradient), ca.densify(hessian)])(
-            time, p
+    @symbolic_property
+    def slopes(self) -> Array:
+        """Their derivatives by all parameters, (2, parameters) [s]."""
+        if self._still:
+            return np.zeros((2, self.p.size))
+        gradients = self._gaps(lambda gap, by: ca.gradient(gap, by).T)[:, 0]
+        return -gradients[:, 1:] / gradients[:, :1]
+
+    @symbolic_property
+    def bends(self) -> Array:
+        """Second derivatives by all parameters, (2, parameters, parameters) [s]."""
+        if self._still:
+            return np.zeros((2, self.p.size, self.p.size))
+        gaps = self._gaps(
+            lambda gap, by: ca.vertcat(ca.gradient(gap, by).T, ca.hessian(gap, by)[0])
         )
-        slopes, second = told[0].full().ravel(), told[1].full()
-        found.append(implicit_bends(slopes[:1], second[None], -slopes[None, 1:] / slopes[0])[0])
-    return np.stack(found)
+        return implicit_bends(gaps[:, 0, 0], gaps[:, 1:], self.slopes)
+
+    @property
+    def _still(self) -> bool:
+        return self.timing is None or self.timing.shared or not self.p.size
+
+    def _gaps(self, derivatives: Callable[[Any, Any], Any]) -> Array:
+        """Of each end the derivatives, (2, rows, 1 + parameters), by time and by all parameters, of
+        how far it is from where it should be.
+        """
+        assert self.timing is not None
+        t, values, joint = ca.SX.sym("t"), ca.SX.sym("p", self.p.size), self.timing.joint
+        along = self.laws.only([joint]).motion(t, values)[0] if joint else t
+        found = []
+        for time, bound in zip(
+            self.instants[[0, -1]].tolist(), self.timing.ends(values), strict=True
+        ):
+            rows = ca.densify(derivatives(ca.SX(along - bound), ca.vertcat(t, values)))
+            found.append(ca.Function("gap", [t, values], [rows])(time, self.p).full())
+        return np.stack(found)
 
 
 def implicit_bends(rate: Array, second: Array, moved: Array) -> Array:

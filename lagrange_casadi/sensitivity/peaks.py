@@ -1,27 +1,73 @@
-"""Derivatives of peaks by parameters.
+"""How peaks and means change with parameters, to first and second order.
 
-A smooth peak moves as a parameter changes. To first order its value changes as that of the quantity
-does where the peak is: the envelope theorem. A peak at the first or the last instant goes with that
-instant. A peak at a kink or a jump goes with the time of what switches there.
+A smooth peak of F(s, p) is where F_s = 0, in time and along the link. To first order its value
+changes as F does there: the envelope theorem. It moves by s' = -F_ss^-1 F_sp, and its value has the
+second derivatives F_pp + F_ps s'. A peak at the first or the last instant goes with that instant. A
+peak at a kink or a jump goes with the time of what switches there. What goes so, at T(p), has the
+derivatives of F(T(p), p).
 """
 
 from __future__ import annotations
 
 import enum
+import itertools
 from dataclasses import dataclass
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arrays import Array
+from ..base.vocabulary import Precision
+from ..instants.statistics import counted, shares
 from ..summits.panels import SIDE, SPACING
+from ..summits.search import NOTHING
 from ..summits.sharpness import Kind, Watch
-from .nearby import at_peaks, on_their_side
-from .points import SAME_PLACE
-from .slopes import Numbers, Slopes
+from .ends import Ends, implicit_bends
+from .jacobian import SAME_PLACE
+from .slopes import Bends, Numbers, Slopes, unit_ways
+
+AS_LARGE: dict[Precision, float] = {"double": 1e-9, "single": 1e-5}
+"""What a peak may be below another that it ties with, of itself."""
 
 _STEEP = 1e-5
 """Relative change of a quantity in a step of time if its peak is not smooth."""
+
+_TINY = float(np.finfo(float).tiny)
+
+_NUDGE = 1e-3
+"""By how much a place is moved for differences: of a step between instants, and as a ratio to the
+length.
+"""
+
+_NEAR_T, _NEAR_XI, _NEARER_XI = 1e-2, 1e-4, 1e-5
+"""How far a smooth peak is from where it was found at most: of a step between instants, and as a
+ratio to the length; nearer by differences, which may be across a kink.
+"""
+
+_FLAT, _STILL = 1e-9, 1e-6
+"""Of the peak: what it bends by over the whole span, or length, where it is level; and what a level
+peak's slope may change by.
+"""
+
+_ASIDE, _NEARER = 1e-9, 0.5
+"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on
+its own side at most.
+"""
+
+_REACHES = (1.0, 8.0, 64.0, 512.0)
+"""So far from a jump its sides are looked for: of what a peak may be beside it."""
+
+_OTHERWISE = 1e-4
+"""By what of a slope two slopes differ."""
+
+_NOISE, _FAINT = 1e-9, 1e-12
+"""What of the largest slope by a parameter, and of the peak, is no slope."""
+
+Peaks = tuple[Array, Array, Array]
+"""Of q peaks the value, the time and the ratio xi/l, (q,) each."""
+
+Flags = npt.NDArray[np.bool_]
 
 
 class PeakKind(enum.IntEnum):
@@ -42,8 +88,7 @@ class PeakKind(enum.IntEnum):
 _SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 
 
-@dataclass(frozen=True, eq=False)
-class PeakSlopes:
+class PeakSlopes(NamedTuple):
     """Derivatives of q peaks by all parameters, (q, parameters), and the kind of each one's place,
     (q,).
 
@@ -59,105 +104,358 @@ class PeakSlopes:
     t: Array
 
 
-def peak_slopes(
-    slopes: Slopes,
-    instants: Array,
-    p: Array,
-    chosen: Numbers,
-    peaks: tuple[Array, Array, Array],
-    ends: Array,
-    nothing: npt.NDArray[np.bool_],
-) -> PeakSlopes:
-    """Derivatives of peaks, (value, t, xi), (q,) each, of the ``chosen`` quantities.
-
-    They are peaks over the time of the ``instants``, which are in equal steps; ``ends`` (2,
-    parameters) says how the first and the last move. ``nothing`` (q,) tells which peaks are zero
-    but for rounding: with them nothing moves.
+class MeanSlopes(NamedTuple):
+    """The derivatives of means over time, and of roots of mean squares, by all parameters, (e,
+    parameters); NaN of a root of 0.
     """
-    value, t, xi = peaks
-    sound = np.isfinite(value) & np.isfinite(t)
-    if not sound.all():
-        found, kinds = np.full((t.size, p.size), np.nan), np.full(t.size, _UNTOLD, np.int8)
-        moved, switch, times = np.zeros((t.size, p.size)), np.full(t.size, -1, np.intc), t.copy()
-        inner = peak_slopes(
-            slopes,
-            instants,
-            p,
-            chosen[sound],
-            (value[sound], t[sound], xi[sound]),
-            ends,
-            nothing[sound],
-        )
-        found[sound], kinds[sound], moved[sound], switch[sound] = (
-            inner.slopes,
-            inner.kinds,
-            inner.moved,
-            inner.switch,
-        )
-        times[sound] = inner.t
-        return PeakSlopes(found, kinds, moved, switch, times)
-    first, last = instants[0], instants[-1]
-    step = (last - first) / max(instants.size - 1, 1)
-    near = _near(step, instants)
-    at_first, at_last = t - first <= near, last - t <= near
-    going = at_first | at_last
-    here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step, going | nothing)
-    times = on_their_side(slopes, instants, p, chosen, peaks, here.value, near)
-    if (times != t).any():
-        here, lacking, z = at_peaks(
-            slopes, instants, p, chosen, (value, times, xi), step, going | nothing
-        )
-    steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
-    kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(
-        np.int8
-    )
-    kinds[going] = _END
-    moved, switch = np.zeros_like(here.slopes), np.full(t.size, -1, np.intc)
-    moved[at_last], moved[at_first] = ends[1], ends[0]
-    if steep.any():
-        moved[steep], switch[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
-        kinds[steep] = np.where(np.isnan(moved[steep]).any(axis=1), _UNTOLD, _SWITCH)
-        going |= steep
-    return PeakSlopes(
-        here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking),
-        kinds,
-        moved,
-        switch,
-        times,
-    )
+
+    mean: Array
+    rms: Array
 
 
-def _near(step: float, instants: Array) -> float:
-    """Distance from a kink, a jump or an end within which a peak is at it [s]."""
-    return SIDE * step + 2 * SPACING * float(np.abs(instants).max())
+@dataclass(frozen=True, eq=False)
+class MovingPeaks:
+    """Quantities over the time of some instants, which are in equal steps between the ``ends``, and
+    how their peaks change with the parameters.
+    """
 
+    slopes: Slopes
+    ends: Ends
 
-def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tuple[Array, Numbers]:
-    """The derivatives by all parameters of the times (n,) at which something switches, (n,
-    parameters), NaN where nothing does; and the number of the switch, -1 where a motion's knot or
-    nothing does."""
-    switches, first = slopes.points.switches, len(slopes.points.quantities)
-    times, at, back = np.unique(t, return_index=True, return_inverse=True)
-    knots = np.array([knot for knots in slopes.graph.laws.knots for knot in knots])
-    found, which = np.full((times.size, p.size), np.nan), np.full(times.size, -1, np.intc)
-    if switches:
-        many = len(switches)
-        chosen = np.tile(np.arange(first, first + many, dtype=np.intc), times.size)
-        there = slopes.at(
-            np.repeat(times, many), np.repeat(z[at], many, axis=0), p, chosen, np.zeros(chosen.size)
-        )
-        value, rate = there.value.reshape(-1, many), there.rate.reshape(-1, many)
-        gaps = np.stack([_gap(watch, value[:, k]) for k, watch in enumerate(switches)], axis=1)
+    @property
+    def instants(self) -> Array:
+        """The instants, (t,)."""
+        return self.ends.instants
+
+    @property
+    def p(self) -> Array:
+        """The parameters."""
+        return self.ends.p
+
+    @property
+    def span(self) -> float:
+        """The time from the first to the last instant [s]."""
+        return float(self.instants[-1] - self.instants[0])
+
+    @property
+    def step(self) -> float:
+        """The time between two instants [s]."""
+        return self.span / max(self.instants.size - 1, 1)
+
+    @property
+    def near(self) -> float:
+        """Distance from a kink, a jump or an end within which a peak is at it [s]."""
+        return SIDE * self.step + 2 * SPACING * max(abs(float(self.instants[k])) for k in (0, -1))
+
+    def gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
+        """The derivatives of peaks of what is ``chosen``.
+
+        ``nothing`` (q,) tells which peaks are zero but for rounding: with them nothing moves.
+        """
+        value, t, _ = peaks
+        sound = np.isfinite(value) & np.isfinite(t)
+        if sound.all():
+            return self._gradient(chosen, peaks, nothing)
+        size = (t.size, self.p.size)
+        kinds, switch = np.full(t.size, _UNTOLD, np.int8), np.full(t.size, -1, np.intc)
+        found = PeakSlopes(np.full(size, np.nan), kinds, np.zeros(size), switch, t.copy())
+        some = (value[sound], t[sound], peaks[2][sound])
+        inner = self._gradient(chosen[sound], some, nothing[sound])
+        for array, part in zip(found, inner, strict=True):
+            cast(Any, array)[sound] = part
+        return found
+
+    def _gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
+        value, t, xi = peaks
+        at_first, at_last = t - self.instants[0] <= self.near, self.instants[-1] - t <= self.near
+        going = at_first | at_last
+        here, lacking, z, off = self._found(chosen, peaks, going | nothing)
+        times = self._on_their_side(chosen, peaks, off)
+        if (times != t).any():
+            here, lacking, z, _ = self._found(chosen, (value, times, xi), going | nothing)
+        steep = (np.abs(here[:, 0]) * self.step > _STEEP * np.abs(value)) & ~(going | nothing)
+        at_end = (xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE)
+        kinds = np.where(at_end, _LINK_END, _SMOOTH).astype(np.int8)
+        kinds[going] = _END
+        moved, switch = np.zeros((t.size, self.p.size)), np.full(t.size, -1, np.intc)
+        moved[at_last], moved[at_first] = self.ends.slopes[::-1]
+        if steep.any():
+            moved[steep], switch[steep] = self._switching(t[steep], z[steep])
+            untold = np.isnan(moved[steep]).any(axis=1)
+            kinds[steep] = np.where(untold, _UNTOLD, _SWITCH)
+            going |= steep
+        total = here[:, 2:] + np.where(going[:, None], here[:, :1] * moved, lacking)
+        return PeakSlopes(total, kinds, moved, switch, times)
+
+    def _found(
+        self, chosen: Numbers, peaks: Peaks, stay: Flags
+    ) -> tuple[Array, Array, Array, Array]:
+        """The gradients at peaks, what the derivatives by parameters lack to those at the smooth
+        peaks, the iterated coordinates, and how far the values there are from the peaks'.
+
+        A search by values knows the place of a smooth peak to the root of its rounding only. What
+        is known to ``stay`` (q,) where it is lacks nothing. How derivatives change along time and
+        along the link is told by differences.
+        """
+        value, t, xi = peaks
+        q, moving = t.size, (~stay).nonzero()[0]
+        inner = (~stay & (xi > _NUDGE) & (xi < 1.0 - _NUDGE)).nonzero()[0]
+        nudge = _NUDGE * self.step
+        later = np.where(t + nudge <= self.instants[-1], nudge, -nudge)[moving]
+        times = np.concatenate([t, t[moving] + later])
+        z = self.slopes.iterated(self.instants, self.p, times)
+        where = np.concatenate([np.arange(q), q + np.arange(moving.size), inner, inner])
+        of = np.concatenate([np.arange(q), moving, inner, inner])
+        places = np.concatenate([xi, xi[moving], xi[inner] + _NUDGE, xi[inner] - _NUDGE])
+        found = self.slopes.at(times[where], z[where], self.p, chosen[of], places, value[of])
+        ends = np.cumsum([0, q, moving.size, inner.size, inner.size]).tolist()
+        here, after, further, nearer = (found.gradient[a:b] for a, b in itertools.pairwise(ends))
+        changes, free_xi = np.zeros((q, 2, here.shape[1])), np.zeros(q, bool)
+        changes[moving, 0] = (after - here[moving]) / later[:, None]
+        changes[inner, 1] = (further - nearer) / (2.0 * _NUDGE)
+        # A place that moves with a station has no slope along the link.
+        free_xi[inner] = here[inner, 1] != 0.0
+        _, away, _ = self._turned(Bends(here, changes), ~stay, free_xi, value, _NEARER_XI)
+        lacking = -(away[0][:, None] * changes[:, 0, 2:] + away[1][:, None] * changes[:, 1, 2:])
+        lacking[~np.isfinite(lacking).all(axis=1)] = 0.0
+        return here, lacking, z[:q], np.abs(found.value[:q] - value)
+
+    def _turned(
+        self, there: Bends, free_t: Flags, free_xi: Flags, value: Array, near: float
+    ) -> tuple[tuple[Array, Array, Array], tuple[Array, Array], Flags]:
+        """The inverse of the second derivatives where these turn: by time twice, by both, by xi/l
+        twice, (q,) each; how far in time and along the link places are from the peaks by one step
+        of Newton's method; and which of those that are free to move along the link are near them.
+
+        It is zero along what does not turn, as of a level peak.
+        """
+        size, sign = np.abs(value), np.sign(value)
+        span = max(self.span, _TINY)
+        tt, tx, xx = there.changes[:, 0, 0], there.changes[:, 1, 0], there.changes[:, 1, 1]
+        by_t, by_xi = there.gradient[:, 0], there.gradient[:, 1]
         with np.errstate(all="ignore"):
-            away = np.where(rate != 0.0, np.abs(gaps / rate), np.inf)
-        for row in range(times.size):
-            k = int(np.argmin(away[row]))
-            if away[row, k] <= near:
-                found[row], which[row] = -there.slopes[row * many + k] / rate[row, k], k
-    if knots.size:
-        at_knots = (np.abs(times[:, None] - knots) <= near).any(axis=1)
-        found[at_knots], which[at_knots] = 0.0, -1
-    return found[back], which[back]
+            turns_t = free_t & (sign * tt * span**2 < -_FLAT * size)
+            bends_xi, det = sign * xx < -_FLAT * size, tt * xx - tx * tx
+            for _ in range(2):
+                turns_xi = free_xi & bends_xi
+                both = turns_t & turns_xi & (det > 0.0)
+                inner_t = np.where(both, xx / det, np.where(turns_t, 1.0 / tt, 0.0))
+                across = np.where(both, -tx / det, 0.0)
+                inner_xi = np.where(both, tt / det, np.where(turns_xi & ~turns_t, 1.0 / xx, 0.0))
+                away_t, away_xi = inner_t * by_t + across * by_xi, across * by_t + inner_xi * by_xi
+                far = np.abs(away_xi) > near
+                if not far.any():
+                    break
+                free_xi = free_xi & ~far
+        far = np.abs(away_t) > _NEAR_T * self.step
+        away_t[far], away_xi[far] = 0.0, 0.0
+        return (inner_t, across, inner_xi), (away_t, away_xi), free_xi & ~far
+
+    def _on_their_side(self, chosen: Numbers, peaks: Peaks, off: Array) -> Array:
+        """The times (q,) at which derivatives of peaks are those of their side of a jump.
+
+        A peak that is at a jump is so near to it that rounding tells on which side its time is:
+        what was found there, ``off`` (q,) by so much, may be of the other one. It is as large as
+        the peak a little before or after.
+        """
+        value, t, xi = peaks
+        times: Array = t.copy()
+        left = np.flatnonzero(off > _ASIDE * np.abs(value))
+        for reach in _REACHES:
+            if not left.size:
+                break
+            beside = np.clip(
+                t[left] + reach * self.near * np.array([[-1.0], [1.0]]),
+                self.instants[0],
+                self.instants[-1],
+            ).ravel()
+            twice = np.concatenate([left, left])
+            z = self.slopes.iterated(self.instants, self.p, beside)
+            there = self.slopes.at(beside, z, self.p, chosen[twice], xi[twice], value[twice])
+            gaps = np.abs(there.value - value[twice]).reshape(2, -1)
+            side = np.argmin(np.where(np.isnan(gaps), np.inf, gaps), axis=0)
+            here = np.arange(left.size)
+            nearer = gaps[side, here] < _NEARER * off[left]
+            times[left[nearer]] = beside.reshape(2, -1)[side, here][nearer]
+            left = left[~nearer]
+        return times
+
+    def _switching(self, t: Array, z: Array) -> tuple[Array, Numbers]:
+        """The derivatives by all parameters of the times (n,) at which something switches, (n,
+        parameters), NaN where nothing does; and the number of the switch, -1 where a motion's knot
+        or nothing does.
+        """
+        switches, first = self.slopes.points.switches, len(self.slopes.points.quantities)
+        times, at, back = np.unique(t, return_index=True, return_inverse=True)
+        knots = np.array([knot for knots in self.slopes.graph.laws.knots for knot in knots])
+        found = np.full((times.size, self.p.size), np.nan)
+        which = np.full(times.size, -1, np.intc)
+        if switches:
+            many = len(switches)
+            chosen = np.tile(np.arange(first, first + many, dtype=np.intc), times.size)
+            there = self.slopes.at(
+                np.repeat(times, many),
+                np.repeat(z[at], many, axis=0),
+                self.p,
+                chosen,
+                np.zeros(chosen.size),
+            )
+            value, rate = there.value.reshape(-1, many), there.rate.reshape(-1, many)
+            gaps = np.stack([_gap(watch, value[:, k]) for k, watch in enumerate(switches)], axis=1)
+            with np.errstate(all="ignore"):
+                away = np.where(rate != 0.0, np.abs(gaps / rate), np.inf)
+            for row in range(times.size):
+                k = int(np.argmin(away[row]))
+                if away[row, k] <= 2 * self.near:
+                    found[row], which[row] = -there.slopes[row * many + k] / rate[row, k], k
+        if knots.size:
+            at_knots = (np.abs(times[:, None] - knots) <= 2 * self.near).any(axis=1)
+            found[at_knots], which[at_knots] = 0.0, -1
+        return found[back], which[back]
+
+    def curvature(self, chosen: Numbers, peaks: Peaks, own: PeakSlopes, nothing: Flags) -> Array:
+        """The second derivatives (q, parameters, parameters) of peaks whose gradient is ``own``.
+
+        NaN where a peak has none; one that is ``nothing`` (q,) but rounding stays where it is.
+        """
+        value, t, xi = peaks
+        found = np.full((t.size, self.p.size, self.p.size), np.nan)
+        sound = np.isfinite(own.slopes).all(axis=1) & np.isfinite(value)
+        if sound.any() and self.p.size:
+            there = PeakSlopes._make(array[sound] for array in own)
+            second = self._curvature(chosen[sound], value[sound], xi[sound], there, nothing[sound])
+            found[sound] = (second + np.swapaxes(second, 1, 2)) / 2
+        return found
+
+    def _curvature(
+        self, chosen: Numbers, value: Array, xi: Array, own: PeakSlopes, nothing: Flags
+    ) -> Array:
+        first, last = self.instants[[0, -1]]
+        smooth = np.isin(own.kinds, (_SMOOTH, _LINK_END))
+        inside = (xi > SAME_PLACE) & (xi < 1.0 - SAME_PLACE)
+        free_t, free_xi = smooth & (self.step > 0.0) & ~nothing, inside & ~nothing
+        # The search knows a place to the root of its rounding: one step of Newton's method leads
+        # there.
+        there = self._bends(chosen, own.t, xi, value)
+        _, away, free_xi = self._turned(there, free_t, free_xi, value, _NEAR_XI)
+        there = self._bends(
+            chosen,
+            np.clip(own.t - away[0], first, last),
+            np.where(np.isnan(xi), xi, xi - away[1]),
+            value,
+        )
+        (inner_t, across, inner_xi), *_ = self._turned(there, free_t, free_xi, value, np.inf)
+        # What moves with an end or a switch, along each way of a parameter.
+        moved = own.moved
+        changes = there.changes[:, 2:]
+        pulled = changes[:, :, :2] + np.einsum("qw,qi->qwi", moved, there.changes[:, 0, :2])
+        inner = np.array([[inner_t, across], [across, inner_xi]])
+        along = -np.einsum("ijq,qwj->qwi", inner, pulled)
+        along[:, :, 0] += moved
+        whole = changes + np.einsum("qwi,qij->qwj", along, there.changes[:, :2])
+        second = (
+            whole[:, :, 2:]
+            + whole[:, :, :1] * moved[:, None, :]
+            + there.gradient[:, :1, None] * self._moved_bends(own)
+        )
+        # A level peak that slopes elsewhere for other parameters jumps there.
+        level = free_t & (inner_t == 0.0)
+        tilts = np.abs(pulled[:, :, 0] * self.p) * (last - first) > _STILL * np.abs(value)[:, None]
+        second[level & tilts.any(axis=1)] = np.nan
+        return np.asarray(second)
+
+    def _bends(self, chosen: Numbers, t: Array, xi: Array, value: Array | None) -> Bends:
+        """The second derivatives by time, xi/l and all parameters of what is ``chosen``."""
+        z = self.slopes.iterated(self.instants, self.p, t)
+        ways = unit_ways(range(self.p.size), self.p.size)
+        return self.slopes.bends(t, z, self.p, chosen, xi, value, ways)
+
+    def _moved_bends(self, own: PeakSlopes) -> Array:
+        """The second derivatives (q, parameters, parameters) of the times of peaks that go with an
+        end or a switch; else 0.
+        """
+        first, last = self.instants[[0, -1]]
+        found = np.zeros((own.t.size, self.p.size, self.p.size))
+        at_end = own.kinds == _END
+        sooner = own.t[at_end] - first <= last - own.t[at_end]
+        found[at_end] = np.where(sooner[:, None, None], *self.ends.bends)
+        some = np.flatnonzero(own.switch >= 0)
+        if some.size:
+            chosen = len(self.slopes.points.quantities) + own.switch[some]
+            there = self._bends(chosen, own.t[some], np.full(some.size, np.nan), None)
+            second = np.delete(np.delete(there.changes, 1, axis=1), 1, axis=2)
+            found[some] = implicit_bends(there.gradient[:, 0], second, own.moved[some])
+        return found
+
+    def ties(self, chosen: Numbers, value: Array, own: PeakSlopes, others: Array) -> Flags:
+        """Which of the peaks (q,), whose gradient is ``own``, tie with another one of their
+        quantity, which is as large and changes otherwise with the parameters.
+
+        The largest of both then has a kink at these parameters, and no derivative. What is as large
+        and changes alike, as the same peak in the next turn, is no tie. ``others`` (q, n, 4) are
+        the local peaks that are as large, as :class:`.Listed` has them.
+        """
+        found = np.zeros(value.size, bool)
+        there = (
+            ~np.isnan(others[..., 0])
+            & (np.isfinite(value) & np.isfinite(own.slopes).all(axis=1))[:, None]
+        )
+        # Of one there is no other.
+        there &= np.count_nonzero(there, axis=1)[:, None] > 1
+        if not there.any() or not self.p.size:
+            return found
+        numbers, (_, t, xi, values) = np.nonzero(there)[0], others[there].T
+        sizes = np.zeros(numbers.size, bool)
+        changed = self.gradient(chosen[numbers], (values, t, xi), sizes).slopes
+        sized, told = (
+            np.sign(values)[:, None] * changed,
+            np.sign(value[numbers])[:, None] * own.slopes[numbers],
+        )
+        # What rounding leaves of a slope that is nothing is no difference.
+        noise = _NOISE * np.nanmax(np.abs(own.slopes), axis=0) + _FAINT * np.abs(
+            value[numbers, None]
+        ) / np.where(self.p == 0.0, 1.0, np.abs(self.p))
+        other = np.abs(sized - told) > _OTHERWISE * np.maximum(np.abs(sized), np.abs(told)) + noise
+        found[numbers[other.any(axis=1)]] = True
+        return found
+
+    def means(self, chosen: Numbers) -> MeanSlopes:
+        """The derivatives of means of what is ``chosen`` (e,): of sums by trapezia, whose instants
+        may move.
+        """
+        instants, (first, last) = self.instants, self.ends.slopes
+        share = np.linspace(0.0, 1.0, instants.size)[:, None]
+        moved = (1.0 - share) * first + share * last
+        z, nowhere = (
+            self.slopes.iterated(instants, self.p, instants),
+            np.full_like(instants, np.nan),
+        )
+        found = []
+        for number in chosen:
+            every = np.full(instants.size, number, np.intc)
+            there = self.slopes.at(instants, z, self.p, every, nowhere)
+            changes = there.slopes + there.rate[:, None] * moved
+            found.append(mean_slopes(instants, there.value, changes))
+        size = (2, chosen.size, self.p.size)
+        mean, rms = np.array(found).swapaxes(0, 1) if found else np.empty(size)
+        return MeanSlopes(mean, rms)
+
+
+def mean_slopes(t: Array, value: Array, changes: Array) -> MeanSlopes:
+    """The derivatives of the mean of values (t,), which have ``changes`` (t, parameters), over the
+    instants that count.
+    """
+    counts = counted(value)
+    weights, value = shares(t, counts), np.where(counts, value, 0.0)
+    whole = np.where(counts[:, None], changes, 0.0)
+    with np.errstate(all="ignore"):
+        rms = (weights * value) @ whole / np.sqrt(weights @ value**2)
+    return MeanSlopes(weights @ whole, rms)
+
+
+def faint(value: Array, largest: Array) -> Flags:
+    """Which peaks are zero but for rounding, beside the ``largest`` of the unit of each."""
+    return np.asarray(np.abs(value) <= NOTHING * largest)
 
 
 def _gap(watch: Watch, values: Array) -> Array:

@@ -4,28 +4,22 @@ time and xi/l.
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator, Mapping, Sequence
 
 import casadi as ca
 import numpy as np
 
-from .. import codegen
 from ..base.arrays import Array
 from ..base.quantities import Output
 from ..base.room import require
 from ..base.symbolic import symbolic
-from ..codegen.stages import plain
 from ..equations.program import Program
 from ..equations.reciprocals import differentiable
-from ..instants.backends import compiled
 from ..instants.laws import made_of
 from ..instants.rung import Rung
 from ..instants.solution import Solution
-from .batches import at_points
-from .following import iterated
-from .sections import section_slopes
-from .total import total
+from .jacobian import section_slopes, total
+from .slopes import Batch, Loops
 
 _BLOCK = 1 << 20
 """Numbers of one argument that are made ready at once."""
@@ -77,21 +71,10 @@ def at_instants(
     function = ca.Function(
         "at_once", [time, z, values], [slopes], ["t", "z", "p"], ["found"], {"cse": True}
     )
-    extra = tuple(shlex.split(rung.flags))
-
-    def build(compiler: codegen.Compiler) -> tuple[codegen.BatchLibrary, codegen.Library | None]:
-        followed = (
-            None
-            if graph.newton is None
-            else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
-        )
-        return codegen.load_batch(function, compiler, extra), followed
-
-    made = compiled(rung, build)
-    library, following = (None, None) if made is None else made[1]
-    place = iterated(graph, following, t, p, t)
+    place = Loops.of(graph, rung).at(t, p, t)
     given = {"t": (t[:, None], 1), "z": (place, 1), "p": (p[None], 0)}
-    return at_points(function, library, t.size, given).reshape(t.size, len(rows), 1 + len(by))
+    found = Batch.of(function, rung).at(t.size, given)
+    return found.reshape(t.size, len(rows), 1 + len(by))
 
 
 def _along(
@@ -107,11 +90,7 @@ def _along(
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
     function = section_slopes(graph.data, link, columns, by)
-    made = compiled(
-        rung,
-        lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))),
-    )
-    library, xi, forces = None if made is None else made[1], solution.xi, table.forces
+    batch, xi, forces = Batch.of(function, rung), solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
     unknown = np.full((solution.t.size, 1 + len(by)), np.nan)
     both = np.stack([found.get(column, unknown) for column in columns], axis=1)
@@ -126,9 +105,7 @@ def _along(
             "xi": (np.tile(xi, many)[:, None], 1),
             "p": (p[None], 0),
         }
-        grids[some] = at_points(function, library, many * xi.size, given).reshape(
-            many, xi.size, len(forces), len(by)
-        )
+        grids[some] = batch.at(many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
     for k, force in enumerate(forces):
         if not made_of(left_open, link, force, table):
             yield Output("section", link, force), grids[:, :, k]

@@ -19,35 +19,124 @@ from ..base.quantities import Output
 from ..base.symbolic import symbolic_property
 from ..codegen.stages import plain
 from ..equations.program import Program
-from ..instants.backends import compiled
+from ..instants.backends import begun, compiled, follow
 from ..instants.rung import Rung
 from ..summits.sharpness import Sharpness
-from .following import iterated
-from .points import PointFunction
+from .jacobian import PointFunction
 
 Numbers = npt.NDArray[np.intc]
 
 
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """A ``function`` of one output at many points: by the code of a ``library``, or by CasADi's
+    virtual machine.
+    """
+
+    function: Any
+    library: codegen.BatchLibrary | None = None
+
+    @classmethod
+    def of(cls, function: Any, rung: Rung) -> Batch:
+        """Compile it by the compiler of a rung; always in doubles."""
+        found = compiled(
+            rung, lambda compiler: codegen.load_batch(function, compiler, _flags(rung))
+        )
+        return cls(function, None if found is None else found[1])
+
+    def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]]) -> Array:
+        """What it is at n points, (n, result): of each argument its rows, and how many points one
+        is for, 0 for all. Of what is ``chosen`` the numbers are given.
+        """
+        into = np.full((n, self.function.numel_out(0)), np.nan)
+        if self.library is not None:
+            self.library.evaluate(n, given, into)
+            return into
+        columns = []
+        for name, (rows, every) in given.items():
+            each = np.repeat(rows, every, axis=0)[:n] if every else rows
+            height, width = self.function.size_in(name)
+            if name == codegen.CHOSEN:
+                each = np.eye(height)[each]
+            columns.append(
+                each.reshape(-1, height).T if width * height else np.zeros((height, width))
+            )
+        into[:] = np.asarray(self.function(*columns).full()).T.reshape(n, -1)
+        return into
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """The iterated coordinates of a graph, if it has any, at places between instants."""
+
+    graph: Program
+    library: codegen.Library | None
+
+    @classmethod
+    def of(cls, graph: Program, rung: Rung) -> Loops:
+        """Compile what follows them by the compiler of a rung."""
+        if graph.newton is None:
+            return cls(graph, None)
+        found = compiled(
+            rung,
+            lambda compiler: codegen.load(
+                codegen.emit(graph, plain(graph)), compiler, _flags(rung)
+            ),
+        )
+        return cls(graph, None if found is None else found[1])
+
+    def at(self, t: Array, p: Array, places: Array) -> Array:
+        """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are
+        followed.
+        """
+        if self.graph.newton is None:
+            return np.zeros((places.size, 0))
+        count = self.graph.instant.size1_in("z")
+        times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
+        guess = np.array(begun(self.graph, float(times[0]), p), float)
+        z = np.zeros((count, times.size))
+        if self.library is not None:
+            self.library.follow(times, p, guess, z, np.zeros(times.size, np.intc))
+        else:
+            z[:] = follow(self.graph, times, p, guess)[0]
+        return np.ascontiguousarray(z[:, back[t.size :]].T)
+
+
 class AtPoints(NamedTuple):
-    """Value of n points (n,), its derivative by time (n,), and those by all parameters (n,
+    """Of n points the value (n,), and its derivatives by time, xi/l and all parameters, (n, 2 +
     parameters).
     """
 
     value: Array
-    rate: Array
-    slopes: Array
+    gradient: Array
+
+    @property
+    def rate(self) -> Array:
+        """The derivative by time, (n,)."""
+        return self.gradient[:, 0]
+
+    @property
+    def slopes(self) -> Array:
+        """The derivatives by all parameters, (n, parameters)."""
+        return self.gradient[:, 2:]
+
+
+class Bends(NamedTuple):
+    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it
+    changes along w ways, (n, w, 2 + parameters)."""
+
+    gradient: Array
+    changes: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Quantities of a scene and their derivatives by all parameters, at points: by ``library``, or
-    by the virtual machine.
-    """
+    """Quantities of a scene and their derivatives by all parameters, at points."""
 
-    graph: Program
     points: PointFunction
-    library: codegen.PointsLibrary | None
-    following: codegen.Library | None
+    rung: Rung
+    first: Batch
+    loops: Loops
 
     @classmethod
     def of(
@@ -56,23 +145,13 @@ class Slopes:
         """Derive and compile those of some quantities, by the compiler of a rung; always in
         doubles.
         """
-        points, extra = (
-            PointFunction.of(graph, quantities, sharpness),
-            tuple(shlex.split(rung.flags)),
-        )
+        points = PointFunction.of(graph, quantities, sharpness)
+        return cls(points, rung, Batch.of(points.function, rung), Loops.of(graph, rung))
 
-        def build(
-            compiler: codegen.Compiler,
-        ) -> tuple[codegen.PointsLibrary, codegen.Library | None]:
-            followed = (
-                None
-                if graph.newton is None
-                else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
-            )
-            return codegen.load_points(points.function, compiler, extra), followed
-
-        found = compiled(rung, build)
-        return cls(graph, points, *((None, None) if found is None else found[1]))
+    @property
+    def graph(self) -> Program:
+        """What they are quantities of."""
+        return self.points.graph
 
     @cached_property
     def numbers(self) -> Mapping[Output, int]:
@@ -86,71 +165,88 @@ class Slopes:
         iterated coordinates ``z`` (n, z) there.
 
         With ``value`` (n,) a place along a link moves with the station that is there, on the side
-        on which the force is nearer to that; else it stands still. A ratio of what is not along a
-        link may be NaN.
+        on which the force is nearer to that, unless it is NaN; else it stands still. A ratio of
+        what is not along a link may be NaN.
         """
-        n = t.size
-        found = AtPoints(np.empty(n), np.empty(n), np.empty((n, p.size)))
-        moving = np.full(n, 0.0 if value is None else 1.0)
-        ratios = np.where(np.isnan(xi), 0.0, xi)
-        values = np.zeros(n) if value is None else np.where(np.isfinite(value), value, 0.0)
-        given: dict[str, Any] = {
-            "t": t,
-            "z": z,
-            "p": p,
-            "xi": ratios,
-            "value": values,
-            "moving": moving,
-        }
-        given = {name: np.ascontiguousarray(array, float) for name, array in given.items()}
-        if self.library is not None:
-            numbers = {"chosen": np.ascontiguousarray(chosen, np.intc)}
-            self.library.evaluate(
-                given | numbers, {"found": found.value, "rate": found.rate, "slopes": found.slopes}
-            )
-        else:
-            _interpreted(self.points, given, chosen, found, np.arange(n))
+        given = _given(t, z, p, chosen, xi, value)
+        found = self.first.at(t.size, given)
         # A sum over all quantities, of which one has a weight, is no number where any of them is
         # none: as where friction rests that the chosen one has nothing to do with.
-        broken = ~np.isfinite(np.column_stack(found)).all(axis=1) & (
-            chosen < len(self.points.quantities)
-        )
+        broken = ~np.isfinite(found).all(axis=1) & (chosen < len(self.points.quantities))
         for k in np.unique(chosen[broken]):
             here = np.flatnonzero(broken & (chosen == k))
-            _interpreted(self._alone(int(k)), given, np.zeros(here.size, np.intc), found, here)
-        return found
+            own = {
+                name: (rows[here] if each else rows, each) for name, (rows, each) in given.items()
+            }
+            own[codegen.CHOSEN] = np.zeros(here.size, np.intc), 1
+            found[here] = self._alone(int(k)).at(here.size, own)
+        return AtPoints(found[:, 0], found[:, 1:])
 
-    def _alone(self, number: int) -> PointFunction:
-        """The function of one quantity alone, which nothing else has a part in."""
-        if number not in self._single:
-            self._single[number] = PointFunction.of(
-                self.graph, self.points.quantities[number : number + 1]
-            )
-        return self._single[number]
+    def bends(
+        self,
+        t: Array,
+        z: Array,
+        p: Array,
+        chosen: Numbers,
+        xi: Array,
+        value: Array | None,
+        ways: Array,
+    ) -> Bends:
+        """How the derivatives of :meth:`at` change along each of ``ways`` (w, 2 + parameters) in
+        time, in xi/l and in the parameters. The iterated coordinates must close the loops.
 
-    @symbolic_property
-    def _single(self) -> dict[int, PointFunction]:
-        """Requested parameters, by number."""
-        return {}
+        They are derived and compiled when they are first asked for.
+        """
+        n, w = t.size, len(ways)
+        given = _given(t, z, p, chosen, xi, value)
+        given = {name: (rows, each * w) for name, (rows, each) in given.items()}
+        found = self._second.at(n * w, given | {"way": (np.tile(ways, (n, 1)), 1)})
+        found = found.reshape(n, w, 2, 2 + p.size)
+        return Bends(found[:, 0, 0], found[:, :, 1])
 
     def iterated(self, t: Array, p: Array, places: Array) -> Array:
         """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``,
         from which they are followed.
         """
-        return iterated(self.graph, self.following, t, p, places)
+        return self.loops.at(t, p, places)
+
+    @symbolic_property
+    def _second(self) -> Batch:
+        return Batch.of(self.points.further(), self.rung)
+
+    def _alone(self, number: int) -> Batch:
+        """The function of one quantity alone, which nothing else has a part in."""
+        if number not in self._single:
+            own = self.points.quantities[number : number + 1]
+            self._single[number] = Batch(PointFunction.of(self.graph, own).function)
+        return self._single[number]
+
+    @symbolic_property
+    def _single(self) -> dict[int, Batch]:
+        """Requested parameters, by number."""
+        return {}
 
 
-def _interpreted(
-    points: PointFunction,
-    given: Mapping[str, Array],
-    chosen: Numbers,
-    found: AtPoints,
-    here: npt.NDArray[np.intp],
-) -> None:
-    """Put into ``found`` what is ``chosen`` at the points ``here``, by CasADi's virtual machine."""
-    ones = np.zeros((points.function.size1_in("chosen"), here.size))
-    ones[chosen, np.arange(here.size)] = 1.0
-    rows = (given[name][None, here] for name in ("xi", "value", "moving"))
-    columns = points.function(given["t"][None, here], given["z"][here].T, given["p"], *rows, ones)
-    for array, column in zip(found, columns, strict=True):
-        array[here] = column.full().T if array.ndim > 1 else column.full().ravel()
+def unit_ways(numbers: Sequence[int], parameters: int) -> Array:
+    """The ways along time, along xi/l, and along some of so many parameters, by their numbers."""
+    return np.eye(2 + parameters)[[0, 1, *(2 + k for k in numbers)]]
+
+
+def _given(
+    t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None
+) -> dict[str, tuple[npt.NDArray[Any], int]]:
+    """The arguments of a :class:`.PointFunction` at n points."""
+    known = np.zeros(t.size, bool) if value is None else np.isfinite(value)
+    return {
+        "t": (t[:, None], 1),
+        "z": (z, 1),
+        "p": (p[None], 0),
+        "xi": (np.where(np.isnan(xi), 0.0, xi)[:, None], 1),
+        "value": (np.where(known, 0.0 if value is None else value, 0.0)[:, None], 1),
+        "moving": (known.astype(float)[:, None], 1),
+        codegen.CHOSEN: (np.asarray(chosen, np.intc), 1),
+    }
+
+
+def _flags(rung: Rung) -> tuple[str, ...]:
+    return tuple(shlex.split(rung.flags))

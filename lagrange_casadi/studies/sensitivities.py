@@ -13,19 +13,16 @@ import numpy as np
 from ..arguments import public
 from ..base.arrays import Array
 from ..base.quantities import Output
-from ..base.symbolic import symbolic_property
 from ..base.vocabulary import Backend
 from ..declare.scene import Scene
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..instants.statistics import shares
-from ..sensitivity.curvatures import Curvatures
-from ..sensitivity.peaks import PeakKind, peak_slopes
+from ..sensitivity.ends import Ends
+from ..sensitivity.peaks import AS_LARGE, MovingPeaks, PeakKind, faint, mean_slopes
 from ..sensitivity.slopes import Numbers, Slopes
-from ..sensitivity.ties import AS_LARGE, ties
 from ..summits.panels import Listed
-from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
 from .peaks import ContinuousSolution, resultants
 
@@ -61,7 +58,6 @@ class Sensitivities:
     solution: Solution
     slopes: Slopes
     p: Array
-    rung: Rung
     continuous: ContinuousSolution
 
     @property
@@ -87,28 +83,23 @@ class Sensitivities:
         """
         row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
         way[0, 2 + self._number(other)] = 1.0
-        nowhere = np.full(_BLOCK, np.nan)
 
         def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
-            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[
-                :, 0, 2 + row
-            ]
+            return self.slopes.bends(t, z, self.p, chosen, xi, None, way).changes[:, 0, 2 + row]
 
         return self._made(name, second, ())
 
     def mean(self, name: str) -> Changes:
         """Derivatives of the mean of a quantity over the instants; it is no section force."""
-        values, slopes = self._over_time(name)
-        weights = shares(self.solution.t)
-        return Changes(float(values @ weights), self._named(weights @ slopes))
+        values, changes = self._over_time(name)
+        slopes = mean_slopes(self.solution.t, values, changes).mean
+        return Changes(float(values @ shares(self.solution.t)), self._named(slopes))
 
     def rms(self, name: str) -> Changes:
         """Derivatives of the root mean square; NaN if that is zero."""
-        values, slopes = self._over_time(name)
-        weights = shares(self.solution.t)
-        rms = float(np.sqrt(values**2 @ weights))
-        with np.errstate(all="ignore"):
-            return Changes(rms, self._named((weights * values) @ slopes / rms))
+        values, changes = self._over_time(name)
+        slopes = mean_slopes(self.solution.t, values, changes).rms
+        return Changes(float(np.sqrt(values**2 @ shares(self.solution.t))), self._named(slopes))
 
     def peak(self, name: str) -> Changes:
         """Derivatives of the peak of a quantity over all times of the solution's span, between the
@@ -126,15 +117,12 @@ class Sensitivities:
         values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
         xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
         chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
-        nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
-        ends = np.zeros((2, self.p.size))
-        changes = peak_slopes(
-            self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing
+        nothing = faint(values, np.array([self._largest(peak.unit) for peak in found]))
+        moving = MovingPeaks(
+            self.slopes, Ends(self.slopes.graph.laws, None, self.solution.t, self.p)
         )
-        tied = (
-            ties(self.slopes, self.solution.t, self.p, chosen, values, changes, ends, others)
-            & ~nothing
-        )
+        changes = moving.gradient(chosen, (values, t, xi), nothing)
+        tied = moving.ties(chosen, values, changes, others) & ~nothing
         every = zip(
             values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True
         )
@@ -164,7 +152,7 @@ class Sensitivities:
         unit = self.solution.unit(name)  # it refuses what is none
         output = Output.of(name)
         if not self.solution.determined(output):
-            raise DeclarationError(f"'{name}' [{unit}]: equilibrium does not determine it")
+            raise DeclarationError(f"'{name}' [{unit}]: equilibrium leaves it open")
         return output
 
     def _over_time(self, name: str) -> tuple[Array, Array]:
@@ -209,10 +197,6 @@ class Sensitivities:
             else found.reshape(solution.t.size, along.size, *size)
         )
 
-    @symbolic_property
-    def _curvatures(self) -> Curvatures:
-        return Curvatures.of(self.slopes, self.rung)
-
     def _number(self, parameter: str) -> int:
         if parameter not in self.parameters:
             raise UnknownNameError("parameter", parameter, self.parameters)
@@ -241,5 +225,5 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
         {program.outputs[part] for part in made}
         | {k for o, k in program.outputs.items() if o.along}
     )
-    slopes = Slopes.of(program, quantities, Sharpness.of(program, columns), rung := Rung(backend))
-    return Sensitivities(solution, slopes, continuous.p, rung, continuous)
+    slopes = Slopes.of(program, quantities, Sharpness.of(program, columns), Rung(backend))
+    return Sensitivities(solution, slopes, continuous.p, continuous)

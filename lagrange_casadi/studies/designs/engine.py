@@ -33,14 +33,12 @@ from ...instants.backends import begun, compiled, provenance
 from ...instants.determinacy import undetermined
 from ...instants.rung import Rung, seconds
 from ...instants.solution import Provenance
-from ...sensitivity.curvatures import Curvatures
-from ...sensitivity.peaks import PeakSlopes
+from ...sensitivity.ends import Ends
+from ...sensitivity.peaks import AS_LARGE, MeanSlopes, MovingPeaks, PeakSlopes, faint
 from ...sensitivity.slopes import Slopes
-from ...sensitivity.ties import AS_LARGE
 from ...summits.panels import TOPS, Listed
 from ...summits.sharpness import bent, with_watched
 from ..solving import checked_span, outputs_of
-from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
 from .outcome import KEPT, History, Outcome, Results, outcome_of, refuse, rows_of
 from .reduction import KeptOutputs, stages_of
@@ -403,38 +401,45 @@ class DesignEngine:
         """
         return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
 
+    def moving(self, p: Array) -> MovingPeaks:
+        """How peaks and means of a design (parameters,) change with all parameters."""
+        instants = self.times.of(p[None], asked=False)[0][0]
+        return MovingPeaks(self.slopes, Ends(self.graph.laws, self.times.timing, instants, p))
+
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
         times ``t`` and ratios ``xi``.
         """
-        return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
-
-    @symbolic_property
-    def curvatures(self) -> Curvatures:
-        """Second derivatives of peaks at points; they are derived and compiled when they are first
-        asked for.
-        """
-        return Curvatures.of(self.slopes, self.rung)
+        chosen = np.arange(value.size, dtype=np.intc)
+        return self.moving(p).gradient(chosen, (value, t, xi), self._faint(value))
 
     def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
         """The second derivatives (q, parameters, parameters) of the peaks of a design, whose
         gradient is ``own``.
         """
-        return curvature(self.curvatures, self.times, self._unit_numbers, p, (value, t, xi), own)
+        chosen = np.arange(value.size, dtype=np.intc)
+        return self.moving(p).curvature(chosen, (value, t, xi), own, self._faint(value))
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
-        """Return which of the peaks (q,) of a design, whose gradient is ``own``, tie with another
-        one: see :func:`.ties`.
+        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see
+        :meth:`.MovingPeaks.ties`.
         """
         others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
-        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, others)
+        chosen = np.arange(value.size, dtype=np.intc)
+        return self.moving(p).ties(chosen, value, own, others) & ~self._faint(value)
+
+    def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
+        """Which peaks are zero but for rounding: what is nothing beside the largest of its unit."""
+        largest = np.zeros(value.size)
+        np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(value), np.abs(value), 0.0))
+        return faint(value, largest[self._unit_numbers])
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
         """Derivatives by all parameters of the means of :attr:`efforts` over time, and of their
         root mean squares.
         """
         chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
-        return mean_slopes(self.slopes, self.times, p, chosen)
+        return self.moving(p).means(chosen)
 
     def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
         """Derivatives for designs, (n, 2, e, parameters), the means first; NaN without a result."""

@@ -26,9 +26,9 @@ from ...equations.model_data import template
 from ...errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ...instants.rung import Rung
 from ...instants.solution import Solution
+from ...sensitivity.peaks import MeanSlopes
 from ..request import Request
 from .engine import DesignEngine
-from .gradients import MeanSlopes
 from .outcome import KEPT, Outcome
 
 _Values: TypeAlias = Mapping[str, Any] | None

@@ -27,7 +27,7 @@ from ...equations.program import Program
 from ...equations.reciprocals import differentiable
 from ...equations.section_function import Place
 from ...errors import DeclarationError
-from ...sensitivity.points import resultant
+from ...sensitivity.jacobian import resultant
 from ..designs.times import DesignTimes
 from .fatigue import Tired, tired_link
 from .look import Point

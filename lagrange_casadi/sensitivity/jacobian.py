@@ -1,0 +1,273 @@
+"""Total derivatives of what a graph tells, by time, by the ratio xi/l and by the parameters: CasADi
+functions of an instant and a place.
+
+They are those at a time and a place that stand still. Driven coordinates change with the parameters
+of their laws, closed forms are differentiated as they stand, and iterated coordinates change by the
+implicit function theorem: where Phi(z, t, d, p) = 0 the step -Phi_z^-1 Phi of Newton's method has
+the derivative of z by t, d and p for its own at fixed z. Nothing is differentiated through
+iterations. Along the solution Phi stays 0, so that what is differentiated once more, with the
+iterated coordinates going along, is exact too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..base.quantities import Output
+from ..base.symbolic import Graphs, symbolic
+from ..base.tables import table_of
+from ..declare.limits import END
+from ..equations.checks import Column
+from ..equations.model_data import ModelData
+from ..equations.program import Program
+from ..equations.reciprocals import differentiable
+from ..equations.section_function import Place, Section
+from ..summits.sharpness import Kind, Sharpness, Watch
+
+SAME_PLACE = 1e-9
+"""How near to a station a peak along a link is that is at it, as a ratio to the length."""
+
+_SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
+
+
+@dataclass(frozen=True, eq=False)
+class PointFunction(Graphs):
+    """``function(t, z, p, xi, value, moving, chosen) -> found`` of some quantities of a graph: the
+    value, and its derivatives by time [1/s], by xi/l and by all parameters.
+
+    ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the
+    ``quantities`` it may be one of the ``switches``: see :class:`.Watch`. ``xi`` is the ratio at
+    which a section force is meant; with ``moving`` it moves with the station that is there, on the
+    side on which the force is nearer to ``value``.
+
+    It is made backwards, from one quantity to all parameters, so it costs as much for many
+    parameters as for one.
+    """
+
+    graph: Program
+    quantities: tuple[Output, ...]
+    switches: tuple[Watch, ...]
+    function: Any
+
+    @classmethod
+    @symbolic
+    def of(
+        cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
+    ) -> PointFunction:
+        """That of some quantities: columns of a graph, resultants of such, section forces; and what
+        makes kinks and jumps.
+
+        Without a ``sharpness`` there is nothing of the latter.
+        """
+        watches = () if sharpness is None else sharpness.watches
+        sharp = [k for k, watch in enumerate(watches) if watch.kind in _SWITCHES]
+        instant = differentiable(graph.instant)
+        t, _, rate, acceleration, _, p = inputs = instant.sx_in()
+        xi, value, moving = (ca.SX.sym(name) for name in ("xi", "value", "moving"))
+        chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
+        out = instant(*inputs)
+        columns: dict[Column, Any] = {output: out[k] for output, k in graph.outputs.items()}
+        rows, weights = _rows(graph.data, p, columns, quantities, xi, value, moving, chosen)
+        if sharpness is not None and sharp:
+            rows += ca.vertsplit(differentiable(sharpness.watched)(*inputs)[sharp])
+            weights += ca.vertsplit(chosen[len(quantities) :])
+        # The weights choose, and are not differentiated.
+        held = ca.SX.sym("held", len(weights))
+        adjoint = ca.jtimes(ca.vertcat(*rows), ca.vertcat(*inputs, xi), held, True)
+        by_t, by_drives, by_p = _backwards(graph, inputs, adjoint[:-1, :])
+        by_t += ca.dot(ca.vertcat(rate, acceleration, graph.laws.jerk()(t, p)), by_drives)
+        found = ca.vertcat(ca.dot(held, ca.vertcat(*rows)), by_t, adjoint[-1], by_p)
+        found = ca.substitute(found, held, ca.vertcat(*weights))
+        names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
+        names += ["xi", "value", "moving", "chosen"]
+        every = [*inputs, xi, value, moving, chosen]
+        at_drives = ca.Function(
+            "at_drives", every, [ca.densify(found)], names, ["found"], {"cse": True}
+        )
+        given = at_drives.sx_in()
+        given[1:4] = graph.motion.call([given[0], given[5]])
+        made = at_drives(*given)
+        every, names = [given[0], *given[4:]], [names[0], *names[4:]]
+        return cls(
+            graph,
+            tuple(quantities),
+            tuple(watches[k] for k in sharp),
+            ca.Function("at_once", every, [made], names, ["found"], {"cse": True}),
+        )
+
+    @symbolic
+    def further(self) -> Any:
+        """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: the derivatives that
+        ``function`` has, and how they change along a ``way`` of time, xi/l and the parameters.
+
+        Raises :class:`.DeclarationError` for a motion by samples that does not tell its knots.
+        """
+        t, z, p, xi, *_ = inputs = self.function.sx_in()
+        names = self.function.name_in()
+        gradient = self.function(*inputs)[1:]
+        way = ca.SX.sym("way", 2 + p.numel())
+        of, along = [t, xi, p], [way[0], way[1], way[2:]]
+        if self.graph.newton is not None:
+            step = self.graph.newton.step(z, t, self.graph.motion(t, p)[0], p)[0]
+            along.append(ca.jtimes(step, ca.vertcat(t, p), ca.vertcat(way[0], way[2:])))
+            of.append(z)
+        change = ca.jtimes(gradient, ca.vertcat(*of), ca.vertcat(*along))
+        return ca.Function(
+            "at_once",
+            [*inputs, way],
+            [ca.densify(ca.vertcat(gradient, change))],
+            [*names, "way"],
+            ["found"],
+            {"cse": True},
+        )
+
+
+def total(graph: Program, rows: Sequence[int], by: Sequence[int]) -> Any:
+    """``total(t, d, d_rate, d_acceleration, z, p) -> slopes``: of some ``rows`` of a graph by some
+    parameters, by their numbers.
+
+    ``slopes`` is (parameters, rows), dense. It is made forward, a sweep a parameter, unless there
+    are fewer rows: then backwards, a sweep a row.
+    """
+    instant = differentiable(graph.instant)
+    t, d, rate, acceleration, z, p = inputs = instant.sx_in()
+    out, of = instant(*inputs)[list(rows)], ca.vertcat(d, rate, acceleration, z, p)
+    if len(by) > len(rows):
+        adjoint = ca.jtimes(out, ca.vertcat(*inputs), ca.SX.eye(len(rows)), True)
+        slopes = _backwards(graph, inputs, adjoint)[2][list(by), :]
+    else:
+        seeds = _seeds(p.numel(), by)
+        moved = [ca.jtimes(part, p, seeds) for part in graph.motion(t, p)]
+        loops = ca.SX(0, len(by))
+        if graph.newton is not None:
+            step = graph.newton.step(z, t, d, p)[0]
+            loops = ca.jtimes(step, ca.vertcat(d, p), ca.vertcat(moved[0], seeds))
+        slopes = ca.jtimes(out, of, ca.vertcat(*moved, loops, seeds)).T
+    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
+    return ca.Function("total", inputs, [ca.densify(slopes)], names, ["slopes"], {"cse": True})
+
+
+def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Sequence[int]) -> Any:
+    """``sections(columns, slopes, xi, p) -> changes``: those of all section forces of a link,
+    (parameters, forces), at a ratio.
+
+    ``columns`` are what goes into them, at an instant; ``slopes`` (parameters, columns) how that
+    changes. At a station a force is that on its tip's side.
+    """
+    table, p = table_of(data.space), ca.SX.sym("p", len(data.parameters))
+    values, slopes, xi = (
+        ca.SX.sym("columns", len(columns)),
+        ca.SX.sym("slopes", len(by), len(columns)),
+        ca.SX.sym("xi"),
+    )
+    section = data.section(link, dict(zip(columns, ca.vertsplit(values), strict=True)), p)
+    own = {force: section.at(force, Place(xi), END["double"]) for force in table.sections}
+    seeds = ca.vertcat(slopes.T, _seeds(p.numel(), by))
+    found = ca.jtimes(ca.vertcat(*own.values()), ca.vertcat(values, p), seeds)
+    changes = dict(zip(own, ca.vertsplit(found), strict=True))
+    rows = []
+    for force in table.forces:
+        parts = table.parts("section", force)
+        weights = _weights([own[part] for part in parts])
+        rows.append(sum(w * changes[part] for w, part in zip(weights, parts, strict=True)))
+    given, names = [values, slopes, xi, p], ["columns", "slopes", "xi", "p"]
+    found = ca.densify(ca.vertcat(*rows).T)
+    return ca.Function("at_once", given, [found], names, ["changes"], {"cse": True})
+
+
+def resultant(parts: Sequence[Any]) -> Any:
+    """The size of what has these components, of one its value."""
+    return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))
+
+
+def _weights(parts: Sequence[Any]) -> list[Any]:
+    """What a resultant's change takes of those of its components: it goes along with what goes
+    along it.
+    """
+    if len(parts) == 1:
+        return [1.0]
+    size = resultant(parts)
+    return [part / ca.if_else(size > 0.0, size, 1.0) for part in parts]
+
+
+def _backwards(graph: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any, Any, Any]:
+    """The derivatives by time, by the drives' coordinates, rates and accelerations, and in total by
+    the parameters, of what has an ``adjoint``, (inputs, n), by the ``inputs`` of an instant.
+    """
+    t, d, _, _, z, p = inputs
+    by_t, by_d, by_rate, by_acceleration, by_z, by_p = ca.vertsplit(adjoint, _ends(inputs))
+    if graph.newton is not None:
+        step = graph.newton.step(z, t, d, p)[0]
+        more = ca.jtimes(step, ca.vertcat(t, d, p), by_z, True)
+        more_t, more_d, more_p = ca.vertsplit(more, _ends([t, d, p]))
+        by_t, by_d, by_p = by_t + more_t, by_d + more_d, by_p + more_p
+    by_drives = ca.vertcat(by_d, by_rate, by_acceleration)
+    driven = ca.vertcat(*graph.motion(t, p))
+    return by_t, by_drives, by_p + ca.jtimes(driven, p, by_drives, True)
+
+
+def _seeds(count: int, by: Sequence[int]) -> Any:
+    """How all parameters change with some of them."""
+    return ca.SX.eye(count)[:, list(by)]
+
+
+def _ends(parts: Sequence[Any]) -> list[int]:
+    """Where each of some parts that stand below each other begins, and where the last one ends."""
+    ends = [0]
+    for part in parts:
+        ends.append(ends[-1] + part.numel())
+    return ends
+
+
+def _rows(
+    data: ModelData,
+    p: Any,
+    columns: dict[Column, Any],
+    quantities: Sequence[Output],
+    xi: Any,
+    value: Any,
+    moving: Any,
+    chosen: Any,
+) -> tuple[list[Any], list[Any]]:
+    """Rows of which a sum is the quantity that is meant, and their weights in it."""
+    table = table_of(data.space)
+    rows: list[Any] = []
+    weights: list[Any] = []
+    links: dict[str, Section] = {}
+
+    def add(parts: Sequence[Any], weight: Any) -> None:
+        rows.extend(parts)
+        weights.extend(weight * own for own in _weights(parts))
+
+    for k, quantity in enumerate(quantities):
+        if quantity.group != "section":
+            add(
+                [columns[part] for part in quantity.components(table) if part in columns], chosen[k]
+            )
+            continue
+        link = links.setdefault(quantity.part, data.section(quantity.part, columns, p))
+        names, left = table.parts("section", quantity.member), ca.SX(1.0)
+        marks = link.marks
+        here = {
+            id(place): [link.at(name, place, END["double"]) for name in names] for place in marks
+        }
+        sizes = {key: resultant(parts) for key, parts in here.items()}
+        for place in marks:
+            twins = [
+                other
+                for other in marks
+                if other.station == place.station and other is not place and place.station
+            ]
+            nearer = ca.SX(1.0)
+            for twin in twins:
+                own, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
+                nearer = own < others if place.side == "base" else own <= others
+            taken = left * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
+            left = left - taken
+            add(here[id(place)], chosen[k] * taken)
+        add([link.at(name, Place(xi), END["double"]) for name in names], chosen[k] * left)
+    return rows, weights
