@@ -96,8 +96,8 @@ def dead_centre(graph: Program, precision: Precision, closure: str) -> float:
 
 
 def beside(graph: Program, out: Array, outside: float) -> Array:
-    """What stands beside the checks of each instant of columns ``out`` (columns, t), (bounds, t):
-    see :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
+    """Values beside the checks of each instant of columns ``out`` (columns, t), (bounds, t): see
+    :class:`.Bound`. Closures are ``outside`` before the first instant and after the last.
     """
     count = out.shape[-1]
     seen = [

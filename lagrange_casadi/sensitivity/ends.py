@@ -30,7 +30,7 @@ class Ends:
 
     @symbolic_property
     def slopes(self) -> Array:
-        """Their derivatives by all parameters, (2, parameters) [s]."""
+        """Derivatives of both ends by all parameters, (2, parameters) [s]."""
         if self._still:
             return np.zeros((2, self.p.size))
         gradients = self._gaps(lambda gap, by: ca.gradient(gap, by).T)[:, 0]
@@ -51,8 +51,8 @@ class Ends:
         return self.timing is None or self.timing.shared or not self.p.size
 
     def _gaps(self, derivatives: Callable[[Any, Any], Any]) -> Array:
-        """Of each end the derivatives, (2, rows, 1 + parameters), by time and by all parameters, of
-        how far it is from where it should be.
+        """Derivatives, (2, rows, 1 + parameters), by time and by all parameters, of each end's
+        distance from its target.
         """
         assert self.timing is not None
         t, values, joint = ca.SX.sym("t"), ca.SX.sym("p", self.p.size), self.timing.joint

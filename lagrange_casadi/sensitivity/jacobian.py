@@ -29,7 +29,9 @@ from ..equations.section_function import Place, Section
 from ..summits.sharpness import Kind, Sharpness, Watch
 
 SAME_PLACE = 1e-9
-"""How near to a station a peak along a link is that is at it, as a ratio to the length."""
+"""Distance from a load point, as a ratio to the length, within which a peak along a link is at
+it.
+"""
 
 _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
@@ -58,8 +60,8 @@ class PointFunction(Graphs):
     def of(
         cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
     ) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what
-        makes kinks and jumps.
+        """Make it for some quantities: columns of a graph, resultants of such, section forces; and
+        the functions with kinks and jumps.
 
         Without a ``sharpness`` there is nothing of the latter.
         """
@@ -185,7 +187,7 @@ def resultant(parts: Sequence[Any]) -> Any:
 
 
 def _weights(parts: Sequence[Any]) -> list[Any]:
-    """What a resultant's change takes of those of its components: it goes along with what goes
+    """Derivatives of a resultant by its components: the resultant changes with the parts of changes
     along it.
     """
     if len(parts) == 1:
@@ -211,12 +213,12 @@ def _backwards(graph: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any
 
 
 def _seeds(count: int, by: Sequence[int]) -> Any:
-    """How all parameters change with some of them."""
+    """Derivatives of all parameters by some of them."""
     return ca.SX.eye(count)[:, list(by)]
 
 
 def _ends(parts: Sequence[Any]) -> list[int]:
-    """Where each of some parts that stand below each other begins, and where the last one ends."""
+    """First row of each of some parts that stand below each other, and the end of the last one."""
     ends = [0]
     for part in parts:
         ends.append(ends[-1] + part.numel())

@@ -1,4 +1,4 @@
-"""How peaks and means change with parameters, to first and second order.
+"""Derivatives of peaks and means by parameters, to first and second order.
 
 A smooth peak of F(s, p) is where F_s = 0, in time and along the link. To first order its value
 changes as F does there: the envelope theorem. It moves by s' = -F_ss^-1 F_sp, and its value has the
@@ -28,7 +28,7 @@ from .jacobian import SAME_PLACE
 from .slopes import Bends, Numbers, Slopes, unit_ways
 
 AS_LARGE: dict[Precision, float] = {"double": 1e-9, "single": 1e-5}
-"""What a peak may be below another that it ties with, of itself."""
+"""Largest relative difference of two peaks that tie."""
 
 _STEEP = 1e-5
 """Relative change of a quantity in a step of time if its peak is not smooth."""
@@ -36,36 +36,34 @@ _STEEP = 1e-5
 _TINY = float(np.finfo(float).tiny)
 
 _NUDGE = 1e-3
-"""By how much a place is moved for differences: of a step between instants, and as a ratio to the
-length.
-"""
+"""Step of differences: relative to a step between instants, and as a ratio to the length."""
 
 _NEAR_T, _NEAR_XI, _NEARER_XI = 1e-2, 1e-4, 1e-5
-"""How far a smooth peak is from where it was found at most: of a step between instants, and as a
-ratio to the length; nearer by differences, which may be across a kink.
+"""Largest distance of a smooth peak from the place where it was found: in steps between instants,
+and as a ratio to the length; less for differences, which may be across a kink.
 """
 
 _FLAT, _STILL = 1e-9, 1e-6
-"""Of the peak: what it bends by over the whole span, or length, where it is level; and what a level
-peak's slope may change by.
+"""Relative change over the whole span, or length, up to which a peak is level; and the largest
+change of a level peak's slope.
 """
 
 _ASIDE, _NEARER = 1e-9, 0.5
-"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on
-its own side at most.
+"""Relative change of a peak's value that shows the other side of a jump; and the part of it that
+may remain on its own side.
 """
 
 _REACHES = (1.0, 8.0, 64.0, 512.0)
 """So far from a jump its sides are looked for: of what a peak may be beside it."""
 
 _OTHERWISE = 1e-4
-"""By what of a slope two slopes differ."""
+"""Relative difference of two slopes that differ."""
 
 _NOISE, _FAINT = 1e-9, 1e-12
-"""What of the largest slope by a parameter, and of the peak, is no slope."""
+"""Fraction of the largest slope by a parameter, and of the peak, that counts as no slope."""
 
 Peaks = tuple[Array, Array, Array]
-"""Of q peaks the value, the time and the ratio xi/l, (q,) each."""
+"""Value, time and ratio xi/l of q peaks, (q,) each."""
 
 Flags = npt.NDArray[np.bool_]
 
@@ -388,8 +386,8 @@ class MovingPeaks:
         return found
 
     def ties(self, chosen: Numbers, value: Array, own: PeakSlopes, others: Array) -> Flags:
-        """Which of the peaks (q,), whose gradient is ``own``, tie with another one of their
-        quantity, which is as large and changes otherwise with the parameters.
+        """Return which of the peaks (q,), whose gradient is ``own``, tie with another one of their
+        quantity, which is as large and changes differently with the parameters.
 
         The largest of both then has a kink at these parameters, and no derivative. What is as large
         and changes alike, as the same peak in the next turn, is no tie. ``others`` (q, n, 4) are
@@ -454,7 +452,9 @@ def mean_slopes(t: Array, value: Array, changes: Array) -> MeanSlopes:
 
 
 def faint(value: Array, largest: Array) -> Flags:
-    """Which peaks are zero but for rounding, beside the ``largest`` of the unit of each."""
+    """Return which peaks are zero within rounding, relative to the ``largest`` of the unit of
+    each.
+    """
     return np.asarray(np.abs(value) <= NOTHING * largest)
 
 

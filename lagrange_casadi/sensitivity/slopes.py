@@ -45,8 +45,8 @@ class Batch:
         return cls(function, None if found is None else found[1])
 
     def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]]) -> Array:
-        """What it is at n points, (n, result): of each argument its rows, and how many points one
-        is for, 0 for all. Of what is ``chosen`` the numbers are given.
+        """Result at n points, (n, result): of each argument its rows, and the number of points that
+        one is for, 0 for all. Of what is ``chosen`` the numbers are given.
         """
         into = np.full((n, self.function.numel_out(0)), np.nan)
         if self.library is not None:
@@ -86,8 +86,8 @@ class Loops:
         return cls(graph, None if found is None else found[1])
 
     def at(self, t: Array, p: Array, places: Array) -> Array:
-        """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are
-        followed.
+        """Iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from
+        which they are followed.
         """
         if self.graph.newton is None:
             return np.zeros((places.size, 0))
@@ -103,7 +103,7 @@ class Loops:
 
 
 class AtPoints(NamedTuple):
-    """Of n points the value (n,), and its derivatives by time, xi/l and all parameters, (n, 2 +
+    """Value of n points (n,), and its derivatives by time, xi/l and all parameters, (n, 2 +
     parameters).
     """
 
@@ -122,8 +122,9 @@ class AtPoints(NamedTuple):
 
 
 class Bends(NamedTuple):
-    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it
-    changes along w ways, (n, w, 2 + parameters)."""
+    """Gradient at n points by time, xi/l and all parameters, (n, 2 + parameters), and its change
+    along w directions, (n, w, 2 + parameters).
+    """
 
     gradient: Array
     changes: Array
@@ -150,7 +151,7 @@ class Slopes:
 
     @property
     def graph(self) -> Program:
-        """What they are quantities of."""
+        """Program whose quantities they are."""
         return self.points.graph
 
     @cached_property
@@ -192,8 +193,8 @@ class Slopes:
         value: Array | None,
         ways: Array,
     ) -> Bends:
-        """How the derivatives of :meth:`at` change along each of ``ways`` (w, 2 + parameters) in
-        time, in xi/l and in the parameters. The iterated coordinates must close the loops.
+        """Derivatives of :meth:`at` along each of ``ways`` (w, 2 + parameters) in time, in xi/l and
+        in the parameters. The iterated coordinates must close the loops.
 
         They are derived and compiled when they are first asked for.
         """

@@ -402,7 +402,7 @@ class DesignEngine:
         return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
 
     def moving(self, p: Array) -> MovingPeaks:
-        """How peaks and means of a design (parameters,) change with all parameters."""
+        """Derivatives of peaks and means of a design (parameters,) by all parameters."""
         instants = self.times.of(p[None], asked=False)[0][0]
         return MovingPeaks(self.slopes, Ends(self.graph.laws, self.times.timing, instants, p))
 
@@ -421,15 +421,15 @@ class DesignEngine:
         return self.moving(p).curvature(chosen, (value, t, xi), own, self._faint(value))
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
-        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see
-        :meth:`.MovingPeaks.ties`.
+        """Return which of the peaks (q,) of a design, whose gradient is ``own``, tie with another
+        one: see :meth:`.MovingPeaks.ties`.
         """
         others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).ties(chosen, value, own, others) & ~self._faint(value)
 
     def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
-        """Which peaks are zero but for rounding: what is nothing beside the largest of its unit."""
+        """Return which peaks are zero within rounding, relative to the largest of their unit."""
         largest = np.zeros(value.size)
         np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(value), np.abs(value), 0.0))
         return faint(value, largest[self._unit_numbers])
