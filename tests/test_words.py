@@ -1,0 +1,46 @@
+"""Identifiers of the package are words of the field: private words that were replaced stay away."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import lagrange_casadi
+
+pytestmark = pytest.mark.quick
+
+PACKAGE = Path(lagrange_casadi.__file__).parent
+
+PRIVATE = {
+    *("rungs", "summit", "summits", "look", "looks", "loose", "ball", "balls", "rubbing", "rubs"),
+    *("lets", "crew", "errand", "errands", "trail", "trails", "doubts", "doubtful", "misfits"),
+    *("borne", "swings", "tally", "witness", "freed", "tells", "reaching", "stations", "spreads"),
+}
+"""Words that once stood for methods of evaluation, local maxima, samples, load points and more."""
+
+PUBLIC = frozenset(("Spreads", "spreads"))
+"""Names that stay: of what tolerances do, where a spread is what statistics calls so."""
+
+
+def names(tree: ast.AST) -> Iterator[str]:
+    """What a module names: classes, functions, parameters, attributes, keywords and variables."""
+    for node in ast.walk(tree):
+        for field in ("id", "attr", "arg", "name", "asname"):
+            if isinstance(name := getattr(node, field, None), str):
+                yield name
+
+
+def words(name: str) -> set[str]:
+    return {word.lower() for word in re.split(r"_|(?<=[a-z])(?=[A-Z])", name)}
+
+
+def test_identifiers_are_in_the_words_of_the_field():
+    private = [
+        f"{path.relative_to(PACKAGE)}: {name}"
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for name in sorted({path.stem, *names(ast.parse(path.read_text()))} - PUBLIC)
+        if words(name) & PRIVATE
+    ]
+    assert not private, "\n".join(private)
