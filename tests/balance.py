@@ -12,11 +12,11 @@ import numpy as np
 import oracle
 import rubbing
 from arithmetic import DOUBLE
+from internals import Link, RigidMass
 from jets import Jet
 from mechanisms import INSTANT
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.declare.parts import Link, RigidMass
 
 TOLERANCE = 1e-12
 

@@ -11,6 +11,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from calls_declaring import BAR, STEEL, TURN, Call, lift
+from internals import Condition, Grid, Range, Term, Values
+from internals import ListingListed as Listed
 
 from lagrange_casadi import (
     actuators,
@@ -22,8 +24,6 @@ from lagrange_casadi import (
     motion,
     strength,
 )
-from lagrange_casadi.studies.optimise import Term
-from lagrange_casadi.studies.sweep import Condition, Grid, Listed, Range, Values
 
 
 def laws() -> Iterator[tuple[str, Call]]:

@@ -7,11 +7,10 @@ import subprocess
 from importlib import resources
 
 import numpy as np
+from internals import DTYPES, compensated, plain
 from mechanisms import four_bar, slider_crank, spline_arm, truss_platform
 
 from lagrange_casadi import codegen
-from lagrange_casadi.arithmetic.compensated import DTYPES
-from lagrange_casadi.codegen.stages import compensated, plain
 
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
 SCENES = {

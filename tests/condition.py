@@ -17,13 +17,9 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 from balance import settle
+from internals import DTYPES, FORCES, ROUNDING, arithmetic, interpret
 from mpmath import mp
 from precise import precise
-
-from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
-from lagrange_casadi.arithmetic.interpret import interpret
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.verification.reference import arithmetic
 
 DIGITS = 50
 LEAST = 1e-30

@@ -20,10 +20,9 @@ from hypothesis import settings
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import sweeps
+from internals import backends, compiler, cycle_table, grids
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.codegen import compiler
-from lagrange_casadi.instants import backends, cycle_table, grids
 
 # No test is about time. Where a failure must be the change's own, the same examples every time;
 # elsewhere new ones.

@@ -15,13 +15,12 @@ import sys
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
+from internals import SIZE, check_sweep, is_sweep
+from internals import runs as store
+
 from lagrange_casadi import Sweep, check, load
-from lagrange_casadi.base.seal import SIZE
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.store import runs as store
-from lagrange_casadi.studies.sweep import is_sweep
-from lagrange_casadi.studies.sweep.checking import check_sweep
 
 SECONDS = 30
 """What one attempt may take before the program ends itself."""

@@ -1,8 +1,6 @@
 """What certificates read of a scene, without anything that is derived."""
 
-from lagrange_casadi.declare.declared import Declared
-from lagrange_casadi.declare.stated import Stated
-from lagrange_casadi.equations.model_data import template
+from internals import Declared, Stated, template
 
 
 def declaration(scene, values):

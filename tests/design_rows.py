@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from internals import refine
 
 from lagrange_casadi import density, derive, evaluate
-from lagrange_casadi.studies.peaks import refine
 
 
 def around(scene, count, spread=0.03, seed=0):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import spatial_twin
 from conftest import CASES
+from internals import Link, Point
 
 from lagrange_casadi import SpatialMechanism
-from lagrange_casadi.declare.parts import Link, Point
 
 
 def drawing(noise, seed=1, exact=()):

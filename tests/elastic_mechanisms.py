@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from internals import Compliance, Member, nodes
 
 from lagrange_casadi import (
     Mechanism,
@@ -9,9 +10,7 @@ from lagrange_casadi import (
     SpatialMechanism,
     beams,
 )
-from lagrange_casadi.elastic.compliance import Compliance, nodes
 from lagrange_casadi.motion import harmonic
-from lagrange_casadi.strength.member import Member
 
 STEEL = beams.material("S235")
 LIGHT = STEEL.but(density=1e-9)

@@ -11,12 +11,10 @@ import argparse
 import kinds
 import numpy as np
 from conftest import CASES, PLANAR
+from internals import DTYPES, ROUNDING, Output, points
 from truth import true_errors, truth
 
 from lagrange_casadi import derive, evaluate, load_case
-from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import AssemblyError
 
 FACTOR = 10.0

@@ -5,9 +5,9 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+from internals import FORCES
 
 from lagrange_casadi import codegen, evaluate, export
-from lagrange_casadi.base.quantities import FORCES
 
 CONSUMERS = Path(__file__).parent / "consumers"
 RATIOS = (0.0, 0.3, 0.5, 1.0)

@@ -13,8 +13,8 @@ import numpy as np
 from condition import judged, meaning, peaks_of
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.density import tabulated
-from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.density import tabulated
+from lagrange_casadi.motion import harmonic, polynomial
 
 PRECISIONS = ("double", "single")
 RATE = 25 * math.pi

@@ -1,7 +1,7 @@
 """A mechanism of two freedoms: two cranks and two rods that meet at a tool."""
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.motion import polynomial
 
 
 def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):

@@ -5,8 +5,7 @@ from __future__ import annotations
 import contextlib
 
 import h5py
-
-from lagrange_casadi.base import seal
+from internals import base_seal as seal
 
 
 def unseal(path):

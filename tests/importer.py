@@ -8,7 +8,7 @@ import pytest
 from mechanisms import crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import harmonic
+from lagrange_casadi.motion import harmonic
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 

@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, density, evaluate, table
-from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.errors import LagrangeCasadiError
+from lagrange_casadi.motion import harmonic, polynomial
 
 COUNT = 61
 """Instants of a scene: more than estimates look at by themselves."""

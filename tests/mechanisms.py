@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, curve
-from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
+from lagrange_casadi.motion import expression, harmonic, polynomial, samples
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 

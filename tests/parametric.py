@@ -10,9 +10,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from internals import Ground, Link
 
 from lagrange_casadi import Mechanism, load_case
-from lagrange_casadi.declare.parts import Ground, Link
 
 _DENOMINATOR = 60
 _RELATIVE = 1e-15

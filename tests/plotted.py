@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import sweeps
 from forging import forging
-
-from lagrange_casadi.studies.sweep import Listed, Sweep, sweep
+from internals import ListingListed as Listed
+from internals import Sweep, sweep
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 

@@ -16,11 +16,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import oracle
+from internals import FORCES
 from random_formula import joint_coordinate, under
 from random_mechanisms import SPACING, Drawn
 from random_path import Path, follow
-
-from lagrange_casadi.base.quantities import FORCES
 
 TOLERANCE = 1e-9
 SMALL = 1e-3

@@ -24,12 +24,11 @@ from pathlib import Path
 
 import h5py
 from damaging import damaged
+from internals import SCHEMA, kept
+from internals import base_seal as seal
 
 import lagrange_casadi.cli  # noqa: F401
-from lagrange_casadi.base import seal
 from lagrange_casadi.errors import LagrangeCasadiError
-from lagrange_casadi.store.opening import SCHEMA
-from lagrange_casadi.studies.optimise.journal import kept
 
 SECONDS = 10.0
 answer = importlib.import_module("lagrange_casadi.cli.check").answer

@@ -8,13 +8,10 @@ import dataclasses
 
 import casadi as ca
 import numpy as np
+from internals import Joint, Link, Mesh, Point, RigidMass, Solution, Transmission, Wrench
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.declare.density import Density
-from lagrange_casadi.declare.joints import Joint
-from lagrange_casadi.declare.meshes import Mesh, Transmission, Wrench
-from lagrange_casadi.declare.parts import Link, Point, RigidMass
-from lagrange_casadi.instants.solution import Solution
+from lagrange_casadi.density import Density
 
 NORMAL = (0.0, 0.0, 1.0)
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import casadi as ca
 from casadi import casadi as wrapped
+from internals import symbolic
 
 import lagrange_casadi
-from lagrange_casadi.base import symbolic
 
 MAKES = re.compile(
     r"new_(SX|Function)|SX_(unary|binary|set|eye|ones)|Function_(call|deserialize|expand|map)|jacobian|gradient|hessian|jtimes"

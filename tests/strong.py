@@ -1,7 +1,8 @@
 """Mechanisms whose links are made of something."""
 
+from internals import Profile
+
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
-from lagrange_casadi.beams.profiles import Profile
 from lagrange_casadi.motion import harmonic, polynomial
 
 STEEL = beams.material("C45+QT")

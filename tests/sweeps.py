@@ -12,10 +12,8 @@ from pathlib import Path
 
 import mechanisms
 import numpy as np
+from internals import Outcome, Provenance, plan, sweep
 
-from lagrange_casadi.instants.solution import Provenance
-from lagrange_casadi.studies.designs.outcome import Outcome
-from lagrange_casadi.studies.sweep import plan, sweep
 from lagrange_casadi.version import __version__
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"

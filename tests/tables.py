@@ -8,10 +8,9 @@ import math
 
 import numpy as np
 from conftest import CASES
+from internals import determinate, tabulate
 
 from lagrange_casadi import derive, load_case
-from lagrange_casadi.instants import tabulate
-from lagrange_casadi.instants.determinacy import determinate
 
 RATES = (60.0, 900.0)
 

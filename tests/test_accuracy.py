@@ -13,19 +13,15 @@ import numpy as np
 import pytest
 from conftest import CASES, PLANAR
 from estimates import COUNT, FACTOR, METHODS, assert_near, exactly, methods, ratios
+from internals import COARSE, TOLERANCE, Link, Output, certify, explained, run, tolerance
 from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
 from outside import doubled
 from stepped import iterated, pinned
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.verification.accuracy import explained
-from lagrange_casadi.verification.certificate import COARSE, TOLERANCE, certify, tolerance
+from lagrange_casadi.motion import harmonic, polynomial
 
 ITERATED = ("beam_pump", "rrr3")
 """Of the planar cases."""

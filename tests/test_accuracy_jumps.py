@@ -7,10 +7,10 @@ import math
 import casadi as ca
 import pytest
 from estimates import COUNT, METHODS, assert_near, exactly, ratios
+from internals import ROUNDING
 
 from lagrange_casadi import Mechanism, Scene, evaluate, table
-from lagrange_casadi.arithmetic.compensated import ROUNDING
-from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.motion import harmonic, polynomial
 
 
 def cantilever(place, length=0.6, load=1e5):

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Range, Sweep, Values, angle, best, chosen, sweep
 from mechanisms import four_bar
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.base.units import angle
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.sweep import Range, Sweep, Values, best, chosen, sweep
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

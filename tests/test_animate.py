@@ -11,15 +11,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
+from internals import Film, Line, gif, picture_of, svg, write_animation
 from PIL import Image
 from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
-from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.animation.drawn import Line
-from lagrange_casadi.animation.film import picture_of
-from lagrange_casadi.animation.raster import gif
-from lagrange_casadi.animation.vector import svg
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import polynomial

@@ -8,10 +8,10 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from internals import public, typed
+from internals import units_number as number
 
 from lagrange_casadi import Mechanism, Scene, evaluate, optimise, prepare, save
-from lagrange_casadi.arguments import public
-from lagrange_casadi.base.units import number, typed
 from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, warn
 from lagrange_casadi.motion import harmonic, polynomial, samples
 

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import pytest
+from internals import refine
 
 from lagrange_casadi import Mechanism, Scene, compile_scene, derive, evaluate, export, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.studies.peaks import refine
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -168,7 +168,7 @@ def test_exported_c(tmp_path):
 
 CASE = """\
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.motion import polynomial
 
 
 def scene():

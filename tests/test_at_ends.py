@@ -5,12 +5,10 @@ must not see it by chance.
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import FORCES, DesignEngine, EvaluationMethod
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine, sweep
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

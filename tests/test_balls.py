@@ -9,13 +9,13 @@ import casadi as ca
 import numpy as np
 import pytest
 from balls import platform, suspension
+from internals import Output, quaternion_of
+from internals import spherical_axes_of as axes_of
 from spatial_bodies import GROUND, Rod
 from spatial_bridge import coordinate, declared, plain, postures
 from spatial_oracle import REACTION, SECTION
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.equations.spherical import axes_of, quaternion_of
 
 LOCK = 0.2
 MADE = {

@@ -8,10 +8,9 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Wanted, beam_from_numbers, beam_to_numbers
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, motion
-from lagrange_casadi.beams.beam import beam_from_numbers, beam_to_numbers
-from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]

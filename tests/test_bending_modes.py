@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.declare.end_conditions import ENDS
-from lagrange_casadi.elastic.bending_modes import closed, first_mode
+from internals import ENDS, first_mode
+from internals import bending_modes_closed as closed
 
 
 @pytest.mark.parametrize("ends", itertools.product(ENDS, ENDS), ids="-".join)

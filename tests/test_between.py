@@ -4,10 +4,20 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.peak_search.between import highest, passed, passed_or_touched, unresolved
-from lagrange_casadi.peak_search.fits import SEVEN, bounds, stretch, vertices, where, window
-from lagrange_casadi.peak_search.sharpness import Kind, Watch
+from internals import (
+    SEVEN,
+    Kind,
+    Watch,
+    bounds,
+    highest,
+    passed,
+    passed_or_touched,
+    stretch,
+    unresolved,
+    vertices,
+    where,
+    window,
+)
 
 pytestmark = pytest.mark.quick
 

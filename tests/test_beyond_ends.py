@@ -9,8 +9,8 @@ import pytest
 from balance import assert_balanced
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -3,13 +3,11 @@
 import math
 
 import pytest
+from internals import assemble, solving_order, span
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.assembly import assemble
-from lagrange_casadi.equations.blocks import solving_order
-from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import MobilityError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -8,15 +8,13 @@ from pathlib import Path
 import psutil
 import pytest
 import sweeps
+from internals import plan, points, space, workers
 from mechanisms import slider_crank
 from stepped import iterated
 
 from lagrange_casadi import evaluate, sweep
-from lagrange_casadi.base import space
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.studies.sweep import plan, workers
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

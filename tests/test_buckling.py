@@ -9,14 +9,13 @@ import pytest
 import strong
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import BucklingColumn as Column
+from internals import Member, critical_stress, describe, effective_lengths
+from internals import buckling_used as used
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
-from lagrange_casadi.declare.description import describe
-from lagrange_casadi.declare.end_conditions import effective_lengths
-from lagrange_casadi.equations.buckling import Column, critical_stress, used
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.strength.member import Member
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -9,12 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 import sweeps
+from internals import backends, cache
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.base import cache
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
-from lagrange_casadi.instants import backends
 
 NAMES = [f"{k:032x}" for k in range(12)]
 

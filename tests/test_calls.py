@@ -7,18 +7,22 @@ import subprocess
 
 import numpy as np
 import pytest
+from internals import (
+    CURVES,
+    GRID,
+    INSTANTS,
+    INTERPOLATE,
+    LARGEST,
+    Call,
+    DesignEngine,
+    EvaluationMethod,
+    interface,
+)
+from internals import DESIGNS_CALL as DESIGNS
+from internals import SEARCH_CALL as SEARCH
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive
-from lagrange_casadi.codegen.calls import Call
-from lagrange_casadi.codegen.designs import CALL as DESIGNS
-from lagrange_casadi.codegen.emit import INSTANTS
-from lagrange_casadi.codegen.search import CALL as SEARCH
-from lagrange_casadi.codegen.search import CURVES, interface
-from lagrange_casadi.instants.cycle_table import INTERPOLATE
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.instants.grids import GRID, LARGEST
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 CALLS = (INSTANTS, CURVES, SEARCH, DESIGNS, GRID, LARGEST, INTERPOLATE)
 UNEVEN = Call(

@@ -6,13 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from internals import DesignEngine, Status
 
 from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, curve, evaluate
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.elements import disc_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError, PathError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -11,9 +11,9 @@ from arithmetic import DOUBLE
 from balance import compare
 from beside import of_case
 from conftest import CASES, NAMES, PLANAR
+from internals import figures
 
 from lagrange_casadi import LagrangeSystem, evaluate, load_case
-from lagrange_casadi.figures import figures
 
 pytestmark = pytest.mark.usefixtures("released")
 

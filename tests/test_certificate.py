@@ -9,21 +9,25 @@ import numpy as np
 import pytest
 from conftest import CASES
 from declarations import declaration
+from internals import (
+    COARSE,
+    DesignEngine,
+    EvaluationMethod,
+    Output,
+    Solution,
+    Status,
+    certify,
+    check,
+    load,
+    loops,
+)
+from internals import instants_refusal as refusal
 from mechanisms import far, ladder, parallelogram, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, save
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
-from lagrange_casadi.instants import refusal
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.instants.solution import Solution
-from lagrange_casadi.store.runs import check, load
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.verification.certificate import COARSE, certify
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -7,12 +7,20 @@ from dataclasses import replace
 import casadi as ca
 import pytest
 from every_load import every_joint_and_load
+from internals import (
+    Force,
+    Friction,
+    LineLoad,
+    Spring,
+    Torque,
+    assembly,
+    cache,
+    friction,
+    laws,
+    mobility,
+)
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.base import cache
-from lagrange_casadi.declare import laws
-from lagrange_casadi.declare.parts import Force, Friction, LineLoad, Spring, Torque
-from lagrange_casadi.equations import assembly, friction, mobility
 from lagrange_casadi.errors import CertificateWarning
 
 pytestmark = pytest.mark.usefixtures("interpreted")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from declarations import declaration
 from every_load import every_joint_and_load
+from internals import certify
 from random_mechanisms import draw
 
 from lagrange_casadi import Mechanism, Scene, compile_scene, evaluate, motion
 from lagrange_casadi.elements import gears
-from lagrange_casadi.verification.certificate import certify
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from declarations import declaration
 from extremes import slider_crank
+from internals import Output, certify
 from mechanisms import far
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.verification.certificate import certify
+from lagrange_casadi.motion import harmonic, polynomial
 
 MILLIONTH = 1.0 + 1e-6
 

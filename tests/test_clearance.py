@@ -6,9 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from drawn_curves import K, T, drawn
-
-from lagrange_casadi.arithmetic.boxes import boxed
-from lagrange_casadi.declare.kinks import Smooth
+from internals import Smooth, boxed
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -15,11 +15,11 @@ import h5py
 import numpy as np
 import pytest
 from forging import forging
+from internals import ordered, peak_line, shown
+from internals import report_readable as readable
 
 from lagrange_casadi import Peak, evaluate, load, load_case
 from lagrange_casadi.cli import main, program
-from lagrange_casadi.cli.report import peak_line, readable, shown
-from lagrange_casadi.instants.ordering import told
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 
@@ -642,7 +642,7 @@ def test_a_run_fits_a_screen(here, capsys, case):
     rows = [line for line in whole.splitlines()[2:] if line.startswith("  ")]
     names = [line.split()[0] for line in rows if ":" in line.split()[0]]
     assert len(names) == len(set(names))
-    assert set(map(str, told(solution))) <= set(names)
+    assert set(map(str, ordered(solution))) <= set(names)
     cut = case != "slider_crank"
     assert any("--verbose lists all" in line for line in short) == cut
 

@@ -11,10 +11,10 @@ from types import SimpleNamespace
 
 import pytest
 from conftest import CASES
+from internals import shipped_cases
 
 from lagrange_casadi import LagrangeCasadiError, evaluate, load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.shipped_cases import shipped_cases
 
 pytestmark = pytest.mark.quick
 

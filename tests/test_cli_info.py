@@ -1,9 +1,9 @@
 """The command ``info`` of a case: the whole scene in lines."""
 
 import pytest
+from internals import describe_coordinate
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.equations.kinematics import describe_coordinate
 
 pytestmark = pytest.mark.quick
 

@@ -9,13 +9,11 @@ import sys
 
 import numpy as np
 import pytest
+from internals import Plan, Request, designs_of, signature
+from internals import sweeps as cluster
 
 from lagrange_casadi import load_case
-from lagrange_casadi.cluster import sweeps as cluster
 from lagrange_casadi.errors import ClusterError
-from lagrange_casadi.studies.request import Request
-from lagrange_casadi.studies.sweep.axes import designs_of
-from lagrange_casadi.studies.sweep.plan import Plan, signature
 
 # Another process builds as users do, and gives numbers of the same code only.
 pytestmark = pytest.mark.usefixtures("released")

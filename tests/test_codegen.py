@@ -11,14 +11,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import PEDANTIC, SCENES, columns, fake_compiler
+from internals import PRECISIONS, EvaluationMethod, compiler, run
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
-from lagrange_casadi.base.vocabulary import PRECISIONS
-from lagrange_casadi.codegen import compiler
 from lagrange_casadi.errors import CompilerError
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 
 pytestmark = pytest.mark.usefixtures("released")
 

@@ -12,10 +12,8 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-
-from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING, Pair, Pairs, closed
-from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
-from lagrange_casadi.base.vocabulary import PRECISIONS
+from internals import DTYPES, PRECISIONS, ROUNDING, Pair, Pairs, interpret, numpy_arithmetic
+from internals import compensated_closed as closed
 
 MP = mpmath.MPContext()
 MP.dps = 60

@@ -8,11 +8,10 @@ import math
 
 import numpy as np
 import pytest
+from internals import Member, as_column
 
 from lagrange_casadi import evaluate, figures, load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.safety import as_column
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -9,12 +9,12 @@ import numpy as np
 import oracle
 import pytest
 from balance import assert_balanced
+from internals import DesignEngine
 from mechanisms import INSTANT, MOTION
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

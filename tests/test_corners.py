@@ -5,6 +5,7 @@ by whatever way.
 import casadi as ca
 import numpy as np
 import pytest
+from internals import DesignEngine, Live, Smooth, Status, contents, cylindrical_cam, disc_cam
 
 from lagrange_casadi import (
     Mechanism,
@@ -16,15 +17,8 @@ from lagrange_casadi import (
     prepare,
     sweep,
 )
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.kinks import Smooth
-from lagrange_casadi.declare.motion import expression, polynomial
-from lagrange_casadi.elements.cam import disc_cam
-from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.report.contents import contents
-from lagrange_casadi.report.live import Live
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

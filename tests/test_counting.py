@@ -7,11 +7,10 @@ import subprocess
 
 import numpy as np
 import pytest
+from internals import counter, cycles, rainflow, reversed_amplitude
 from strong import STEEL, slider
 
 from lagrange_casadi import codegen, export
-from lagrange_casadi.exports.fatigue import counter
-from lagrange_casadi.strength import cycles, rainflow, reversed_amplitude
 
 MATERIALS = {
     "lasting": STEEL.but(endurance=200e6),

@@ -9,11 +9,10 @@ import pytest
 import strong
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DUCTILE, FINDLEY, _bounds, critical_plane, plane_factor, worst_plane
 
 from lagrange_casadi import beams, evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.strength import critical_plane, plane_factor
-from lagrange_casadi.strength.critical_plane import DUCTILE, FINDLEY, _bounds, worst_plane
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

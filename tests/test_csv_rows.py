@@ -5,8 +5,8 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Row, read_rows
 
-from lagrange_casadi.base.csv_rows import Row, read_rows
 from lagrange_casadi.errors import DeclarationError, PathError
 
 pytestmark = pytest.mark.quick

@@ -10,12 +10,12 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import PeakKind
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import harmonic, polynomial, samples
-from lagrange_casadi.sensitivity.peaks import PeakKind
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

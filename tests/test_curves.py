@@ -12,6 +12,7 @@ import pytest
 from balance import assert_balanced
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, EvaluationMethod, Status, reference
 from mechanisms import cam, cam_lift, sampled_cam
 from splines import by_hand
 
@@ -27,11 +28,7 @@ from lagrange_casadi import (
     refine,
     table,
 )
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.verification.reference import reference
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

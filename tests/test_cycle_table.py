@@ -10,13 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from internals import FLAGS, CycleTable, cycle_table
 from tables import case, made, some_motion, worst_gap
 
 from lagrange_casadi import codegen
-from lagrange_casadi.codegen.compiler import FLAGS
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants import cycle_table
-from lagrange_casadi.instants.cycle_table import CycleTable
 
 
 def read(table, motion, out, compiled, monkeypatch):

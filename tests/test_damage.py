@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 import sweeps
+from internals import sweep
 
 from lagrange_casadi import evaluate, save
-from lagrange_casadi.studies.sweep import sweep
 
 FEW, MANY, AT_ONCE = 120, 10_000, 1000
 _SECONDS = 20.0

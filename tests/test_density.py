@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import curve
-from lagrange_casadi.declare.density import Density, along, polynomial, tabulated, uniform
+from lagrange_casadi.density import Density, along, polynomial, tabulated, uniform
 
 pytestmark = pytest.mark.quick
 

@@ -13,16 +13,14 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import SCENES
+from internals import Program, Wanted, fingerprint, sources
 from mechanisms import four_bar, slider_crank
 from outside import doubled
 
 import lagrange_casadi
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, derive, evaluate
-from lagrange_casadi.declare.motion import Motion, expression, harmonic, polynomial, samples
-from lagrange_casadi.declare.scene import Wanted
-from lagrange_casadi.equations.fingerprint import fingerprint, sources
-from lagrange_casadi.equations.program import Program
 from lagrange_casadi.errors import PickleError
+from lagrange_casadi.motion import Motion, expression, harmonic, polynomial, samples
 
 pytestmark = pytest.mark.quick
 

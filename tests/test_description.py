@@ -5,17 +5,17 @@ import math
 
 import numpy as np
 import pytest
-
-from lagrange_casadi import Scene, SpatialMechanism, motion
-from lagrange_casadi.declare.description import (
+from internals import (
+    check_shape,
     coordinates_of,
     drives_of,
     measured_of,
     motions_of,
     shape_of,
+    template,
 )
-from lagrange_casadi.equations.model_data import template
-from lagrange_casadi.store.untrusted import check_shape
+
+from lagrange_casadi import Scene, SpatialMechanism, motion
 
 pytestmark = pytest.mark.quick
 

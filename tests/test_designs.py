@@ -10,17 +10,20 @@ import pytest
 from compiled import PEDANTIC, SCENES
 from conftest import CASES, PLANAR
 from design_rows import DENSITIES, alone, around, assert_refined, loaded, peaks_of, scales, values
+from internals import (
+    DesignEngine,
+    EvaluationMethod,
+    KeptOutputs,
+    Status,
+    library,
+    refine,
+    stages_of,
+)
 from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_crank
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.codegen import library
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.designs.reduction import KeptOutputs, stages_of
-from lagrange_casadi.studies.peaks import refine
 
 INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")

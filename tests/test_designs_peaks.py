@@ -7,15 +7,20 @@ import casadi as ca
 import numpy as np
 import pytest
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of, values
+from internals import (
+    ContinuousSolution,
+    Curves,
+    DesignEngine,
+    EvaluationMethod,
+    Samples,
+    Status,
+    forces,
+    refine,
+)
 from mechanisms import crank_and_rod, lobes, pendulum
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, load_case, motion
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.peak_search.intervals import Curves, Samples
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import ContinuousSolution, forces, refine
+from lagrange_casadi.motion import polynomial
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 

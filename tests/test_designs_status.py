@@ -6,17 +6,14 @@ import numpy as np
 import pytest
 from conftest import CASES
 from design_rows import around, values
+from internals import DesignEngine, EvaluationMethod, Status, run
+from internals import refusal_refusal as refusal
 from mechanisms import double_crank, flat_parallelogram, slider_crank, truss_platform
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, load_case
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.instants.refusal import refusal
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import polynomial
 
 
 def statuses(scene, p, method, instants=None):

@@ -7,13 +7,11 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from internals import DesignEngine, EvaluationMethod, Status
 from mechanisms import press, slider_crank, uneven
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 TURN = math.tau
 ASKED = {

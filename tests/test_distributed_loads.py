@@ -13,14 +13,11 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from forging import edit
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, EvaluationMethod, Status, certify
 from spread import Spread
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, load, motion, refine, save
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.verification.certificate import certify
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -8,13 +8,10 @@ import casadi as ca
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import SPACE, DesignEngine, EvaluationMethod, Status
 
 from lagrange_casadi import Scene, SpatialMechanism, density, evaluate, load, motion, refine, save
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.quick
 

@@ -5,15 +5,21 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from internals import (
+    TRIALS,
+    EvaluationMethod,
+    Instants,
+    compensated,
+    effects,
+    openness,
+    plain,
+    points,
+    run,
+)
 from mechanisms import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive
-from lagrange_casadi.codegen.stages import compensated, plain
-from lagrange_casadi.declare.even_points import points
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.verification.disturbed import TRIALS, Instants, effects, openness
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -8,14 +8,11 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from internals import QUANTITIES, SCHEMA_VERSION, SPATIAL_QUANTITIES, Status, find_compiler
 
 import lagrange_casadi
 from lagrange_casadi import errors, export, load_case
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.base.tables import QUANTITIES, SPATIAL_QUANTITIES
 from lagrange_casadi.cli import program
-from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.store.runs import SCHEMA_VERSION
 
 pytestmark = pytest.mark.quick
 

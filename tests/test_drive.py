@@ -8,13 +8,12 @@ import pytest
 from conftest import CASES
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import RigidMass, warmest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case
 from lagrange_casadi.actuators import Motor, duty_of, inertia_at, judge, plot_duty, read_motors
-from lagrange_casadi.actuators.warmth import warmest
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.density import Density
-from lagrange_casadi.declare.parts import RigidMass
+from lagrange_casadi.density import Density
 from lagrange_casadi.elements import cylinder
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial, trapezoid

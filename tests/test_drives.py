@@ -12,15 +12,12 @@ from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, EvaluationMethod, Status, check, derive, load
+from internals import runs_save as save
 from mechanisms import block, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.store.runs import check, load, save
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

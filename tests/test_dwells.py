@@ -5,16 +5,11 @@ instants that move.
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from internals import EvaluationMethod, Film, check, check_sweep, load, resting_note, trade
 from packer import CASE, scene
 
 from lagrange_casadi import Scene, evaluate, optimise, prepare, sweep, tolerances
-from lagrange_casadi.animation import Film
 from lagrange_casadi.cli import program
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.store.runs import check, load
-from lagrange_casadi.studies.sweep.checking import check_sweep
-from lagrange_casadi.studies.sweep.notes import resting_note
-from lagrange_casadi.studies.trade import trade
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import area_of, draw_mechanism, shapes
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, load, save
 from lagrange_casadi.elements import bent_bar, plate
-from lagrange_casadi.elements.plate import area_of
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.figures.drawing import draw_mechanism
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.shapes.shapes import shapes
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -2,9 +2,9 @@
 
 import casadi as ca
 import pytest
+from internals import beyond_ends, share_beyond
 
 from lagrange_casadi import curve
-from lagrange_casadi.declare.ends import beyond_ends, share_beyond
 
 pytestmark = pytest.mark.quick
 

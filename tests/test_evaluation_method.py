@@ -5,6 +5,7 @@ import shlex
 
 import numpy as np
 import pytest
+from internals import EvaluationMethod
 from mechanisms import slider_crank
 from stepped import two_rods
 from sweeps import CASE
@@ -12,7 +13,6 @@ from sweeps import CASE
 from lagrange_casadi import evaluate, export, load_case, prepare, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 
 pytestmark = pytest.mark.quick
 

@@ -6,14 +6,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from drawn_curves import K, T, drawn, shown, told_by_limits, verdict
+from internals import DesignEngine, Smooth, Status, disc_cam
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.kinks import Smooth
-from lagrange_casadi.declare.motion import expression, polynomial
-from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

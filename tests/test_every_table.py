@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
+from internals import ListingListed as Listed
+from internals import _read, read_designs, read_profile
 
 from lagrange_casadi.actuators import read_motors
 from lagrange_casadi.beams import read_profiles
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.recordings import _read
-from lagrange_casadi.elements.profile_lift import read_profile
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.motion import read_samples
-from lagrange_casadi.studies.sweep import read_designs
-from lagrange_casadi.studies.sweep.listing import Listed
 
 pytestmark = pytest.mark.quick
 

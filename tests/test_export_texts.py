@@ -13,6 +13,7 @@ import pytest
 from compiled import cc, compilers, present
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import label, naming, text
 from matplotlib.cbook import is_math_text
 from mechanisms import slider_crank
 from stepped import iterated
@@ -20,8 +21,6 @@ from stepped import iterated
 from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.portable import naming, text
-from lagrange_casadi.studies.sweep.sheet import label
 
 WICKED = [
     'x"),fopen("PWNED","w"),printf("',

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from condition import understated
 from extremes import EXTREMES, PRECISIONS, RATE, SINGULAR, four_bar, slider_crank
+from internals import reference
 from mpmath import mp
 from stepped import pinned, two_rods
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
-from lagrange_casadi.verification.reference import reference
+from lagrange_casadi.motion import polynomial
 
 ROUNDINGS = 100
 ORDINARY = {"double": 1e-13, "single": 1e-5}

@@ -11,12 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from internals import CRITERIA, FINDLEY, KINDS, vocabulary
 
 import lagrange_casadi as lc
-from lagrange_casadi.base import vocabulary
-from lagrange_casadi.equations.stress import KINDS
-from lagrange_casadi.strength import CRITERIA
-from lagrange_casadi.strength.critical_plane import FINDLEY
 
 pytestmark = pytest.mark.quick
 

@@ -9,17 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from internals import CRITERIA, _farthest, cycles, factor, loaded, reversed_amplitude
 
 from lagrange_casadi.beams import Material, material
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.strength.fatigue import (
-    CRITERIA,
-    _farthest,
-    cycles,
-    factor,
-    loaded,
-    reversed_amplitude,
-)
 
 pytestmark = pytest.mark.quick
 

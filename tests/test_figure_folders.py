@@ -4,10 +4,10 @@ import hashlib
 import json
 
 import pytest
+from internals import INDEX_MANIFEST as MANIFEST
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError
-from lagrange_casadi.shapes.index import MANIFEST
 
 pytestmark = pytest.mark.quick
 

@@ -2,18 +2,24 @@
 
 import numpy as np
 import pytest
+from internals import (
+    PATH,
+    MechanismDrawing,
+    SectionMaps,
+    SpanPlot,
+    TimePlot,
+    draw_mechanism,
+    dump_specs,
+    figures,
+    parse_specs,
+)
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from reports import solved
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
-from lagrange_casadi.figures import figures
-from lagrange_casadi.figures.drawing import draw_mechanism
-from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.shapes.kept import dump_specs, parse_specs
-from lagrange_casadi.shapes.solid import PATH
 
 pytestmark = pytest.mark.quick
 

@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 from conftest import CASES, SPATIAL
 from importer import Instance, refusing, robot, signals, simulated, windy
+from internals import ALLOWED, export, find_compiler
 from machines import elsewhere
 from mechanisms import sampled_cam
 from mechanisms import slider_crank as free
 
 from lagrange_casadi import derive, evaluate, load_case
-from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.exports import export
-from lagrange_casadi.portable.golden import ALLOWED
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")

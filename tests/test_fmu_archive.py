@@ -14,14 +14,13 @@ import pytest
 from compiled import fake_compiler
 from conftest import CASES
 from importer import Instance, robot, windy
+from internals import export, find_compiler, fmu
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.cli import main
-from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import CompilerError, LagrangeCasadiError, PathError, StoreError
-from lagrange_casadi.exports import export, fmu
+from lagrange_casadi.motion import polynomial
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 pytestmark = pytest.mark.skipif(

@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
+from internals import FORCES, EvaluationMethod, arithmetic, interpret, reference, run
 from mechanisms import truss_platform
 from outside import doubled
 from parametric import declared, meant
@@ -19,13 +20,8 @@ from precise import precise
 from truth import matter_of, section
 
 from lagrange_casadi import Mechanism, Scene, derive, load_case
-from lagrange_casadi.arithmetic.interpret import interpret
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.verification.reference import arithmetic, reference
+from lagrange_casadi.motion import polynomial
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))

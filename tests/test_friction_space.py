@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from internals import Joint
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, save
-from lagrange_casadi.declare.joints import Joint
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 

@@ -8,16 +8,21 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import told
+from internals import (
+    DesignEngine,
+    EvaluationMethod,
+    Film,
+    Status,
+    check,
+    check_sweep,
+    load,
+    write_animation,
+)
+from internals import runs_save as save
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine, sweep
-from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import expression, harmonic, polynomial
-from lagrange_casadi.store.runs import check, load, save
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.sweep.checking import check_sweep
 
 WEIGHT, ARM = 50.0, 0.2
 every = pytest.mark.parametrize("backend", ["lanes", "c", "vm"])

@@ -8,16 +8,26 @@ import struct
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
+from internals import (
+    Film,
+    Spot,
+    block,
+    cone,
+    cylinder,
+    joint_shapes,
+    load_shapes,
+    prism,
+    shapes,
+    sphere,
+    upright,
+    write_animation,
+)
+from internals import places_placed as placed
 from reports import hostile, press, solved
 
 from lagrange_casadi import save
-from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.animation.solids import block, cone, cylinder, prism, sphere
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.shapes.places import placed
-from lagrange_casadi.shapes.shapes import Spot, joint_shapes, load_shapes, shapes
-from lagrange_casadi.shapes.views import upright
 
 WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 

@@ -4,14 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from internals import FORCES, NumericDensity, PointLoad, SectionLaw, grids
 from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load, save
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
 
 pytestmark = pytest.mark.quick
 

@@ -8,13 +8,10 @@ from balance import assert_balanced
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
+from internals import DesignEngine, EvaluationMethod, Status, figures
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, motion, save
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -9,6 +9,7 @@ import pytest
 import rubbing
 from balance import apart, columns_at, oracle_of, postures
 from click.testing import CliRunner
+from internals import contents
 from packer import CASE
 from packer import scene as packer
 
@@ -27,7 +28,6 @@ from lagrange_casadi.actuators import duty_of
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import dwell, move, moves, polynomial
-from lagrange_casadi.report.contents import contents
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -4,11 +4,11 @@ scaling.
 
 import numpy as np
 import pytest
+from internals import certify
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.verification.certificate import certify
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -5,9 +5,9 @@ of nothing.
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Course, no_rates
 
 from lagrange_casadi import LagrangeSystem
-from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick

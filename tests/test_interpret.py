@@ -12,19 +12,12 @@ from balance import settle
 from conftest import CASES, NAMES
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import ROUNDINGS, Step, followable, interpret, numpy_arithmetic, steps
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.arithmetic.interpret import (
-    ROUNDINGS,
-    Step,
-    followable,
-    interpret,
-    numpy_arithmetic,
-    steps,
-)
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

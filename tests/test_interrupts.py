@@ -16,8 +16,8 @@ from pathlib import Path
 
 import pytest
 import sweeps
+from internals import interrupts
 
-from lagrange_casadi.base.interrupts import interrupts
 from lagrange_casadi.cli import progress
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"

@@ -8,15 +8,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from drawn_curves import T, shown, told_by_limits
+from internals import DesignEngine, Smooth, Status, disc_cam
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.kinks import Smooth
-from lagrange_casadi.declare.motion import expression, polynomial
-from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

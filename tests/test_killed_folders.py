@@ -7,11 +7,11 @@ import random
 import shutil
 
 import pytest
+from internals import FOLDER_MANIFEST as EXPORT
+from internals import INDEX_MANIFEST as FIGURES
 from kills import full, killed, meet
 
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.exports.folder import MANIFEST as EXPORT
-from lagrange_casadi.shapes.index import MANIFEST as FIGURES
 
 pytestmark = [
     pytest.mark.usefixtures("interpreted"),

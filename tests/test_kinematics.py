@@ -6,6 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import instant_at
+from internals import LinearSystem
 from mechanisms import (
     INSTANT,
     PATTERNS,
@@ -20,9 +21,8 @@ from mechanisms import (
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

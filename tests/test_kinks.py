@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import Smooth
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
-from lagrange_casadi.declare.kinks import Smooth
-from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

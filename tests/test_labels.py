@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.figures.labels import apart, placed
+from internals import apart
+from internals import labels_placed as placed
 
 pytestmark = pytest.mark.quick
 

@@ -8,14 +8,10 @@ import subprocess
 import numpy as np
 import pytest
 from compiled import HEADER, SCENES, built, columns, filled
+from internals import PRECISIONS, ROUNDING, EvaluationMethod, library, run
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive, evaluate
-from lagrange_casadi.arithmetic.compensated import ROUNDING
-from lagrange_casadi.base.vocabulary import PRECISIONS
-from lagrange_casadi.codegen import library
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 
 pytestmark = pytest.mark.usefixtures("released")
 

@@ -13,9 +13,9 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
+from internals import METHODS_METHODS as METHODS
 
 import lagrange_casadi
-from lagrange_casadi.methods import METHODS
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 CASE = Path(__file__).parents[1] / "cases" / "four_bar"
@@ -64,6 +64,10 @@ DECLARED = ORDER[: ORDER.index("equations") + 1]
 
 LEAVES = ("exports", "figures", "report", "animation", "actuators", "cluster", "cli")
 """What nothing but the command line imports."""
+
+
+PUBLIC = "actuators beams bearings case cli density elements errors motion peaks version".split()  # noqa: SIM905
+"""What users import from, and tests as well."""
 
 
 @cache
@@ -331,11 +335,12 @@ def test_a_leaf_can_be_taken_away(leaf, tmp_path):
 def for_users() -> set[str]:
     """Functions and classes that the façade or a command imports."""
     facade = ast.walk(tree_of(PACKAGE / "__init__.pyi"))
-    commands = ast.walk(tree_of(modules()["cli.commands"]))
-    told = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
+    files = [tree_of(modules()[f"cli.{name}"]) for name in ("commands", "design_commands")]
+    commands = (node for tree in files for node in ast.walk(tree))
+    imports = [*((node, "") for node in facade), *((node, "cli.") for node in commands)]
     return {
         f"{package}{node.module}.{alias.name}"
-        for node, package in told
+        for node, package in imports
         if isinstance(node, ast.ImportFrom) and node.level == 1
         for alias in node.names
     }
@@ -398,6 +403,19 @@ def test_only_the_command_line_speaks_of_its_options():
 
 
 @pytest.mark.quick
+def test_tests_reach_inner_modules_by_one_file():
+    """A module that moves is then a change of one line of the tests."""
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        if path.name == "internals.py":
+            continue
+        for node in ast.walk(tree_of(path)):
+            parts = (node.module or "").split(".") if isinstance(node, ast.ImportFrom) else []
+            inner = parts[:1] == ["lagrange_casadi"] and len(parts) > 1
+            assert not inner or (len(parts) == 2 and parts[1] in PUBLIC), (
+                f"{path.name}:{node.lineno}: from {node.module}: take it from internals"
+            )
+
+
 def test_tests_take_nothing_from_other_tests():
     """What several need has a place of its own, as mechanisms have."""
     for path in sorted(Path(__file__).parent.glob("*.py")):

@@ -7,12 +7,11 @@ import pytest
 from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, Status
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -11,6 +11,7 @@ from balance import columns_at, oracle_of, postures
 from exported import by_c99, compare, expected, exported, instants, solve
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, EvaluationMethod, Status
 
 from lagrange_casadi import (
     Mechanism,
@@ -24,10 +25,7 @@ from lagrange_casadi import (
     refine,
     save,
 )
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -9,12 +9,19 @@ from importlib import resources
 import numpy as np
 import pytest
 from compiled import cc
-
-from lagrange_casadi.base.tables import PLANE, SPACE
-from lagrange_casadi.codegen.link_curves import Along, along, mass_properties_of, turning
-from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.instants.loads import DistributedLoad, PointLoad, SpatialPointLoad
-from lagrange_casadi.instants.section_law import SectionLaw
+from internals import (
+    PLANE,
+    SPACE,
+    DistributedLoad,
+    NumericDensity,
+    PointLoad,
+    SectionLaw,
+    SpatialPointLoad,
+    along,
+    mass_properties_of,
+    turning,
+)
+from internals import LinkCurvesAlong as Along
 
 HEAD = """#include <math.h>
 #include <stdio.h>

@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from balance import columns_at, oracle_of, postures
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import FORCES, DesignEngine, EvaluationMethod, load
+from internals import runs_save as save
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, refine
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.store.runs import load, save
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -9,8 +9,8 @@ from balance import assert_balanced, instant_at
 from mechanisms import INSTANT, crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

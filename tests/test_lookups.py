@@ -5,10 +5,19 @@ no derivative goes through them.
 import casadi as ca
 import numpy as np
 import pytest
+from internals import (
+    Pair,
+    Pairs,
+    cell,
+    entries,
+    followable,
+    interpret,
+    is_entry,
+    lookup,
+    numpy_arithmetic,
+    steps,
+)
 
-from lagrange_casadi.arithmetic.compensated import Pair, Pairs
-from lagrange_casadi.arithmetic.interpret import followable, interpret, numpy_arithmetic, steps
-from lagrange_casadi.arithmetic.lookups import cell, entries, is_entry, lookup
 from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick

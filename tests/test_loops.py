@@ -11,9 +11,9 @@ from balance import assert_balanced
 from mechanisms import ladder
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.elements import cylinder
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

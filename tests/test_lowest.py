@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.declare.lowest import lowest
+from internals import lowest
 
 
 @functools.cache

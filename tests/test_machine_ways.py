@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import DesignEngine, EvaluationMethod, Status
 from machines import SCENES
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
 @pytest.mark.sampled(19)

@@ -10,11 +10,11 @@ import oracle
 import pytest
 from balance import assert_balanced
 from conftest import CASES
+from internals import derive
 from machines import ROLLING, rolling, shown
 from splines import by_hand
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.equations.derive import derive
 
 
 def force(name, x, fx, fy, mz=0.0):

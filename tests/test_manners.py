@@ -7,10 +7,10 @@ import os
 
 import numpy as np
 import pytest
+from internals import peak_line
 
 from lagrange_casadi import Mechanism, Peak, Scene, evaluate, load_case, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.cli.report import peak_line
 from lagrange_casadi.errors import CaseError, DeclarationError, ParameterError
 from lagrange_casadi.motion import expression, polynomial
 

@@ -9,12 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from internals import ALLOWED, ROUNDING, export
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.arithmetic.compensated import ROUNDING
 from lagrange_casadi.case import load_case
-from lagrange_casadi.exports import export
-from lagrange_casadi.portable.golden import ALLOWED
 
 ABSENT = [tool for tool in ("octave-cli", "mkoctfile", "gcc") if shutil.which(tool) is None]
 pytestmark = pytest.mark.skipif(bool(ABSENT), reason=f"there is no {', '.join(ABSENT)}")

@@ -7,8 +7,8 @@ import pytest
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -9,12 +9,12 @@ import pytest
 from balance import compare, instant_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import Link
 from mechanisms import INSTANT, MOTION, PATTERNS, chain, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.motion import polynomial
 
 TOLERANCE = 1e-12
 

@@ -5,10 +5,9 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Laws, motion
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.declare import motion
-from lagrange_casadi.declare.laws import Laws
 from lagrange_casadi.errors import DeclarationError
 
 pytestmark = pytest.mark.quick

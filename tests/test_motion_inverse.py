@@ -9,10 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.declare import motion
-from lagrange_casadi.declare.laws import Laws
-from lagrange_casadi.declare.motion_inverse import Missed, MotionInverse
+from internals import Laws, Missed, MotionInverse, motion
 
 pytestmark = pytest.mark.quick
 

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import DesignEngine, Status
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.motion import (
@@ -23,7 +23,6 @@ from lagrange_casadi.motion import (
     samples,
     trapezoid,
 )
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

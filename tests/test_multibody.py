@@ -6,11 +6,9 @@ import casadi as ca
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Frame, Rotation, Turned, place_along
 
 from lagrange_casadi import Mechanism
-from lagrange_casadi.equations.multibody import Turned, place_along
-from lagrange_casadi.geometry.frames import Frame
-from lagrange_casadi.geometry.rotation import Rotation
 
 pytestmark = pytest.mark.quick
 

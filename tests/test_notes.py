@@ -7,12 +7,11 @@ import math
 import numpy as np
 import pytest
 from balance import assert_balanced
+from internals import DesignEngine, EvaluationMethod
 from mechanisms import bracket
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -5,8 +5,8 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from lagrange_casadi.base.numerals import readable, real, whole
+from internals import numerals_readable as readable
+from internals import real, whole
 
 pytestmark = pytest.mark.quick
 

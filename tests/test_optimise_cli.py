@@ -10,12 +10,11 @@ import h5py
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import Descent, kind_of, verify
 
 from lagrange_casadi import prepare
-from lagrange_casadi.base.seal import kind_of, verify
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.studies.optimise.descent import Descent
 
 CASE = str(CASES / "slider_crank")
 ASKED = ["optimise", CASE, "--minimise", "peak:effort:O", "--over", "l=0.12:0.8", "--starts", "2"]

@@ -7,10 +7,10 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from internals import conditions
 
 from lagrange_casadi import Mechanism, Scene, optimise, shaking
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.studies.optimise.conditions import conditions
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

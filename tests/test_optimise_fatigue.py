@@ -5,13 +5,12 @@ that it finds.
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Question, Solver
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, optimise, sweep
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.optimise.problem import Question
-from lagrange_casadi.studies.optimise.solver import Solver
 
 
 def used(scene, link, values):

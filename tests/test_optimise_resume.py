@@ -9,13 +9,11 @@ import zlib
 import h5py
 import pytest
 import sweeps
+from internals import Search, journal_of, kept, verify
 
 from lagrange_casadi import load_case, optimise
-from lagrange_casadi.base.seal import verify
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import BusyError, PathError, StoreError
-from lagrange_casadi.studies.optimise.journal import journal_of, kept
-from lagrange_casadi.studies.optimise.searching import Search
 
 commands = importlib.import_module("lagrange_casadi.cli.optimise")
 

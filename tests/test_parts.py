@@ -10,8 +10,8 @@ from balance import assert_balanced
 from mechanisms import INSTANT, MOTION, crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, table
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -9,16 +9,21 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from internals import (
+    Curves,
+    DesignEngine,
+    EvaluationMethod,
+    Kind,
+    Samples,
+    Status,
+    Watch,
+    peaks,
+    refine,
+)
+from internals import IntervalsListed as Listed
 from mechanisms import pendulum
 
 from lagrange_casadi import codegen, evaluate, motion
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.peak_search.intervals import Curves, Listed, Samples
-from lagrange_casadi.peak_search.search import peaks
-from lagrange_casadi.peak_search.sharpness import Kind, Watch
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import refine
 
 STEP = 0.04
 GRID = (0.0, 2.0, 51)

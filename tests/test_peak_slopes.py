@@ -9,13 +9,13 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import PeakKind
 from parametric import declared
 
 from lagrange_casadi import Mechanism, Scene, load_case, prepare
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.motion import harmonic, polynomial, samples
-from lagrange_casadi.sensitivity.peaks import PeakKind
 
 
 def gaps(f, parameters=None, **at):

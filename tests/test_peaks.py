@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from balance import settle
 from conftest import CASES, NAMES, PLANAR
+from internals import forces, rates, refine, shortfall
 from mechanisms import LENGTH, MASS, G, four_bar, lobes, parallelogram, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.studies.peaks import forces, rates, refine, shortfall
 
 
 def vm(scene, **keywords):

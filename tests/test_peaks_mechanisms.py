@@ -6,13 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from internals import DesignEngine, EvaluationMethod, Status, forces
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import forces
+from lagrange_casadi.motion import polynomial
 
 
 def crank_rocker(lengths, ground, start, count):

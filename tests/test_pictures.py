@@ -5,10 +5,11 @@ import warnings
 from pathlib import Path
 
 import pytest
+from internals import PICTURES
+from internals import pictures_save as save
 from matplotlib.figure import Figure
 
 import lagrange_casadi
-from lagrange_casadi.shapes.pictures import PICTURES, save
 
 pytestmark = pytest.mark.quick
 

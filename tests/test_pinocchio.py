@@ -7,9 +7,9 @@ and need it no more.
 
 import numpy as np
 import pytest
+from internals import SPACE
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load_case, motion
-from lagrange_casadi.base.tables import SPACE
 
 RATIOS = (0.2, 0.5, 0.85)
 

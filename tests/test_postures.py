@@ -9,12 +9,12 @@ import re
 from dataclasses import replace
 
 import pytest
+from internals import assemblies
 from mechanisms import four_bar
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AssemblyError, DeclarationError, PostureError, UnknownNameError
-from lagrange_casadi.figures.postures import assemblies
 
 CLOSED = ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_crank", "engine"]
 

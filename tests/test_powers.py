@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import powers
 
 from lagrange_casadi import curve
-from lagrange_casadi.declare.powers import powers
 
 pytestmark = pytest.mark.quick
 

@@ -11,11 +11,11 @@ import oracle
 import pytest
 from arithmetic import DOUBLE, Digits
 from conftest import CASES, PLANAR, SIXTY_DIGITS
+from internals import FORCES
 from mechanisms import parallelogram, slider_crank
 from precise import precise
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.base.quantities import FORCES
 
 RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 INSTANTS = (0, 7, 16)

@@ -13,13 +13,10 @@ import pytest
 from compiled import cc
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import cell, entries, literal, print_functions, printer, written_out
 from outside import doubled
 
 from lagrange_casadi import codegen
-from lagrange_casadi.arithmetic.interpret import written_out
-from lagrange_casadi.arithmetic.lookups import cell, entries
-from lagrange_casadi.codegen import printer
-from lagrange_casadi.codegen.printer import literal, print_functions
 from lagrange_casadi.errors import DeclarationError, SizeError
 
 pytestmark = pytest.mark.quick

@@ -15,12 +15,11 @@ from pathlib import Path
 import pytest
 import sweeps
 from compiled import fake_compiler
+from internals import cache, compiler, programs
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, evaluate
-from lagrange_casadi.base import cache
 from lagrange_casadi.cli import main
-from lagrange_casadi.codegen import compiler, programs
 from lagrange_casadi.errors import CompilerError
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"

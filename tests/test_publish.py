@@ -8,8 +8,8 @@ import threading
 import h5py
 import pytest
 import sweeps
+from internals import check_writable, filling, replacing, uninterrupted
 
-from lagrange_casadi.base.publish import check_writable, filling, replacing, uninterrupted
 from lagrange_casadi.errors import PathError
 
 pytestmark = pytest.mark.quick

@@ -3,9 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.base.tables import PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
+from internals import PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES, Output
 
 pytestmark = pytest.mark.quick
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import rainflow, reversals
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.strength.rainflow import rainflow, reversals
 
 pytestmark = pytest.mark.quick
 

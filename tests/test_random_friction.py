@@ -8,17 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import rubbing
+from internals import DesignEngine, EvaluationMethod, Status, forces, search
 from oracle import FORCES
 from random_mechanisms import draw
 from random_verdict import is_regular
 
 from lagrange_casadi import evaluate, refine
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.peak_search import search
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import forces
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

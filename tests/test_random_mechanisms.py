@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from internals import Output
 from random_comparison import CONDEMNED, WITHHELD
 from random_mechanisms import draw
 from random_verdict import compare, is_regular, judge
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.base.quantities import Output
 
 QUICK, LONG = range(10), range(10, 1000)
 REFUSED = 0.02

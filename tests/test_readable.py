@@ -4,8 +4,8 @@ import re
 from importlib import resources
 
 import pytest
-
-from lagrange_casadi.shapes.readable import PREFIXED, STEPS, Scale, scale_for
+from internals import PREFIXED, STEPS, scale_for
+from internals import ReadableScale as Scale
 
 pytestmark = pytest.mark.quick
 

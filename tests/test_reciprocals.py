@@ -3,10 +3,10 @@
 import casadi as ca
 import numpy as np
 import pytest
+from internals import differentiable, share_reciprocals
 from mechanisms import slider_crank
 
 from lagrange_casadi import derive
-from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
 
 pytestmark = pytest.mark.quick
 

@@ -4,15 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from internals import DesignEngine, EvaluationMethod, Status, check_sweep
 from mechanisms import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sweep, tolerances
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, MobilityError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.sweep.checking import check_sweep
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -8,7 +8,7 @@ from balance import instant_at, section_forces
 from conftest import SIXTY_DIGITS
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

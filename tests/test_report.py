@@ -12,15 +12,22 @@ import h5py
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
+from internals import (
+    LIVE_SCRIPTS,
+    SCRIPTS,
+    SWEEP_SCRIPTS,
+    instants,
+    joint_shapes,
+    shapes,
+    write_report,
+)
+from internals import report_page as page
 from reports import HOSTILE, held, hostile, press, snowed, solved, wound
 
 from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
-from lagrange_casadi.report import instants, page, write_report
-from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
-from lagrange_casadi.shapes.shapes import joint_shapes, shapes
 
 ASSETS = {
     path.name: path.read_text()

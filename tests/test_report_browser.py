@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import strong
 from drawn_scenes import every_kind
+from internals import Output
 from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.base.quantities import Output
 
 pytestmark = alive.NEEDS_BROWSER
 

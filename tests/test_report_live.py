@@ -10,6 +10,8 @@ import re
 import alive
 import numpy as np
 import pytest
+from internals import Live
+from internals import report_page as page
 from reports import CASES, held
 
 from lagrange_casadi import Mechanism, Scene, evaluate
@@ -17,7 +19,6 @@ from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.report import Live, page
 
 pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
 

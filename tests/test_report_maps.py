@@ -8,11 +8,11 @@ import alive
 import numpy as np
 import pytest
 import strong
+from internals import Live, contents, maps
+from internals import report_page as page
 from reports import held, press
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.report import Live, maps, page
-from lagrange_casadi.report.contents import contents
 
 chromium = alive.chromium
 

@@ -8,16 +8,14 @@ import re
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
+from internals import place_of, still, upright, view
+from internals import report_page as page
 from reports import CASES, HOSTILE, hostile, press, solved
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.case import load_case
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.report import page
-from lagrange_casadi.report.still import still
-from lagrange_casadi.shapes.solid import place_of
-from lagrange_casadi.shapes.views import upright, view
 
 
 def circles(text):

@@ -4,11 +4,12 @@ that moves all the while.
 
 import alive
 import pytest
+from internals import Live
+from internals import report_page as page
 from reports import CASES
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case
 from lagrange_casadi.motion import harmonic
-from lagrange_casadi.report import Live, page
 
 pytestmark = [pytest.mark.long, alive.NEEDS_BROWSER]
 

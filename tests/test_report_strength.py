@@ -4,15 +4,14 @@ import importlib
 import math
 
 import pytest
+from internals import contents, untold_lines
 from mechanisms import slider_crank
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, bearings, evaluate, save
 from lagrange_casadi.cli import main
-from lagrange_casadi.cli.strength_lines import untold_lines
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic
-from lagrange_casadi.report.contents import contents
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -14,13 +14,12 @@ import numpy as np
 import pytest
 import sweeps
 from forging import edit, forging
+from internals import kind_of, sweep
 from resealing import LISTS, ONCE
 
 from lagrange_casadi import Mechanism, Scene, evaluate, optimise, save
-from lagrange_casadi.base.seal import kind_of
 from lagrange_casadi.cli import main
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.sweep import sweep
 
 FEW, MANY, SEED = 12, 1000, "7"
 ENDINGS = {"refused", "found", "accepted unchanged"}

@@ -5,11 +5,11 @@ things.
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import Output, check, load
+from internals import runs_save as save
 
 from lagrange_casadi import Mechanism, Scene, Sweep, evaluate, refine, sweep
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.store.runs import check, load, save
+from lagrange_casadi.motion import harmonic, polynomial
 
 PLAIN = {
     "law": "hinge",

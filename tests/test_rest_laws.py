@@ -10,16 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import LAWS, Limits, rest_law, s_curve, s_curve_within, trapezoid, trapezoid_within
 
-from lagrange_casadi.declare.rest_laws import (
-    LAWS,
-    Limits,
-    rest_law,
-    s_curve,
-    s_curve_within,
-    trapezoid,
-    trapezoid_within,
-)
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 pytestmark = pytest.mark.quick

@@ -4,8 +4,8 @@ import math
 from pathlib import Path
 
 import pytest
+from internals import space
 
-from lagrange_casadi.base import space
 from lagrange_casadi.errors import SizeError
 
 pytestmark = pytest.mark.quick

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from lagrange_casadi.verification.roundings import rounding_error
+from internals import rounding_error
 
 pytestmark = pytest.mark.quick
 

@@ -7,12 +7,11 @@ import math
 import numpy as np
 import pytest
 import strong
+from internals import cycles, factor, outputs
 
 from lagrange_casadi import beams, evaluate, export, prepare
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.scene import outputs
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.strength.fatigue import cycles, factor
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

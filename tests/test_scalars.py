@@ -8,8 +8,7 @@ from itertools import product as pairs
 import casadi as ca
 import numpy as np
 import pytest
-
-from lagrange_casadi.arithmetic import scalars
+from internals import scalars
 
 pytestmark = pytest.mark.quick
 

@@ -4,13 +4,10 @@ import casadi as ca
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import DesignEngine, Laws, Scaled, Status
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.laws import Laws
-from lagrange_casadi.declare.scaled import Scaled
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -4,10 +4,10 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from internals import LARGE, Scales
 
 from lagrange_casadi import Mechanism, Scene, check, evaluate, load, save
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.store.scales import LARGE, Scales
+from lagrange_casadi.motion import polynomial
 
 MANY = 5600
 """More than a list in an object's header has room for."""

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from internals import outputs
 from mechanisms import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.declare.scene import outputs
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

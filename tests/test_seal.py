@@ -14,15 +14,14 @@ from conftest import ROOT
 from forging import flip, unseal
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import base_seal as seal
+from internals import check_sweep, is_sweep
+from internals import file as optimum
+from internals import runs as store
 
 from lagrange_casadi import Sweep, check, load, save, sweep
-from lagrange_casadi.base import seal
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
-from lagrange_casadi.store import runs as store
-from lagrange_casadi.studies.optimise import file as optimum
-from lagrange_casadi.studies.sweep import is_sweep
-from lagrange_casadi.studies.sweep.checking import check_sweep
 
 MIB = 1 << 20
 

@@ -10,18 +10,23 @@ import alive
 import numpy as np
 import pytest
 from compiled import PEDANTIC, cc
+from internals import (
+    END,
+    PLANE,
+    SIDES,
+    SPACE,
+    NumericDensity,
+    Output,
+    SectionInputs,
+    grids,
+    law_of,
+    print_functions,
+    section,
+    section_entries,
+)
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.base.tables import PLANE, SPACE
-from lagrange_casadi.codegen.printer import print_functions
-from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.declare.limits import END
-from lagrange_casadi.equations.section_function import SIDES, SectionInputs, section
-from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.laws import law_of
 from lagrange_casadi.motion import harmonic
-from lagrange_casadi.report.sections import section_entries
 
 chromium = alive.chromium
 

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.instants.section_law import PointLoad, SectionLaw
+from internals import FORCES, NumericDensity, PointLoad, SectionLaw
 
 pytestmark = pytest.mark.quick
 

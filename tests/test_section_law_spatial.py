@@ -6,16 +6,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import (
+    SPACE,
+    NumericDensity,
+    Output,
+    Section,
+    SectionLaw,
+    SpatialPointLoad,
+    grids,
+    made_of,
+)
 
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.base.tables import SPACE
-from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.laws import made_of
-from lagrange_casadi.instants.loads import SpatialPointLoad
-from lagrange_casadi.instants.section_law import SectionLaw
-from lagrange_casadi.instants.views import Section
 
 X = np.array([1.0, 0.0, 0.0])
 LENGTH = 0.7

@@ -7,14 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import SPACE, PeakKind
 from reports import wound
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
-from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import dwell, harmonic, move, moves
-from lagrange_casadi.sensitivity.peaks import PeakKind
 
 pytestmark = pytest.mark.quick
 

@@ -7,16 +7,12 @@ import numpy as np
 import pytest
 from balance import columns_at
 from conftest import CASES, PLANAR, SPATIAL
+from internals import FORCES, EvaluationMethod, Output, Sharpness, Slopes, at_instants, unit_ways
 from parametric import declared
 from precise import precise
 from truth import truth
 
 from lagrange_casadi import derive, load_case
-from lagrange_casadi.base.quantities import FORCES, Output
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.peak_search.sharpness import Sharpness
-from lagrange_casadi.sensitivity.series import at_instants
-from lagrange_casadi.sensitivity.slopes import Slopes, unit_ways
 
 RATIOS = (0.1234567, 0.9034567)
 STEP = 2.0**-20

@@ -9,13 +9,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from compiled import HEADER, PEDANTIC, SCENES
+from internals import FLAGS, LANES_PLACE, compensated, plain
 from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
-from lagrange_casadi.codegen.compiler import FLAGS, LANES_PLACE
-from lagrange_casadi.codegen.stages import compensated, plain
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import SizeError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("released")
 

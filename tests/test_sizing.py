@@ -4,13 +4,12 @@ import math
 from pathlib import Path
 
 import pytest
+from internals import Profile, read_profiles, size
 from strong import BARS, arms
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.beams.profiles import Profile, read_profiles
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
-from lagrange_casadi.studies.sizing import size
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

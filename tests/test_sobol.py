@@ -4,9 +4,9 @@ of a kind has one.
 
 import numpy as np
 import pytest
+from internals import MOST_DIMENSIONS, sobol
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.studies.optimise.sobol import MOST_DIMENSIONS, sobol
 
 pytestmark = pytest.mark.quick
 

@@ -7,18 +7,8 @@ import math
 import numpy as np
 import pytest
 from drawn_scenes import CASES, every_kind, moved
-
-from lagrange_casadi.shapes.solid import (
-    BLOCK,
-    MARKS,
-    axes_of,
-    cloud_of,
-    direction_of,
-    grounds_of,
-    lines_of,
-    marks_of,
-    place_of,
-)
+from internals import BLOCK, MARKS, cloud_of, direction_of, grounds_of, lines_of, marks_of, place_of
+from internals import solid_axes_of as axes_of
 
 
 @pytest.mark.sampled(7)

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from internals import Output
 
 from lagrange_casadi import Mechanism, evaluate
-from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.errors import UnknownNameError
 
 pytestmark = pytest.mark.quick

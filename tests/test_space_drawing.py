@@ -10,15 +10,20 @@ import h5py
 import numpy as np
 import pytest
 from drawn_scenes import CASES, every_kind, moved
+from internals import (
+    MechanismDrawing,
+    default_figures,
+    draw,
+    draw_postures,
+    dump_specs,
+    parse_specs,
+    place_of,
+    views,
+)
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.figures.figures import MechanismDrawing, default_figures, draw
-from lagrange_casadi.figures.postures import draw_postures
-from lagrange_casadi.shapes.kept import dump_specs, parse_specs
-from lagrange_casadi.shapes.solid import place_of
-from lagrange_casadi.shapes.views import views
 
 
 def drawn(solution, **asked):

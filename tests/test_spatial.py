@@ -3,9 +3,9 @@
 import math
 
 import pytest
+from internals import reference_posture
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, derive
-from lagrange_casadi.declare.spatial import reference_posture
 from lagrange_casadi.errors import (
     AssemblyError,
     DeclarationError,

@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from conftest import CASES, SMALL, SPATIAL
 from estimates import assert_near, exactly, ratios
+from internals import DesignEngine, EvaluationMethod, figures
 from spatial_reference import Entry
 
 from lagrange_casadi import derive, evaluate, load_case
-from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 G = 9.81
 UP = np.array([0.0, 0.0, 1.0])

@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from declarations import declaration
+from internals import GROUND, NIL, Axes, Output, Vector, certify
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.verification.certificate import certify
-from lagrange_casadi.verification.vectors import GROUND, NIL, Axes, Vector
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

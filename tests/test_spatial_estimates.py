@@ -6,13 +6,13 @@ import functools
 
 import numpy as np
 import pytest
+from internals import ROUNDING
 from spatial_bodies import Rod
 from spatial_bridge import declared, plain
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import SECTION
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.arithmetic.compensated import ROUNDING
 
 RATIOS = (0.0, 0.31, 0.64, 0.97)
 LOOKED_AT = (1, 4, 8)

@@ -6,14 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from internals import Output, check
 from spatial_bridge import coordinate, declared, plain, postures
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import REACTION, SECTION
 from spatial_solutions import RATIOS, evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, load_case, motion, save
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.store.runs import check
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

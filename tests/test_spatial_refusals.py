@@ -8,13 +8,11 @@ from math import cos, radians, sin
 import casadi as ca
 import numpy as np
 import pytest
+from internals import DesignEngine, EvaluationMethod, Status
 from prepared import prepared
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError, ParameterError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -10,19 +10,24 @@ import h5py
 import numpy as np
 import pytest
 from compiled import cc
+from internals import (
+    SCHEMA,
+    SPACE,
+    DesignEngine,
+    EvaluationMethod,
+    Harvest,
+    InstantAxis,
+    MechanismDrawing,
+    SectionMaps,
+    Status,
+    check,
+    default_figures,
+    export,
+)
+from internals import seal_seal as seal
 from spatial_scenes import beams
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, motion, refine, save
-from lagrange_casadi.base.seal import seal
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.base.tables import SPACE
-from lagrange_casadi.exports import export
-from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, default_figures
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.store.runs import SCHEMA, check
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.sweep.columns import Harvest
-from lagrange_casadi.studies.sweep.instant_axis import InstantAxis
 
 LINKS = ("beam", "taper", "bead")
 

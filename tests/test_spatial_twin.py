@@ -5,11 +5,11 @@ is only what is open.
 import numpy as np
 import pytest
 from conftest import CASES, PLANAR
+from internals import Output
 from spatial_draft import orientation
 from spatial_twin import planar, twin
 
 from lagrange_casadi import derive, evaluate, load_case
-from lagrange_casadi.base.quantities import Output
 
 DYADS = (
     "slider_crank",

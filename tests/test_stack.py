@@ -6,11 +6,10 @@ import shutil
 from pathlib import Path
 
 import pytest
+from internals import export, stack
 from stack_usage import deepest
 
 from lagrange_casadi.case import load_case
-from lagrange_casadi.exports import export
-from lagrange_casadi.portable import stack
 
 CASES = sorted(path.parent.name for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 ITERATED = ("beam_pump", "bricard", "cardan_shaft", "delta", "five_link_suspension", "rrr3")

@@ -11,20 +11,27 @@ import pytest
 from balance import instant_at, settle
 from conftest import CASES, NAMES
 from estimates import kind as kind_of
+from internals import (
+    FEW_TURNS,
+    EvaluationMethod,
+    Output,
+    certify,
+    compensated,
+    controlled,
+    interpret,
+    numpy_arithmetic,
+    plain,
+    reference,
+    run,
+    turns_many,
+)
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
 from outside import doubled
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
-from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.verification.certificate import certify
-from lagrange_casadi.verification.reference import reference
+from lagrange_casadi.motion import expression, harmonic, polynomial, samples
 
 DOUBLE = [EvaluationMethod("vm"), EvaluationMethod("c"), EvaluationMethod("lanes")]
 BOUNDS = {"jansen_leg": 1e-5, "excavator": 3e-5, "cardan_shaft": 5e-6, "five_link_suspension": 1e-5}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Statistics, resultants
 from mechanisms import parallelogram, slider_crank
 
 from lagrange_casadi import (
@@ -24,9 +25,7 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.instants.statistics import Statistics
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.peaks import resultants
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -2,8 +2,7 @@
 
 import itertools
 
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.portable.statuses import SHARED, STATUSES
+from internals import SHARED, STATUSES, Status
 
 PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}
 OF_DESIGNS = {

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from internals import stills
 from reports import solved
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.figures.stills import stills
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.quick

@@ -14,12 +14,12 @@ import pytest
 import sweeps
 import xarray
 from forging import edit, flip
+from internals import CONVENTIONS
+from internals import base_seal as seal
+from internals import runs as store
 
 from lagrange_casadi import check, evaluate, load, save
-from lagrange_casadi.base import seal
-from lagrange_casadi.base.tables import CONVENTIONS
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
-from lagrange_casadi.store import runs as store
 
 FOREIGN = "it is an HDF5 file of something else, or without its seal"
 

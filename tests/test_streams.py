@@ -13,16 +13,22 @@ from pathlib import Path
 
 import pytest
 import sweeps
+from internals import (
+    EvaluationMethod,
+    Folder,
+    Measurement,
+    Trade,
+    check_writable,
+    draw_trade,
+    filling,
+    replacing,
+    sweep,
+    writing,
+)
 
 from lagrange_casadi import save
-from lagrange_casadi.base.publish import check_writable, filling, replacing, writing
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
-from lagrange_casadi.figures.trade_plot import draw_trade
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.sweep import sweep
-from lagrange_casadi.studies.sweep.parts import Folder
-from lagrange_casadi.studies.trade import Measurement, Trade
 
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 COLUMN = "peak:effort:O"

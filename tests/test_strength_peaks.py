@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from internals import KINDS, strength_lines
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, refine
-from lagrange_casadi.cli.strength_lines import strength_lines
-from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.peaks import refine_safety, refine_stress

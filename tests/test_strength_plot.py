@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import strong
+from internals import draw_strength, draw_utilisation
 
 from lagrange_casadi import beams, evaluate, figures
-from lagrange_casadi.figures.strength_plot import draw_strength, draw_utilisation
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -29,7 +29,7 @@ def test_links_with_a_beam_have_pictures(pressed, tmp_path):
     ]
     drawn = list(figures.draw(pressed, specs, tmp_path))
     assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
-    from lagrange_casadi.shapes.kept import dump_specs, parse_specs
+    from internals import dump_specs, parse_specs
 
     assert list(parse_specs(dump_specs(specs))) == specs
 

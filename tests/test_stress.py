@@ -5,12 +5,10 @@ import math
 import numpy as np
 import pytest
 import strong
+from internals import KINDS, Member, maxima
 
 from lagrange_casadi import beams, evaluate, load, save
-from lagrange_casadi.equations.stress import KINDS
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.stress import maxima
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -8,10 +8,10 @@ import pytest
 import sweeps
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Grid, Range, Values, check_designs, counted, size_of
+from internals import ListingListed as Listed
 
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.studies.sweep import Grid, Listed, Range, Values
-from lagrange_casadi.studies.sweep.axes import check_designs, counted, size_of
 
 pytestmark = pytest.mark.quick
 

@@ -7,10 +7,9 @@ import pytest
 import sweeps
 from hypothesis import given
 from hypothesis import strategies as st
+from internals import Condition, _front, best, chosen, counts, missed, reading, sweep
 
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.studies.sweep import Condition, best, chosen, reading, sweep
-from lagrange_casadi.studies.sweep.best import _front, counts, missed
 
 pytestmark = pytest.mark.quick
 

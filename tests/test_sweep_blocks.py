@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.studies.sweep.blocks import Queue, chunk_of, slabs
+from internals import Queue, chunk_of, slabs
 
 pytestmark = pytest.mark.quick
 

@@ -13,12 +13,10 @@ import threading
 import h5py
 import pytest
 import sweeps
+from internals import Folder, cores, sweep
 from sweeps import GRID, SIZE, StopError, run, stop_after
 
-from lagrange_casadi.base.space import cores
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
-from lagrange_casadi.studies.sweep import sweep
-from lagrange_casadi.studies.sweep.parts import Folder
 
 
 @pytest.mark.sampled(5)
@@ -47,7 +45,7 @@ def test_the_same_bytes_whatever_the_stops(whole, tmp_path):
 
 def test_the_order_of_blocks_does_not_matter(whole, tmp_path, monkeypatch):
     """Workers that give their blocks backwards."""
-    from lagrange_casadi.studies.sweep import sweeping
+    from internals import sweeping
 
     class Backwards:
         def results(self, plan, queue):
@@ -209,7 +207,7 @@ def test_another_version_is_refused(whole, engine, tmp_path, monkeypatch):
 
 def test_another_law_of_motion_is_refused(whole, tmp_path):
     from lagrange_casadi import Scene
-    from lagrange_casadi.declare.motion import polynomial
+    from lagrange_casadi.motion import polynomial
 
     scene = sweeps.scene()
     other = Scene(scene.mechanism, {"O": polynomial(0, 1)}, t=scene.t, posture=scene.posture)

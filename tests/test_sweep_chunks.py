@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.studies.sweep.chunks import FILTERS, deflated, encoded, fletcher32
+from internals import FILTERS, deflated, encoded, fletcher32
 
 pytestmark = pytest.mark.quick
 

@@ -11,14 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sweeps
+from internals import Folder, Sweep
+from internals import columns as kept
+from internals import sweeps as cluster
 from sweeps import ASKED, CASE
 
 from lagrange_casadi.cli import main, progress
-from lagrange_casadi.cluster import sweeps as cluster
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.studies.sweep import Sweep
-from lagrange_casadi.studies.sweep import columns as kept
-from lagrange_casadi.studies.sweep.parts import Folder
 
 
 @pytest.mark.quick

@@ -13,12 +13,11 @@ import time
 
 import pytest
 import sweeps
+from internals import Cluster, columns, sweep
+from internals import sweeps as cluster
 
 from lagrange_casadi import Case, load_case, optimise
-from lagrange_casadi.cluster import sweeps as cluster
-from lagrange_casadi.cluster.sweeps import Cluster
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
-from lagrange_casadi.studies.sweep import columns, sweep
 
 distributed = pytest.importorskip(
     "distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'"

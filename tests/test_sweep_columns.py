@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 import sweeps
+from internals import FORCES, EvaluationMethod, Task, Timing, columns, forces, refine, sweep
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.peaks import forces, refine
-from lagrange_casadi.studies.sweep import columns, sweep
-from lagrange_casadi.studies.sweep.plan import Task
 
 pytestmark = pytest.mark.quick
 

@@ -13,10 +13,10 @@ import textwrap
 
 import pytest
 import sweeps
+from internals import Folder
 from sweeps import GRID, StopError, run, stop_after
 
 from lagrange_casadi.errors import DeclarationError, SizeError, StoreError
-from lagrange_casadi.studies.sweep.parts import Folder
 
 
 def test_after_a_failure_nothing_more_is_begun(engine, tmp_path, monkeypatch):

@@ -6,13 +6,13 @@ import numpy as np
 import plotted
 import pytest
 import sweeps
+from internals import Front, Peaks, Scatter, default_plots, draw_sweep, sweep
+from internals import ListingListed as Listed
+from internals import PlotsAlong as Along
 from plotted import BENDING, CLOSED, EFFORT, lines, plain, rewritten
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
-from lagrange_casadi.studies.sweep import Listed, sweep
-from lagrange_casadi.studies.sweep.default_figures import default_plots
-from lagrange_casadi.studies.sweep.plots import Along, Front, Peaks, Scatter, draw_sweep
 
 
 @pytest.fixture

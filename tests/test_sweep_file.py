@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import sweeps
 import xarray
+from internals import CONVENTIONS, sweep
+from internals import ListingListed as Listed
 
-from lagrange_casadi.base.tables import CONVENTIONS
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.studies.sweep import Listed, sweep
 
 pytestmark = pytest.mark.quick
 
@@ -129,7 +129,7 @@ def test_no_path_and_no_clock_is_in_it(file):
 
 def test_names_that_the_file_keeps_are_refused(monkeypatch, tmp_path):
     from lagrange_casadi import Mechanism, Scene
-    from lagrange_casadi.declare.motion import polynomial
+    from lagrange_casadi.motion import polynomial
 
     sweeps.use(monkeypatch)
     m = Mechanism("x")

@@ -10,16 +10,12 @@ import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
+from internals import Plan, Request, Status, check_sweep, designs_of, signature
 from mechanisms import press, slider_crank, uneven
 
 from lagrange_casadi import Sweep, derive, evaluate, sweep
-from lagrange_casadi.base.status import Status
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
-from lagrange_casadi.studies.request import Request
-from lagrange_casadi.studies.sweep.axes import designs_of
-from lagrange_casadi.studies.sweep.checking import check_sweep
-from lagrange_casadi.studies.sweep.plan import Plan, signature
 
 GRID = {"rpm": [60.0, 600.0], "l": (0.3, 0.5, 3)}
 TURN = math.tau

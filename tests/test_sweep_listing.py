@@ -6,11 +6,10 @@ import re
 import numpy as np
 import pytest
 import sweeps
+from internals import check_designs, read_designs
 
 from lagrange_casadi import Mechanism
 from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, UnknownNameError
-from lagrange_casadi.studies.sweep import read_designs
-from lagrange_casadi.studies.sweep.axes import check_designs
 
 pytestmark = pytest.mark.quick
 

@@ -11,10 +11,10 @@ import alive
 import browser
 import numpy as np
 import pytest
+from internals import Sweep, best, chosen
 from reports import CASES, held
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.studies.sweep import Sweep, best, chosen
 
 pytestmark = alive.NEEDS_BROWSER
 

@@ -7,10 +7,10 @@ import textwrap
 
 import pytest
 import sweeps
+from internals import ColumnsColumn as Column
+from internals import Folder
 
 from lagrange_casadi.errors import BusyError, StoreError
-from lagrange_casadi.studies.sweep.columns import Column
-from lagrange_casadi.studies.sweep.parts import Folder
 
 pytestmark = pytest.mark.quick
 

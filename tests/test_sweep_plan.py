@@ -4,10 +4,7 @@ from dataclasses import replace
 
 import pytest
 import sweeps
-
-from lagrange_casadi.studies.request import Request
-from lagrange_casadi.studies.sweep import Grid
-from lagrange_casadi.studies.sweep.plan import Plan, difference
+from internals import Grid, Plan, Request, difference
 
 pytestmark = pytest.mark.quick
 

@@ -5,11 +5,10 @@ says what it leaves out.
 import numpy as np
 import plotted
 import pytest
+from internals import Front, Peaks, Scatter, best, cut, plots
+from internals import PlotsAlong as Along
+from internals import scale_number as number
 from plotted import BENDING, CLOSED, EFFORT, REACH, legend, lines, plain, rewritten
-
-from lagrange_casadi.studies.sweep import best, cut, plots
-from lagrange_casadi.studies.sweep.plots import Along, Front, Peaks, Scatter
-from lagrange_casadi.studies.sweep.scale import number
 
 
 @pytest.fixture

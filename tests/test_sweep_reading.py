@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import sweeps
 from forging import edit, flip
+from internals import ListingListed as Listed
+from internals import Sweep, check_sweep, is_sweep, reading, sweep
+from internals import runs as store
 
 from lagrange_casadi import load, save
 from lagrange_casadi.errors import DeclarationError, PathError, StoreError, UnknownNameError
-from lagrange_casadi.store import runs as store
-from lagrange_casadi.studies.sweep import Listed, Sweep, is_sweep, reading, sweep
-from lagrange_casadi.studies.sweep.checking import check_sweep
 
 GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07], "m1": [0.1, 0.2]}
 LENGTHS = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4]

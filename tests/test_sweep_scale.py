@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from internals import ScaleScale as Scale
+from internals import edges, fitted, logarithmic, tick
+from internals import scale_number as number
 from matplotlib import colors
 from matplotlib.figure import Figure
-
-from lagrange_casadi.studies.sweep.scale import Scale, edges, logarithmic, number, tick
-from lagrange_casadi.studies.sweep.sheet import fitted
 
 pytestmark = pytest.mark.quick
 

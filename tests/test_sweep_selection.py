@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from internals import absent, matches, near
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.studies.sweep.selection import absent, matches, near
 
 pytestmark = pytest.mark.quick
 

@@ -5,12 +5,10 @@ file, on the axes of figures.
 import h5py
 import numpy as np
 import pytest
+from internals import check_sweep, is_of, label
 
 from lagrange_casadi import Sweep, best, prepare, sweep
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.report.of_sweep import is_of
-from lagrange_casadi.studies.sweep.checking import check_sweep
-from lagrange_casadi.studies.sweep.sheet import label
 
 pytestmark = pytest.mark.quick
 

@@ -10,6 +10,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from internals import (
+    CRITERIA,
+    DesignEngine,
+    EvaluationMethod,
+    FibreStresses,
+    Histories,
+    Plan,
+    Request,
+    check_sweep,
+    designs_of,
+    factor,
+    factor_score,
+    lacking,
+    loaded,
+    worst,
+)
+from internals import fatigue_used as used
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import (
@@ -24,25 +41,8 @@ from lagrange_casadi import (
 )
 from lagrange_casadi.cli import main, program
 from lagrange_casadi.errors import DeclarationError, NoDesignError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
-from lagrange_casadi.strength.fatigue import (
-    CRITERIA,
-    Histories,
-    factor,
-    factor_score,
-    lacking,
-    loaded,
-    used,
-)
-from lagrange_casadi.strength.fibres import FibreStresses
-from lagrange_casadi.strength.worst import worst
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.request import Request
-from lagrange_casadi.studies.sweep.axes import designs_of
-from lagrange_casadi.studies.sweep.checking import check_sweep
-from lagrange_casadi.studies.sweep.plan import Plan
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,10 @@ import h5py
 import numpy as np
 import pytest
 from forging import flip
+from internals import Sweep
 from sweeps import ASKED, BENDING, CASE
 
 from lagrange_casadi.cli import main
-from lagrange_casadi.studies.sweep import Sweep
 
 pytestmark = pytest.mark.quick
 

@@ -3,10 +3,9 @@
 import casadi as ca
 import numpy as np
 import pytest
+from internals import Status, check_sweep
 
 from lagrange_casadi import Mechanism, Scene, motion, sweep
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.studies.sweep.checking import check_sweep
 
 pytestmark = pytest.mark.quick
 

@@ -6,13 +6,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import Cycle, tabulate
 from mechanisms import crank_and_rod, four_bar, parallelogram, slider_crank, truss_platform
 from tables import case, made, some_motion, values, worst_gap
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants import tabulate
-from lagrange_casadi.instants.cycle import Cycle
 
 
 def drag_link():

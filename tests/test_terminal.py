@@ -12,12 +12,12 @@ import h5py
 import pytest
 import sweeps
 from forging import forging
+from internals import sweep
 
 import lagrange_casadi.cli
 from lagrange_casadi import evaluate, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import LagrangeCasadiError, escaped, one_line
-from lagrange_casadi.studies.sweep import sweep
 
 CLI = Path(lagrange_casadi.cli.__file__).parent
 WRITERS = {

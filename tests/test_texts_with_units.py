@@ -7,6 +7,7 @@ from decimal import Decimal
 
 import casadi as ca
 import pytest
+from internals import Values, describe, read_designs, sweep
 
 from lagrange_casadi import (
     Mechanism,
@@ -19,10 +20,8 @@ from lagrange_casadi import (
     optimise,
 )
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.description import describe
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import dwell, harmonic, move, moves, polynomial
-from lagrange_casadi.studies.sweep import Values, read_designs, sweep
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import SPACE, DesignEngine, EvaluationMethod, Status, check
 
 from lagrange_casadi import (
     Mechanism,
@@ -21,13 +22,8 @@ from lagrange_casadi import (
     refine,
     save,
 )
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.base.tables import SPACE
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, MobilityError, ParameterError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.store.runs import check
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 
 def scene(**keywords):

@@ -18,6 +18,7 @@ import packer
 import pytest
 import spying
 import threaded
+from internals import Film, Peaks, TimePlot, draw_sweep, pictures, write_animation
 from matplotlib import rcParams
 from stepped import pinned
 
@@ -35,11 +36,7 @@ from lagrange_casadi import (
     symbolic,
     tolerances,
 )
-from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.declare.motion import samples
-from lagrange_casadi.figures import TimePlot
-from lagrange_casadi.shapes import pictures
-from lagrange_casadi.studies.sweep.plots import Peaks, draw_sweep
+from lagrange_casadi.motion import samples
 
 
 def jobs(threads, folder, cache):

@@ -6,12 +6,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import PeakKind, slope_lines
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
-from lagrange_casadi.cli.slope_lines import slope_lines
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.sensitivity.peaks import PeakKind
 
 pytestmark = pytest.mark.quick
 

@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 import xarray
 from forging import edit
+from internals import MechanismDrawing, SectionMaps, SpanPlot, TimePlot, Timing, shortfall
 from mechanisms import driven_slider, press, slider_crank, uneven
 
 from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, refine, save
-from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
-from lagrange_casadi.figures.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
-from lagrange_casadi.studies.peaks import shortfall
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 

@@ -5,6 +5,7 @@ space, and go all ways.
 import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
+from internals import Film, check, write_animation
 
 from lagrange_casadi import (
     Mechanism,
@@ -21,9 +22,7 @@ from lagrange_casadi import (
     shaking,
     sweep,
 )
-from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.store.runs import check
 
 STEEL = beams.material("C45+QT").but(endurance=220e6)
 PARAMETERS = {"l": 0.4, "mu": 0.1, "d": 0.02}

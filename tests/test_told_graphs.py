@@ -6,11 +6,10 @@ import subprocess
 import numpy as np
 import pytest
 from elastic_mechanisms import STEEL, made, three_cranks, work
+from internals import Output, determinate
 
 from lagrange_casadi import Mechanism, Scene, beams, derive, evaluate, export, prepare, sweep
-from lagrange_casadi.base.quantities import Output
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.instants.determinacy import determinate
 from lagrange_casadi.motion import harmonic, polynomial
 
 ROUND, BAR = beams.round_bar(0.01), beams.rectangle(0.02, 0.01)

@@ -8,12 +8,12 @@ import math
 import numpy as np
 import pytest
 from conftest import CASES
+from internals import read_tolerance
 
 from lagrange_casadi import Mechanism, Scene, load_case, prepare, tolerances
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.studies.tolerances import read_tolerance
 
 
 def rotor():

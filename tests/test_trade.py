@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from internals import COMPARED, EvaluationMethod, Measurement, Trade, trade
+from internals import TRADE_METHODS as METHODS
 from outside import doubled
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import AccuracyError, DeclarationError, StoreError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.trade import COMPARED, METHODS, Measurement, Trade, trade
 
 CASES = Path(__file__).parent.parent / "cases"
 SOME = (

@@ -1,12 +1,12 @@
 """Spanning trees: which joints carry coordinates, which close loops."""
 
 import pytest
+from internals import span
 from mechanisms import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import polynomial
-from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from exported import by_c99, exported, instants
+from internals import Output, Profile, certify, default_figures, draw, size
 from reports import held
 from strong import robot
 
@@ -23,14 +24,9 @@ from lagrange_casadi import (
     tool_deflection,
     vibration,
 )
-from lagrange_casadi.base.quantities import Output
-from lagrange_casadi.beams.profiles import Profile
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.figures.figures import default_figures, draw
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety, refine_stress
-from lagrange_casadi.studies.sizing import size
-from lagrange_casadi.verification.certificate import certify
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

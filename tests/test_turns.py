@@ -14,6 +14,7 @@ from balance import columns_at, oracle_of, postures
 from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from internals import DesignEngine, EvaluationMethod, Status, depends_on_turns, refine
 from mechanisms import (
     DAMPING,
     DRAG_LINK,
@@ -27,13 +28,8 @@ from mechanisms import (
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.equations.revolutions import depends_on_turns
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
-from lagrange_casadi.studies.peaks import refine
+from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

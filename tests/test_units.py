@@ -3,9 +3,7 @@
 import math
 
 import pytest
-
-from lagrange_casadi.base.tables import QUANTITIES
-from lagrange_casadi.exports.units import BASE, base_unit
+from internals import BASE, QUANTITIES, base_unit
 
 pytestmark = pytest.mark.quick
 

@@ -14,17 +14,24 @@ import numpy as np
 import pytest
 import sweeps
 from forging import forging
+from internals import (
+    Folder,
+    TimePlot,
+    check_shape,
+    check_sweep,
+    dump_specs,
+    parse_specs,
+    parsed,
+    progress,
+    reported_as,
+    sweep,
+)
+from internals import ListingListed as Listed
+from internals import runs as store
 
 from lagrange_casadi import Sweep, best, check, evaluate, load, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, StoreError
-from lagrange_casadi.figures.figures import TimePlot
-from lagrange_casadi.shapes.kept import dump_specs, parse_specs
-from lagrange_casadi.store import runs as store
-from lagrange_casadi.store.untrusted import check_shape, parsed, reported_as
-from lagrange_casadi.studies.sweep import Listed, sweep
-from lagrange_casadi.studies.sweep.checking import check_sweep, progress
-from lagrange_casadi.studies.sweep.parts import Folder
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numbers beyond numbers
 

@@ -8,14 +8,10 @@ import pytest
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
+from internals import DesignEngine, EvaluationMethod, Status, derive, figures
 
 from lagrange_casadi import Mechanism, Scene, check, density, evaluate, load, motion, refine, save
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.figures import figures
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

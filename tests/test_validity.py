@@ -4,14 +4,12 @@ line.
 
 import numpy as np
 import pytest
+from internals import DesignEngine, EvaluationMethod, Status
 from prepared import prepared
 
 from lagrange_casadi import Mechanism, Scene, density, evaluate
-from lagrange_casadi.base.status import Status
-from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.studies.designs.engine import DesignEngine
+from lagrange_casadi.motion import polynomial
 
 
 def arm(build, names, default=0.0):

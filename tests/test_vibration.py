@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import strong
+from internals import bending_modes_closed as closed
 
 from lagrange_casadi import (
     Mechanism,
@@ -16,7 +17,6 @@ from lagrange_casadi import (
     save,
     vibration,
 )
-from lagrange_casadi.elastic.bending_modes import closed
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from lagrange_casadi.shapes.views import page, upright, view, views
+from internals import upright, view, views
+from internals import views_page as page
 
 pytestmark = pytest.mark.quick
 

@@ -10,19 +10,16 @@ import h5py
 import numpy as np
 import pytest
 from forging import edit
+from internals import by_parameters, derivatives, others, quotient, total
 from mechanisms import slider_crank
 from reports import wound
 from stepped import iterated
 
 from lagrange_casadi import Mechanism, Scene, check, derive, evaluate, load, save, sensitivities
-from lagrange_casadi.base.quantities import quotient
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.wanted_names import by_parameters, others
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
-from lagrange_casadi.instants.derivatives import derivatives
 from lagrange_casadi.motion import harmonic, samples
-from lagrange_casadi.sensitivity.jacobian import total
 
 pytestmark = pytest.mark.quick
 

@@ -16,7 +16,7 @@ import numpy as np
 from stepped import pinned
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep, symbolic
-from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.motion import polynomial
 
 JOBS = 10
 QUICK = "-O0"  # to compile

@@ -11,12 +11,9 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import mpmath
 import numpy as np
+from internals import DIGITS, FORCES, EvaluationMethod, reference, run
 
 from lagrange_casadi import derive
-from lagrange_casadi.base.quantities import FORCES
-from lagrange_casadi.instants.backends import run
-from lagrange_casadi.instants.evaluation_method import EvaluationMethod
-from lagrange_casadi.verification.reference import DIGITS, reference
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)
