@@ -23,9 +23,7 @@ from .base.units import Within, double, is_whole, typed
 from .errors import DeclarationError, shown
 
 LATER = "looked at where it is used"
-"""What an annotation says of an argument whose function tells better than
-a kind what was expected.
-"""
+"""Annotation of an argument that its function checks itself, with a better message."""
 
 _OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
 """Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
@@ -165,7 +163,7 @@ def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
 def _not_taken(
     function: Callable[..., Any], signature: inspect.Signature, given: tuple[Any, ...], wrong: str
 ) -> str:
-    """What a call lacks, or has too much."""
+    """Describe missing or superfluous arguments of a call."""
     each = list(signature.parameters.values())
     own = [one.name for one in each if one.name not in ("self", "cls")]
     named = [one.name for one in each if one.kind is inspect.Parameter.KEYWORD_ONLY]
@@ -349,7 +347,7 @@ def _symbolic(value: Any) -> Any:
 
 
 def _is_path(value: Any) -> bool:
-    """Whether the system could have a file of this name."""
+    """Return whether the system could have a file of this name."""
     with suppress(UnicodeEncodeError):
         return (
             isinstance(value, str | os.PathLike)

@@ -22,7 +22,7 @@ from pathlib import Path
 from types import ModuleType
 
 __path__: list[str] = []
-"""What may be imported from here are files of cases, which :class:`_Finder` finds."""
+"""Package of case files, which :class:`_Finder` finds."""
 
 _FILE = f"{__name__}.file_"
 _HELPERS = "__helpers__"

@@ -41,7 +41,7 @@ def escaped(text: str) -> str:
 
 
 def one_line(error: BaseException) -> str:
-    """What an error says, in one line that may be shown."""
+    """Message of an error in one line that may be shown."""
     return _line(str(error))
 
 
@@ -79,7 +79,7 @@ def warn(words: str, category: type[Warning] = UserWarning) -> None:
 
 
 def lacking(error: OSError) -> bool:
-    """Whether the system has no more of something for now: descriptors, processes, memory.
+    """Return whether the system lacks something for now: descriptors, processes, memory.
 
     Nothing is wrong with what was asked.
     """
@@ -153,12 +153,12 @@ class ParameterError(LagrangeCasadiError):
 
 
 class PickleError(LagrangeCasadiError, PicklingError):
-    """What cannot be sent to another process; the message says what can be sent instead."""
+    """An object cannot be sent to another process; the message says what can be sent instead."""
 
 
 class NumberError(DeclarationError, ValueError):
-    """What is no number in its unit: neither a finite number, nor a text of one with a unit, such
-    as ``350 deg`` or ``100 mm``.
+    """A value is no number in its unit: neither a finite number, nor a text of one with a unit,
+    such as ``350 deg`` or ``100 mm``.
     """
 
 
@@ -216,7 +216,7 @@ class StoreError(LagrangeCasadiError):
 
 
 class SizeError(LagrangeCasadiError):
-    """What is asked for does not fit into memory."""
+    """A result does not fit into memory."""
 
     exit_status = 1
 
@@ -252,7 +252,7 @@ class MissingPackageError(LagrangeCasadiError, ImportError):
 
 
 class CertificateError(LagrangeCasadiError):
-    """What was computed fails the independent checks that come with it."""
+    """A result fails the independent checks that come with it."""
 
     exit_status = 1
 
@@ -262,6 +262,6 @@ class CertificateWarning(UserWarning):
 
 
 class StoppedError(LagrangeCasadiError):
-    """What was asked for was stopped from outside, by Ctrl-C or a signal; what is done is kept."""
+    """A command was stopped from outside, by Ctrl-C or a signal; finished parts are kept."""
 
     exit_status = 130

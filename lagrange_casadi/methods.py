@@ -1,5 +1,4 @@
-"""What lies above what it is asked of: one table, by which methods of data and keywords of
-functions reach other packages.
+"""Table by which methods of data and keywords of functions reach packages that lie above them.
 
 `Solution`, `Scene` and `Sweep` are data, and so know no report, no animation and no factor of
 safety. Their methods look these up here when they are called. No other module may name a module in
@@ -35,7 +34,7 @@ METHODS: dict[str, str] = {
     "optimise.dask": "cluster.searches:searching",
     "sweep.dask": "cluster.sweeps:Cluster",
 }
-"""By the name of what is asked: the module and the function that answer."""
+"""Module and function of each method, by its name."""
 
 
 def method(name: str) -> Callable[..., Any]:

@@ -9,8 +9,8 @@ _IN_A_CLONE = Path(__file__).parents[1] / "cases"
 
 
 def shipped_cases() -> dict[str, Path]:
-    """Their folders by name: of a clone its own, else what the installation's record tells; none
-    where there are none.
+    """Folders of the shipped cases by name: a clone's own, else those in the installation's record;
+    none if there are none.
 
     An installation that runs from a clone has copies of its cases too, as they were when it was
     installed.

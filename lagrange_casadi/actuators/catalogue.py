@@ -79,7 +79,7 @@ class Motor:
 
     @property
     def rated_power(self) -> float:
-        """At its rated speed [W]."""
+        """Power at the rated speed [W]."""
         return self.rated_torque * self.rated_speed
 
 
@@ -129,7 +129,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
 
 
 def _unit(head: Row, column: str, unit: str | None, linear: bool) -> float:
-    """What a column's unit is in SI units."""
+    """SI unit of a column."""
     kind = column.rpartition("_")[2]
     units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
     if unit is not None and unit not in units:

@@ -1,5 +1,5 @@
-"""What a duty takes of a motor: its warmth, its torque, its speed; and the smallest of a catalogue
-that serves.
+"""Requirements of a duty on a motor: temperature rise, torque, speed; and the smallest motor of a
+catalogue that meets them.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Choice:
 
     @property
     def shares(self) -> dict[str, float]:
-        """How much of each limit it takes, by the limit's name."""
+        """Used fraction of each limit, by the limit's name."""
         return {"heat": self.heat, f"peak {self.duty.pull}": self.torque, "speed": self.speed}
 
     @property
@@ -49,13 +49,13 @@ class Choice:
 
     @property
     def serves(self) -> bool:
-        """Whether it keeps all limits."""
+        """True if the motor keeps all limits."""
         return max(self.shares.values()) <= 1.0
 
 
 @public
 def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
-    """What a duty takes of a motor.
+    """Compare a motor with the requirements of a duty.
 
     Heat is the root mean square of its torque over what it bears continuously at the mean speed; of
     a motor with a ``time_constant`` the root of its largest warmth in a cycle that goes on over and
@@ -120,6 +120,6 @@ def _worst(choice: Choice) -> float:
 
 
 def _told(choice: Choice) -> str:
-    """Which limit is broken most, and by how much."""
+    """Name the limit that is exceeded most, and by how much."""
     share = 100.0 * choice.shares[choice.governs]
     return f"{choice.governs} {share:.3g} % of what it bears, with a ratio of {choice.ratio:g}"

@@ -1,5 +1,5 @@
-"""What a cycle asks of the motor of a drive: speeds and torques behind its gearbox, their means,
-power and energy.
+"""Requirements of a cycle on the motor of a drive: speeds and torques behind its gearbox, their
+means, power and energy.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..instants.held import Holding
 from ..instants.solution import Solution
 
 _COARSE = 0.01
-"""By how much every second instant may tell otherwise, where instants are enough."""
+"""Largest relative change, if only every second instant is used, for which instants are enough."""
 
 
 class InertiaRatio(NamedTuple):
@@ -33,8 +33,8 @@ class InertiaRatio(NamedTuple):
 @public
 @dataclass(frozen=True, eq=False)
 class Duty:
-    """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N
-    m], each (t,).
+    """Requirements of a drive over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m],
+    each (t,).
 
     The motor turns ``ratio`` times as fast as the drive. Its gearbox loses a share of what passes
     it, whichever way: 1 less its ``efficiency``. The torque turns the motor's own ``inertia`` [kg
@@ -55,7 +55,7 @@ class Duty:
 
     @property
     def pull(self) -> str:
-        """What its torque is called."""
+        """Name of the drive's torque or force."""
         return "force" if self.linear else "torque"
 
     @property
@@ -80,7 +80,7 @@ class Duty:
 
     @property
     def power(self) -> Array:
-        """What the motor gives [W], (t,)."""
+        """Power of the motor [W], (t,)."""
         return self.speed * self.torque
 
     @property
@@ -97,12 +97,12 @@ class Duty:
 
     @property
     def energy(self) -> float:
-        """What the motor gives over the instants, less nothing that comes back [J]."""
+        """Energy from the motor over the instants [J]; energy that comes back is not subtracted."""
         return _positive_area(self.t, self.power)
 
     @property
     def regenerated(self) -> float:
-        """What comes back to the motor over the instants [J]."""
+        """Energy that comes back to the motor over the instants [J]."""
         return _positive_area(self.t, -self.power)
 
     @property
@@ -124,8 +124,8 @@ class Duty:
 
     @property
     def coarse(self) -> bool:
-        """Whether instants are too few: every second one tells a root of the mean square, or a
-        peak, that is 1 % off.
+        """True if the instants are too few: with every second one a root mean square, or a peak,
+        changes by 1 %.
         """
         half = replace(
             self, t=self.t[::2], speed=self.speed[::2], torque=self.torque[::2], carried=None
@@ -227,7 +227,7 @@ def duty_of(
 
 
 def slides(solution: Solution, joint: str) -> bool:
-    """Whether the coordinate of a drive is a length."""
+    """Return whether the coordinate of a drive is a length."""
     return solution.unit(f"motion:{joint}") == "m"
 
 

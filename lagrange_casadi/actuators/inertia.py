@@ -64,7 +64,7 @@ def inertia_at(
 
 
 def _alone(seen: SeenInertia, out: Array, drive: int) -> Array:
-    """Of the columns M and R (columns, t) the inertia that one drive feels alone."""
+    """Inertia at one drive alone, from the columns M and R (columns, t)."""
     count = len(seen.motions)
     matrix, by_rate = (
         part.reshape(-1, count, out.shape[1]).transpose(2, 0, 1)

@@ -1,4 +1,4 @@
-"""How warm a motor's winding gets in a cycle that goes on over and over."""
+"""Temperature of a motor's winding in a cycle that is repeated without end."""
 
 from __future__ import annotations
 

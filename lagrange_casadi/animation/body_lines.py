@@ -179,7 +179,7 @@ def _guide(motion: Motion, stage: Stage, joint: JointShape) -> Line:
 def _block(
     motion: Motion, stage: Stage, joint: JointShape, masses: set[str], colours: dict[str, str]
 ) -> Line:
-    """What slides: in the colour of its body, larger where it is the point mass itself."""
+    """Draw a sliding part: in the colour of its body, larger if it is the point mass itself."""
     body = joint.parent.body if joint.child.body == "ground" else joint.child.body
     mass = body in masses
     length, height = np.array(_POINT if mass else _BLOCK) * stage.unit / 2

@@ -1,4 +1,4 @@
-"""What is drawn on the sheet, frame by frame: lines, faces, dots and words.
+"""Lines, faces, dots and words on the sheet, frame by frame.
 
 Places are in points, from the upper left.
 """

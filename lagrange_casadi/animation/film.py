@@ -1,4 +1,4 @@
-"""What is asked of an animation, and the file that it makes."""
+"""Options of an animation, and the file that it makes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
 
 _KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
-"""Those that browsers show."""
+"""Kinds that browsers show."""
 
 _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 
@@ -39,8 +39,8 @@ _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 @public
 @dataclass(frozen=True)
 class Film:
-    """How a cycle is shown: the picture's ``width`` [pixels], frames a second, and the ``seconds``
-    that a cycle takes.
+    """Options of a film: the picture's ``width`` [pixels], frames a second, and the ``seconds`` of
+    a cycle.
 
     ``forces`` adds reactions, efforts and loads as arrows, ``section`` a section force by its name,
     as "bending", as ribbons along links. ``names`` writes the joints' names beside them. Raises

@@ -28,12 +28,12 @@ LONGEST, _WIDEST = 0.3, 0.2
 
 _RATIOS = 41
 _FULL = 1.5 * np.pi
-"""What the arc of the largest moment spans."""
+"""Angle of the arc of the largest moment."""
 
 
 @dataclass(frozen=True, eq=False)
 class Action:
-    """What acts at a place (frames, 3): a force [N], or a moment [N m], (frames, 3) in ground axes.
+    """Force [N] or moment [N m] at a place (frames, 3), in ground axes.
 
     ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load; a load
     pushes at its place.
@@ -52,7 +52,7 @@ class Action:
 
     @property
     def tail(self) -> bool:
-        """Whether its arrow begins at its place, and does not end there."""
+        """True if the arrow begins at its place, and does not end there."""
         return self.kind != "load"
 
 

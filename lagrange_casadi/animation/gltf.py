@@ -64,7 +64,7 @@ def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False
 
 @dataclass(eq=False)
 class _Scene:
-    """What a file holds, as it is added: nodes, meshes, and the arrays that they are made of."""
+    """Contents of a file as they are added: nodes, meshes, and the arrays of these."""
 
     solution: Solution
     chosen: npt.NDArray[np.intp]
@@ -206,7 +206,7 @@ class _Scene:
                 yield number
 
     def _still(self) -> Iterator[int]:
-        """What stands still: blocks under joints on the ground, and the ways of declared points."""
+        """Draw fixed parts: blocks under joints on the ground, and the paths of declared points."""
         for joint in joint_shapes(self.solution.description):
             if joint.parent.body != "ground" or joint.kind == "free":
                 continue

@@ -40,7 +40,7 @@ class Motion:
         return found
 
     def place(self, spot: Spot) -> Array:
-        """Where a place is, (frames, 3) in ground axes [m]."""
+        """Return the coordinates of a place, (frames, 3) in ground axes [m]."""
         return self.at(placed(self.solution, spot))
 
     def way(self, body: str, direction: Place, at: Place = (0.0, 0.0, 0.0)) -> Array:

@@ -28,10 +28,10 @@ _SAMPLES = 6
 """Frames from which the colours of a GIF are taken."""
 
 _COLOURS = 128
-"""Of a GIF: more are not seen, and take room."""
+"""Number of colours of a GIF: more are not visible, and take space."""
 
 _WHITE = 248
-"""What is no darker is white."""
+"""Least brightness that counts as white."""
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -92,7 +92,7 @@ def gif(picture: Picture, seconds: float) -> bytes:
 
 
 def find_ffmpeg() -> str:
-    """Where the program is that makes an MP4.
+    """Find the program that makes an MP4.
 
     Raises :class:`.LagrangeCasadiError` where it is not found.
     """

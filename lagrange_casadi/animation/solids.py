@@ -157,7 +157,7 @@ def plate(corners: Array, normal: Array) -> Mesh:
 
 
 def _outward(mesh: Mesh) -> Mesh:
-    """The same with every triangle counter-clockwise, seen from where its normals point to."""
+    """Turn every triangle counter-clockwise, seen from outside."""
     a, b, c = (mesh.places[mesh.corners[:, k]] for k in range(3))
     inward = np.sum(np.cross(b - a, c - a) * mesh.normals[mesh.corners].sum(axis=1), axis=1) < 0.0
     return Mesh(

@@ -1,5 +1,5 @@
-"""How ground axes [m] come onto the sheet: one view, one scale, everything that is ever shown
-inside.
+"""Projection of ground axes [m] to the sheet: one view, and one scale for everything that is ever
+shown.
 """
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ class Stage:
         return found
 
     def depth(self, places: Array) -> float:
-        """How near places (..., 3) are to whoever looks, in the mean."""
+        """Mean depth of places (..., 3) towards the viewer."""
         return float(np.mean(places @ self.toward))
 
 
 def directions(description: Description) -> tuple[Array, Array]:
-    """What is to the right and up on the sheet: x and y, or those of a slanted view in space."""
+    """Directions to the right and up on the sheet: x and y, or those of a slanted view in space."""
     if not in_space(description):
         return np.eye(3)[0], np.eye(3)[1]
     one = view(upright(description["gravity"]), AZIMUTH, ELEVATION)

@@ -21,7 +21,7 @@ from .scalars import applied
 Box = tuple[Any, Any]
 
 _WIDER = 2.0**-40
-"""By what part of the larger bound each is widened."""
+"""Relative widening of each bound."""
 
 _TURN = 2.0 * math.pi
 _RISING = {
@@ -37,12 +37,12 @@ _RISING = {
 }
 _RISING |= {ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_ERF}
 _STEPS = {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN, ca.OP_FMIN, ca.OP_FMAX, ca.OP_ASSIGN, ca.OP_TWICE}
-"""What rises with its operands, and rounds nothing."""
+"""Operations that rise with their operands, and round nothing."""
 
 
 def boxed(function: Any) -> tuple[list[Any], list[Box], Any]:
-    """Of a followable function ``(x, fixed) -> rows`` the symbols ``low``, ``high`` and ``fixed``,
-    and bounds of the rows.
+    """Bounds of the rows of a followable function ``(x, fixed) -> rows``, with the symbols ``low``,
+    ``high`` and ``fixed``.
 
     Last is how wide all bounds are, added up: where it is not finite they say nothing.
     """
@@ -120,7 +120,7 @@ class _Boxes:
         return low - room, high + room
 
     def unknown(self, where: Any) -> None:
-        """Where bounds say nothing."""
+        """Bounds that exclude nothing."""
         self.width += ca.if_else(where, math.inf, 0.0)
 
     def _hull(self, *corners: Any) -> Box:
@@ -187,7 +187,7 @@ class _Boxes:
         return self._hull(*(ca.atan2(one, other) for one in _ends(y) for other in _ends(x)))
 
     def _left(self, x: Box, y: Box, whole: Callable[[Box], Box]) -> Box:
-        """What is left of ``x`` where whole multiples of ``y`` are taken away."""
+        """Remainder of ``x`` after whole multiples of ``y``."""
         times = whole(self._mul(x, self._inv(y)))
         return self._sub(x, self._mul(times, y))
 
@@ -198,7 +198,7 @@ class _Boxes:
 
 
 def _once(code: int, rule: Callable[..., Box]) -> Callable[..., Box]:
-    """What is known to the last bit is computed as it is elsewhere."""
+    """Compute a value that is known to the last bit as elsewhere."""
 
     def ruled(*boxes: Box) -> Box:
         if all(box[0] is box[1] for box in boxes):
@@ -221,7 +221,7 @@ def _whole(x: Any) -> Any:
 
 
 def _true(x: Box) -> Box:
-    """Whether it is certainly not zero, and whether it may be something else."""
+    """Return whether an interval certainly excludes zero, and whether it contains anything else."""
     return ca.logic_or(x[0] > 0.0, x[1] < 0.0), ca.logic_or(x[0] != 0.0, x[1] != 0.0)
 
 

@@ -78,7 +78,7 @@ class Pairs:
 
     @property
     def arithmetic(self) -> Arithmetic:
-        """What :func:`.interpret` asks for."""
+        """Operations for :func:`.interpret`."""
         return Arithmetic(self.constant, self.operations)
 
     @cached_property
@@ -205,7 +205,7 @@ class Pairs:
         )
 
     def _looked_up(self, lookup: Lookup, x: Pair) -> Pair:
-        """What a table has for a number: an entry with all the digits that a pair holds."""
+        """Look a number up in a table: an entry with all the digits of a pair."""
         if lookup.kind == "cell":
             return Pair(lookup.function(x.value))
         high, low = lookup.parts(DTYPES[self.precision])

@@ -83,8 +83,8 @@ def steps(function: Any) -> tuple[Step, ...]:
 
 @functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
-    """Whether a function is written in scalars, calls nothing but tables, and does nothing that is
-    unknown here.
+    """Return whether a function is written in scalars, calls nothing but tables, and contains no
+    operation that is unknown here.
     """
     return bool(function.is_a("SXFunction")) and all(
         step.operation in _KNOWN or step.looked_up for step in steps(function)
@@ -230,7 +230,7 @@ def numpy_arithmetic() -> Arithmetic:
 
 
 def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
-    """As in C, a comparison is one or zero."""
+    """Let a comparison be one or zero, as in C."""
     return lambda *values: np.asarray(function(*values)).astype(np.result_type(*values))
 
 
@@ -294,8 +294,8 @@ _FUNCTIONS |= {
     for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
 }
 ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
-"""By how many roundings an operation may be off: functions such as a sine by two, for libraries
-differ. Others round nothing.
+"""Largest number of roundings in the result of an operation: two for functions such as a sine, for
+libraries differ. Others round nothing.
 """
 
 _KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}

@@ -33,8 +33,8 @@ _LEAST = -1074
 
 @dataclass(frozen=True, eq=False)
 class Lookup:
-    """What a function looks up: the number of the ``cell`` between neighbours of rising
-    ``numbers``, or the ``entry`` of a number.
+    """Kind of a lookup: the number of the ``cell`` between neighbours of rising ``numbers``, or the
+    ``entry`` of a number.
 
     A break belongs to the cell after it; beyond the ends the first and the last cell go on. Of a
     cell ``ends`` tells whether a number may be beyond them, which is for others to refuse.
@@ -46,9 +46,7 @@ class Lookup:
     ends: bool = False
 
     def at(self, x: Any) -> Any:
-        """What is looked up for real numbers ``x`` of any shape; of complex ones the real part
-        counts.
-        """
+        """Look real numbers ``x`` of any shape up; of complex ones the real part counts."""
         x = np.real(x)
         if self.kind == "cell":
             return np.searchsorted(self.numbers[1:-1], x, side="right").astype(float)
@@ -87,7 +85,7 @@ def entries(numbers: Sequence[float], number: Any) -> Any:
 
 
 def is_entry(x: Any) -> bool:
-    """Whether a scalar expression is what a table has for a cell, as a whole number."""
+    """Return whether a scalar expression is a table's value for a cell, as a whole number."""
     if not x.is_output():
         return False
     found = lookup(x.dep(0).which_function())
@@ -96,7 +94,7 @@ def is_entry(x: Any) -> bool:
 
 @functools.lru_cache(maxsize=256)
 def lookup(function: Any) -> Lookup | None:
-    """What a function looks up; None for any other function."""
+    """Lookup of a function; None for any other function."""
     found = _NAME.fullmatch(function.name())
     if found is None or not function.is_a("MXFunction"):
         return None

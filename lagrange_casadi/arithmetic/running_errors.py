@@ -1,4 +1,4 @@
-"""How far rounding may put off what a function gives: errors that run along with its operations.
+"""Bounds of rounding errors of a function's results, computed beside its operations.
 
 Every operation hands on what its operands may be off, by what it makes of them itself, and adds its
 own rounding (N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3).

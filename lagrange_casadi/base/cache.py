@@ -37,8 +37,9 @@ LIMIT = 500_000_000
 _UNITS = {"": 1, "k": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 _OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)")
 _WORK, _DRAFT, _FORGOTTEN = "lagrange_casadi-", "build-", 86_400.0
-"""How names of temporary folders begin, and those of files that are being put here; and seconds
-after which whoever made one of these is gone."""
+"""First parts of names of temporary folders, and of files that are being written; and seconds after
+which such a file is abandoned.
+"""
 
 
 @dataclass(frozen=True)
@@ -70,15 +71,15 @@ def limit() -> int:
 
 
 def place() -> Path:
-    """Where the folder is, or would be."""
+    """Path of the folder, whether it exists or not."""
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("lagrange_casadi", appauthor=False))
 
 
 def folder() -> Path | None:
-    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot
-    be written.
+    """Folder of kept files, or None: nothing is to be kept, or, with a warning once, the folder
+    cannot be written.
 
     It is a temporary folder of this process, with a warning once, if others may write into the
     user's.
@@ -124,7 +125,7 @@ def working_folder() -> Iterator[Path]:
 
 
 def _private() -> str:
-    """Where temporary folders are made.
+    """Parent of temporary folders.
 
     Raises :class:`PathError` if others may put something else in their place.
     """
@@ -138,8 +139,8 @@ def _private() -> str:
 
 
 def distrusted(path: Path, *, shared: bool = False) -> str:
-    """Why somebody else may have put there what is at a path, in words; nothing if only this user
-    and root can have.
+    """Reason why somebody else may have written a path, in words; empty if only this user and root
+    can.
 
     As for ssh, the file or folder and all folders that lead to it must belong to them, and nobody
     else may write into them, but for a group that is this user's alone. Folders that lead to it,
@@ -166,7 +167,7 @@ def distrusted(path: Path, *, shared: bool = False) -> str:
 
 @functools.lru_cache
 def _is_own_group(number: int) -> bool:
-    """Whether a group is the one that bears this user's name, and has no other member."""
+    """Return whether a group bears this user's name, and has no other member."""
     try:
         import grp
         import pwd
@@ -238,12 +239,12 @@ def use(file: Path) -> None:
 
 
 def digest(content: bytes) -> str:
-    """What tells whether a content is whole."""
+    """Digest that shows whether a content is whole."""
     return hashlib.sha256(content).hexdigest()
 
 
 def entries(place: Path) -> dict[str, Entry]:
-    """What is kept in a folder by its hash, what was used longest ago first. Raises ``OSError``."""
+    """Entries of a folder by their hash, the one used longest ago first. Raises ``OSError``."""
     found: dict[str, list[tuple[Path, os.stat_result]]] = {}
     for file in os.scandir(place):
         if ours := _OURS.fullmatch(file.name):

@@ -1,5 +1,4 @@
-"""Which signals stop the program, and what they do before it can do better: while its modules are
-imported.
+"""Signals that stop the program, and their first handling while modules are imported.
 
 The package imports this first. In any other program than its own it changes nothing.
 """
@@ -34,8 +33,8 @@ def interrupts() -> list[signal.Signals]:
 
 
 def is_program() -> bool:
-    """Whether this process is the command line: the installed script, or ``python -m`` while that
-    looks for the package.
+    """Return whether this process is the command line: the installed script, or ``python -m`` while
+    that looks for the package.
 
     A process that the program started has the same name.
     """

@@ -65,12 +65,12 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
 
 
 def settled(target: Path) -> Path:
-    """Where a file is put: what a symbolic link leads to, so that the link stays."""
+    """Resolve a file's path: a symbolic link stays, its target is written."""
     return Path(os.path.realpath(target)) if os.path.islink(target) else target
 
 
 def is_hdf5(path: Path) -> bool:
-    """Whether there is a file of HDF5, with or without a user block.
+    """Return whether a file is HDF5, with or without a user block.
 
     Raises :class:`PathError` where it cannot be read.
     """

@@ -25,7 +25,7 @@ def law_members(space: bool) -> tuple[str, ...]:
 
 
 def station_members(space: bool) -> tuple[str, ...]:
-    """What is told of a station of a link."""
+    """Members of a load point of a link in files."""
     return table_of(space).station
 
 
@@ -47,8 +47,8 @@ _LIKE = {"m": "rad", "m/s": "rad/s", "m/s^2": "rad/s^2", "N m": "N"}
 
 
 def compared(units: Sequence[str]) -> list[int]:
-    """Of each unit the number of those among which a size is large or small: lengths beside angles,
-    moments beside forces.
+    """Number of each unit with which sizes are compared: lengths beside angles, moments beside
+    forces.
 
     Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles
     tell.
@@ -68,7 +68,7 @@ _COORDINATE = ".coordinate"
 
 @dataclass(frozen=True)
 class Kinds:
-    """What units of outputs depend on, by name.
+    """Parameters on which units of outputs depend, by name.
 
     ``coordinates`` and ``frictions`` are kinds, "angle" or "slide", of coordinates and of those
     along which joints rub; ``outputs`` are the units of the user's outputs.
@@ -138,19 +138,19 @@ class Output:
 
     @property
     def quantity(self) -> Quantity:
-        """Its row of the table of planar mechanisms, or where these have none of spatial ones: axes
-        and unit are the same in both.
+        """Row of the table of planar mechanisms, or, if these have none, of spatial ones: axes and
+        unit are the same in both.
 
         What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
         """
         return (PLANE if (self.group, self.member) in PLANE else SPACE).row(self.group, self.member)
 
     def meant(self, table: Table) -> Quantity:
-        """Its row of a table. Raises ``KeyError`` where there is none."""
+        """Row of a table. Raises ``KeyError`` if there is none."""
         return table.row(self.group, self.member)
 
     def components(self, table: Table) -> tuple[Output, ...]:
-        """Of what it is the size: the outputs of a resultant, else itself."""
+        """Outputs of which this is the resultant, or itself."""
         members = table.parts(self.group, self.member)
         return (
             (self,)
@@ -160,7 +160,7 @@ class Output:
 
     @property
     def along(self) -> bool:
-        """Whether it goes into the section forces of a link."""
+        """True if it is a part of a link's section forces."""
         return self.group in ("law", "station", "spread")
 
     def unit(self, kinds: Kinds) -> str:

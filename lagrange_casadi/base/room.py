@@ -1,5 +1,5 @@
-"""What this machine has room and time for, said before it is tried: the system ends without a word
-what takes more memory.
+"""Memory and time of this machine, compared with a task before it is tried: the system ends a
+program without a message if memory runs out.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def require(what: str, shape: tuple[int, ...]) -> None:
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -65,9 +65,7 @@ def _machine() -> float:
 
 
 def _groups() -> Iterator[float]:
-    """What is left of the memory of each control group that this process is
-    in: a container is one.
-    """
+    """Free memory of each control group of this process; a container is one."""
     root = Path("/sys/fs/cgroup")
     with suppress(OSError, ValueError):
         for line in Path("/proc/self/cgroup").read_text().splitlines():
@@ -85,7 +83,7 @@ def _groups() -> Iterator[float]:
 
 
 def _left(root: Path, path: str, limit: str, used: str, idle: str) -> Iterator[float]:
-    """Of a group and of those around it.
+    """Free memory of a group and of its parents.
 
     Where the container sees itself as the root, its path is one outside.
     """

@@ -42,8 +42,8 @@ _FEW, _MOST = 4, 8
 
 @dataclass(frozen=True)
 class Seal:
-    """What a seal says: the file is of a ``kind``, and so many bytes
-    with this digest come before.
+    """Contents of a seal: the ``kind`` of the file, the number of bytes before the seal, and their
+    digest.
     """
 
     kind: str
@@ -75,7 +75,7 @@ class Seal:
 
     @property
     def text(self) -> bytes:
-        """As it stands in the file."""
+        """Text of the seal in the file."""
         lines = (
             f"of {self.kind}\nbytes {self.length}\nSHA-256 of the SHA-256 of every MiB"
             f" {self.digest}\n"
@@ -94,11 +94,11 @@ class Seen:
 
     @classmethod
     def of(cls, status: os.stat_result) -> Seen:
-        """From what the system says of it."""
+        """Make it from the system's description of a file."""
         return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
 
     def is_at(self, path: str | os.PathLike[str]) -> bool:
-        """Whether it is still there, unchanged."""
+        """Return whether the file is still there, unchanged."""
         try:
             return self == Seen.of(os.stat(path))
         except OSError:
@@ -118,9 +118,7 @@ def seal(path: Path, kind: str) -> Seen:
 
 
 def kind_of(path: str | os.PathLike[str]) -> str | None:
-    """What a file is of, by its seal alone; None where there is no file,
-    or none with a whole seal.
-    """
+    """Kind of a file, by its seal alone; None if there is no file, or none with a whole seal."""
     try:
         with _opened(path) as file:
             found = _at_the_end(path, file)
@@ -151,7 +149,7 @@ def verify(path: str | os.PathLike[str]) -> Seen:
 
 
 def is_held(path: str | os.PathLike[str]) -> bool:
-    """Whether another program has a file open to write, as HDF5 says it by a lock."""
+    """Return whether another program has a file open to write, as HDF5 shows by a lock."""
     if fcntl is None:
         return False
     try:
@@ -186,7 +184,7 @@ def _at_the_end(path: str | os.PathLike[str], file: FileIO) -> Seal | None:
 
 
 def _unsealed(file: FileIO) -> str:
-    """What is wrong with a file that has no seal."""
+    """Describe the fault of a file that has no seal."""
     file.seek(0)
     if file.read(len(SIGNATURE)) != SIGNATURE:
         return "not a file of this program: it begins otherwise than HDF5"

@@ -6,7 +6,7 @@ import enum
 
 
 class Status(enum.IntEnum):
-    """Whether there is a result, or why there is none."""
+    """Validity of a result, or the reason why there is none."""
 
     OK = 0
     NOT_CONVERGED = 1
@@ -32,7 +32,7 @@ class Status(enum.IntEnum):
 
     @property
     def meaning(self) -> str:
-        """The same in words."""
+        """Meaning of the status in words."""
         return _MEANINGS[self]
 
 

@@ -14,7 +14,7 @@ from typing import BinaryIO
 from ..errors import PathError, StoreError
 
 SOCKET = "a socket"
-"""What cannot be written to by its path."""
+"""Kind that cannot be written by its path."""
 
 _PATIENCE = 10.0
 _PAUSE = 0.02
@@ -22,7 +22,7 @@ _FLAGS = os.O_WRONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0)
 
 
 def stream_word(path: Path) -> str:
-    """What a path is that takes bytes and keeps no file, in words; nothing where it may be a file.
+    """Kind of a path that takes bytes and keeps no file, in words; empty if it may be a file.
 
     Raises ``OSError``.
     """
@@ -52,7 +52,7 @@ def check_regular(path: str | os.PathLike[str]) -> None:
 
 
 def open_stream(path: Path) -> BinaryIO:
-    """What a path leads to, to write.
+    """Open a path to write.
 
     Raises ``OSError``, and :class:`StoreError` for a pipe that nobody begins to read.
     """
@@ -77,12 +77,12 @@ def open_stream(path: Path) -> BinaryIO:
 
 
 def is_standard_output(path: Path) -> bool:
-    """Whether a path leads to where the program's own words go."""
+    """Return whether a path leads to the program's own output."""
     return _standard(path) == 1
 
 
 def _standard(path: Path) -> int | None:
-    """Which of standard output and error a path leads to."""
+    """Return the one of standard output and error to which a path leads."""
     for number in (1, 2):
         try:
             if os.path.samestat(os.stat(path), os.fstat(number)):

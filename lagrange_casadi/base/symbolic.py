@@ -86,9 +86,7 @@ class symbolic_property(functools.cached_property[Value]):  # noqa: N801 - like 
 
 
 class Graphs:
-    """What holds expressions, and may be dropped by any thread: they go
-    when a thread makes others.
-    """
+    """Holder of expressions that any thread may drop: they are freed when a thread makes others."""
 
     def __del__(self, later: Callable[[dict[str, Any]], None] = _dropped.append) -> None:
         later(vars(self))

@@ -32,7 +32,7 @@ SPATIAL_CONVENTIONS = (
 )
 
 CF = "CF-1.8"
-"""What programs may expect of units, names and scales in files: the climate and forecast metadata
+"""Conventions of units, names and scales in files: the climate and forecast metadata
 conventions.
 """
 
@@ -64,7 +64,7 @@ class Quantity:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """What a file says of this quantity, its unit left out."""
+        """Attributes of this quantity in a file, except its unit."""
         return {"long_name": self.long_name} | ({"sign": self.sign} if self.sign else {})
 
 
@@ -373,8 +373,7 @@ MOMENT_RESULTANT = Quantity("reaction", "moment", ("t",), MOMENT, "resultant of 
 
 @dataclass(frozen=True)
 class Terms:
-    """What a section force is made of: members of the law, and what of the loads at stations goes
-    into it.
+    """Terms of a section force: members of the law, and the contribution of point loads.
 
     The ``coefficients`` are those of functions along the link: of 1, mu0 and mu1 for a force, of 1
     alone for torsion. A bending moment has a ``shear``, another section force, whose coefficients
@@ -406,7 +405,7 @@ class Table:
     sections: Mapping[str, Terms]
 
     def __contains__(self, key: tuple[str, str]) -> bool:
-        """Whether a group has such a member."""
+        """Return whether a group has such a member."""
         return key in self._by_key
 
     def row(self, group: str, member: str) -> Quantity:
@@ -444,9 +443,7 @@ class Table:
 
     @cached_property
     def place_first(self) -> tuple[str, ...]:
-        """The same as ``station``, in the order in which emitted C and the loads of a law take
-        them.
-        """
+        """Members of ``station`` in the order of emitted C and of a law's loads."""
         return (_STATION.member, *(member for member in self.station if member != _STATION.member))
 
     @cached_property

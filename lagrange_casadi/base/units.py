@@ -21,7 +21,7 @@ UNITS: dict[str, dict[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
 }
-"""Of each unit the words that a text may tell a number in, and how many of the unit each is."""
+"""Units that a text may have for a number, and their size, for each SI unit."""
 
 _EXAMPLES = {"rad": "'350 deg' or '1.2 rad'", "m": "'100 mm'", "kg": "'500 g'", "s": "'20 ms'"}
 _WRITTEN = re.compile(r"\s*(\S*[\d.])\s*([A-Za-z]+)(/\S+)?\s*")
@@ -32,16 +32,14 @@ Number: TypeAlias = float | str
 
 
 class Within(NamedTuple):
-    """What an annotation says of a number beside its type: that it is finite, and from ``low`` to
-    ``high``, or ``above`` low.
-    """
+    """Annotation of a number: finite, and from ``low`` to ``high``, or ``above`` low."""
 
     low: float = -math.inf
     high: float = math.inf
     above: bool = False
 
     def admits(self, value: float) -> bool:
-        """Whether a number is in this range."""
+        """Return whether a number is in this range."""
         return (
             -math.inf < value < math.inf
             and (self.low < value if self.above else self.low <= value)
@@ -108,7 +106,7 @@ def angle(value: object) -> float:
 
 
 def in_words(unit: str) -> str:
-    """How a number in a unit is told: that it may be a text, where it may."""
+    """Describe a number in a unit, and that it may be a text if it may."""
     base, per, rest = unit.partition("/")
     example = _EXAMPLES.get(base, "")
     if per and example:
@@ -143,12 +141,12 @@ def within(what: str, value: object, low: float, high: float) -> float:
 
 
 def is_whole(value: object) -> TypeGuard[int]:
-    """Whether it is a whole number, of whatever size, and no truth value."""
+    """Return whether a value is a whole number of any size, and no truth value."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def double(value: Any) -> float | None:
-    """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and
+    """Number of Python; None for anything else, such as truth values, texts, arrays, dates and
     symbols.
     """
     if isinstance(value, ca.SX | ca.DM):

@@ -1,6 +1,4 @@
-"""What may be chosen, and what is chosen where nothing is said: words and numbers that need no
-other module.
-"""
+"""Choices and defaults: words and numbers that need no other module."""
 
 from __future__ import annotations
 
@@ -14,10 +12,10 @@ BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
-"""What a sweep keeps of each design."""
+"""Results of each design that a sweep can keep."""
 
 CRITERIA = ("goodman", "gerber", "soderberg", "morrow", "findley")
-"""How a mean stress counts in fatigue."""
+"""Treatments of a mean stress in fatigue."""
 
 YIELDING = ("von_mises", "tresca")
 """Stresses that yield."""
@@ -29,7 +27,7 @@ SAMPLES = 2000
 """Designs drawn within tolerances."""
 
 WIDTH, RATE, SECONDS = 640, 25.0, 4.0
-"""Of an animation: pixels of its width, frames a second, seconds that a cycle takes."""
+"""Defaults of an animation: width in pixels, frames a second, seconds of a cycle."""
 
 TIME_LIMIT = 60.0
 """Seconds that reading a file of unknown origin may take."""

@@ -1,4 +1,4 @@
-"""What links are made of: cross-sections, materials, and where stress concentrates."""
+"""Cross-sections, materials and notches of links."""
 
 from .analysed import analysed
 from .beam import Beam, Notch

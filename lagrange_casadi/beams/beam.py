@@ -1,6 +1,4 @@
-"""What a link is made of: a cross-section along it, a material, and where stress concentrates; and
-as a file keeps it.
-"""
+"""Beam of a link: a cross-section along it, a material, and notches; and its form in a file."""
 
 from __future__ import annotations
 
@@ -19,8 +17,8 @@ from .shape import Course, Shape, course_of, dimensions_of, kinds
 Factor: TypeAlias = Annotated[float, Within(1.0)]
 
 SLIGHT = 1e-6
-"""Of a column's critical load: less compression buckles nothing, as what rounding leaves at a free
-end.
+"""Least fraction of a column's critical load: less compression is rounding at a free end, and
+buckles nothing.
 """
 
 
@@ -83,16 +81,16 @@ class Beam:
 
     @property
     def course(self) -> Course:
-        """How the cross-section goes along the link."""
+        """Cross-sections along the link."""
         return course_of("beam", self.shape)
 
     @property
     def round(self) -> bool:
-        """Whether its cross-sections are the same about any axis across the link."""
+        """True if the cross-sections are the same about any axis across the link."""
         return all(shape.round for shape in self.course.shapes())
 
     def mapped(self, change: Callable[[str, Any], Any]) -> Beam:
-        """The same with other dimensions."""
+        """Beam with other dimensions."""
         return replace(self, shape=self.course.mapped(change))
 
     def masses(self) -> list[list[Any]]:

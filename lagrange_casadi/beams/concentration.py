@@ -22,7 +22,7 @@ from .beam import Notch
 
 _Row = tuple[float, float, float]
 _Fit = Sequence[tuple[float, float, Sequence[_Row]]]
-"""From and to which t/r a fit holds, and C1 to C4, each a + b sqrt(t/r) + c t/r."""
+"""Range of t/r of a fit, and C1 to C4, each a + b sqrt(t/r) + c t/r."""
 
 _ROUND_TENSION: _Fit = (
     (
@@ -204,8 +204,8 @@ def keyway(at: float, *, sensitivity: float = 1.0) -> Notch:
 
 @public
 def sensitivity(radius: float | str, ultimate: float) -> float:
-    """How much of a notch of a ``radius`` [m] fatigue feels in steel of an ``ultimate`` strength
-    [Pa], from 0 to 1.
+    """Notch sensitivity, from 0 to 1, of a ``radius`` [m] in steel of an ``ultimate`` strength
+    [Pa].
 
     Raises :class:`.DeclarationError` for a strength for which it is not known.
     """

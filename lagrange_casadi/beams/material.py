@@ -91,8 +91,8 @@ class Material:
         return tuple(getattr(self, name) for name in names)
 
     def but(self, **numbers: Any) -> Material:
-        """The same with other numbers; where its endurance limit is a share of its ultimate
-        strength, it does not follow.
+        """Material with other numbers; an endurance limit that is a share of the ultimate strength
+        is not changed with it.
         """
         return replace(self, **numbers)
 

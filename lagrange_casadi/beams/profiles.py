@@ -13,7 +13,7 @@ from .shape import Shape, dimensions_of
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:\[\s*(\w+)\s*\])?\s*")
 _UNITS = {"": 1, "m": 1, "cm": 100, "mm": 1000}
-"""How many of each are a metre."""
+"""Number of each unit in a metre."""
 
 
 @public

@@ -1,5 +1,5 @@
-"""What a cross-section is in numbers or expressions: area, second moments, torsion, shear, and the
-fibres that are looked at.
+"""Properties of a cross-section in numbers or expressions: area, second moments, torsion, shear,
+and the fibres at which stress is computed.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ class Properties:
     centre_z: Any = 0.0
 
     def rows(self, fibre: Fibre) -> tuple[tuple[Any, ...], ...]:
-        """What a fibre's stresses, normal, along y and along z, take of axial force, two shears,
-        torsion and two bendings.
+        """Normal stress, and shear stresses along y and z, at a fibre by unit axial force, two
+        shears, torsion and two bendings.
 
         Section forces act at the centroid, torsion counts from the shear centre.
         """
@@ -78,7 +78,7 @@ class Properties:
 
 
 def symbolic(*values: Any) -> bool:
-    """Whether any of the values is an expression."""
+    """True if any of the values is an expression."""
     return any(isinstance(value, (ca.SX, ca.MX)) for value in values)
 
 

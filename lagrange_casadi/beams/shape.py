@@ -19,7 +19,7 @@ from . import solid, walls
 from .properties import Fibre, Properties
 
 Demand = tuple[Any, str]
-"""What must be positive, and in words what it is."""
+"""Expression that must be positive, and its description."""
 
 
 @public
@@ -39,25 +39,27 @@ class Shape:
             object.__setattr__(self, "dimensions", read)
 
     def properties(self, *, space: bool = True) -> Properties:
-        """Its properties; round ones have fewer fibres where bending is in one plane alone."""
+        """Properties of the shape; round ones have fewer fibres if bending is in one plane
+        alone.
+        """
         return _FORMS[self.kind](dict(self.dimensions), space)
 
     @property
     def round(self) -> bool:
-        """Whether it is the same about any axis of its plane."""
+        """True if the shape is the same about any axis of its plane."""
         return self.kind in _ROUND
 
     @property
     def area(self) -> Any:
-        """Its area [m^2]."""
+        """Area [m^2]."""
         return _AREAS[self.kind](dict(self.dimensions))
 
     def demands(self) -> Iterator[Demand]:
-        """What its dimensions demand."""
+        """Conditions on the dimensions."""
         return _demands(self.kind, dict(self.dimensions))
 
     def mapped(self, change: Callable[[str, Any], Any]) -> Shape:
-        """The same with other dimensions, by name and value."""
+        """Shape with other dimensions, by name and value."""
         return Shape(
             self.kind, {name: change(name, value) for name, value in self.dimensions.items()}
         )
@@ -65,22 +67,22 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a cross-section goes along a link: between two ``breaks``, ratios xi/l, linear from one
-    shape to another of its kind.
+    """Cross-sections along a link: linear between two ``breaks``, ratios xi/l, from one shape to
+    another of its kind.
     """
 
     breaks: tuple[float, ...]
     cells: tuple[tuple[Shape, Shape], ...]
 
     def mapped(self, change: Callable[[str, Any], Any]) -> Course:
-        """The same with other dimensions."""
+        """Course with other dimensions."""
         made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
         return Course(
             self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells)
         )
 
     def shapes(self) -> Iterator[Shape]:
-        """Its shapes, each once."""
+        """Shapes of the course, each once."""
         yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
 
 

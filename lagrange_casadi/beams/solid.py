@@ -182,7 +182,7 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Properties:
 
 
 def polygon_area(places: Sequence[tuple[Any, Any]]) -> Any:
-    """Its area, positive where the corners go round counter-clockwise."""
+    """Area of a polygon, positive if the corners go round counter-clockwise."""
     return _moments(list(zip(places, [*places[1:], places[0]], strict=True)))[0]
 
 

@@ -32,11 +32,11 @@ _OPTIONS = {
     "which `load` reads": "which the commands info, plot and check read",
     "which `Sweep.open` reads": "which the commands table, best, info, plot and check read",
 }
-"""What errors call in Python's words, in the command line's."""
+"""Options of the command line for the Python names in errors."""
 
 _NUMPY = r"\s*casadi: a numpy function was called"
-"""How a note of CasADi begins that fills the screen: what NumPy makes of symbols is what it should
-be.
+"""First words of CasADi's note that NumPy makes arrays of symbols, which is intended, and which
+fills the screen.
 """
 
 
@@ -51,7 +51,7 @@ class _Interrupted(Exception):  # noqa: N818 - it is no error
 
 
 class _Unread(Exception):  # noqa: N818 - it is no error
-    """Whoever read standard output has closed it, as ``head`` does: nothing is left to be said."""
+    """The reader of standard output has closed it, as ``head`` does: nothing more is written."""
 
 
 class _Commands(click.Group):
@@ -183,14 +183,14 @@ def _insistent() -> Iterator[None]:
 
 
 def _unless_interrupted(told: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """What tells of exceptions that Python ignores, but not of interrupts."""
+    """Report exceptions that Python ignores, except interrupts."""
     return lambda ignored: (
         None if issubclass(ignored.exc_type, KeyboardInterrupt) else told(ignored)
     )
 
 
 def _in_casadi(frame: FrameType | None) -> bool:
-    """Whether what is under way was called by CasADi, or calls it."""
+    """Return whether CasADi called this frame, or is called by it."""
     while frame is not None:
         if frame.f_globals.get("__name__", "").partition(".")[0] == "casadi":
             return True

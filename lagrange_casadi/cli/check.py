@@ -36,7 +36,7 @@ Modules in the current folder, where files arrive, are not for it.
 """
 
 _VARIABLES = {"HDF5_PLUGIN_PRELOAD": "::"}
-"""How HDF5 is told to load no filters from outside."""
+"""Environment by which HDF5 loads no filters from outside."""
 
 _ANSWER = {"findings": [str], "refused": str, "status": int}
 _LONGEST = 1e6
@@ -71,7 +71,7 @@ def _findings(file: Path) -> list[str]:
 
 
 def _findings_apart(file: Path, seconds: float) -> list[str]:
-    """What another process finds.
+    """Check a file in another process.
 
     Raises :class:`StoreError` where it does not end in time, or ends without an answer.
     """

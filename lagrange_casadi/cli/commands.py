@@ -723,4 +723,4 @@ COMMANDS = (
     run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise,
         tolerances, size, drive, cases, new, cache
 )  # fmt: skip
-"""In the order in which help lists them."""
+"""Commands in the order of the help."""

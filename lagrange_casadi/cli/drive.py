@@ -28,7 +28,7 @@ from .options import parameters
 
 _BAR = 40
 _FORCES = ("reaction", "multiplier", "load", "friction")
-"""Beside efforts and motion what a certificate needs."""
+"""Outputs that a certificate needs beside efforts and motion."""
 
 
 def drive_command(
@@ -140,7 +140,7 @@ def _choose(
 
 
 def _load_lines(load: Duty) -> Iterator[str]:
-    """What is asked at the drive itself."""
+    """Lines of the load at the drive itself."""
     force = "N" if load.linear else "N m"
     yield (
         f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force},"

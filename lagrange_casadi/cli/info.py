@@ -156,7 +156,7 @@ def _describe_mechanism(description: Description) -> None:
 
 
 def _in_plane(joint: Description) -> str:
-    """How a joint of a plane moves."""
+    """Describe a joint of a plane."""
     along = (
         f", along {_vector(joint['axis'])} of {joint['parent']['body']}"
         if joint["kind"] in ("prismatic", "slot")
@@ -171,9 +171,7 @@ def _in_plane(joint: Description) -> str:
 
 
 def _in_space(joint: Description, description: Description) -> str:
-    """How a joint in space moves: about or along which axis by each of its coordinates that are
-    told, and what drives it.
-    """
+    """Describe a joint in space: the axis of each of its coordinates, and what drives it."""
     told, unmeasured = "", set(description["unmeasured"])
     for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
         if name not in unmeasured:
@@ -193,8 +191,8 @@ def _in_space(joint: Description, description: Description) -> str:
 
 
 def _driven(coordinate: str, joint: Description, description: Description) -> str:
-    """Whether an effort drives a coordinate, and whether its motion is given, where the two are not
-    the same.
+    """Describe whether an effort drives a coordinate, and whether its motion is given, if the two
+    differ.
     """
     given, drives = coordinate in joint["driven"], description.get("drives")
     if drives is None:

@@ -1,4 +1,4 @@
-"""What the command line says of a search for designs."""
+"""Console output of a search for designs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..studies.optimise import Front, Optimum
 
 
 def optimum_lines(found: Optimum) -> Iterator[str]:
-    """What a search found, a line each."""
+    """Lines of a search's result."""
     yield (
         f"{found.case}: {found.minimised} = {found.objective:.8g} {found.unit} at"
         f" {_design(found.values, 8)}"

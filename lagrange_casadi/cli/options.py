@@ -1,4 +1,4 @@
-"""How the command line's words are read."""
+"""Parsers of the command line's values."""
 
 from __future__ import annotations
 
@@ -299,7 +299,7 @@ rung = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
 """The options of a :class:`.Rung`."""
 
 untabled_rung = _together(_BACKEND, _PRECISION, _NEWTON, _FLAGS)
-"""Those of one that reads no table."""
+"""Options of an evaluation without a table."""
 
 arithmetic = _together(_PRECISION, _NEWTON, _TABLE)
-"""Those that are no compiler's affair."""
+"""Options that do not concern the compiler."""

@@ -85,7 +85,7 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
 
 
 def _number(sweep: Sweep, name: str, value: float | str) -> float:
-    """Where a parameter stays; it may be told with its unit."""
+    """Number of a fixed parameter, which may have a unit."""
     found, told = typed(value)
     if told and (unit := sweep.parameters.get(name)) != told:
         raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")

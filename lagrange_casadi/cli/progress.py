@@ -1,4 +1,4 @@
-"""How far a sweep is: a bar on a terminal, a plain line now and then elsewhere."""
+"""Progress of a sweep: a bar on a terminal, a plain line now and then elsewhere."""
 
 from __future__ import annotations
 
@@ -107,9 +107,7 @@ class Bar(Silent):
 
 
 def shown(quiet: bool) -> Silent:
-    """What shows progress: a bar on a terminal, lines elsewhere, nothing where
-    it is to be quiet.
-    """
+    """Show progress: a bar on a terminal, lines elsewhere, nothing if it is to be quiet."""
     if quiet:
         return Silent()
     return Bar() if sys.stderr.isatty() else Lines()

@@ -1,4 +1,4 @@
-"""What a run puts in the place of an older one, and what it leaves of that."""
+"""Files of an older run that a run replaces, and those that stay."""
 
 from __future__ import annotations
 

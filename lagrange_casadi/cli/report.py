@@ -1,4 +1,4 @@
-"""How results are said in a line."""
+"""Results in lines of text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
 
 _NOTHING = 1e-37
-"""What is smaller is zero, in single precision too."""
+"""Least number that is not zero, in single precision too."""
 
 
 def peak_line(solution: Solution, peak: Peak) -> str:
@@ -84,8 +84,8 @@ def _statistics_line(found: Statistics) -> str:
 
 
 def asked_line(words: Sequence[Any], slides: bool) -> str:
-    """How instants are asked for, from :meth:`.Timing.words`; whether the joint ``slides``, where
-    there is one.
+    """Line on how the instants are defined, from :meth:`.Timing.words`, for a joint that ``slides``
+    or turns.
     """
     start, stop, count, *joint = words
     ends = [

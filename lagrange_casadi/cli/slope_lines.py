@@ -1,4 +1,4 @@
-"""How peaks change with parameters, in lines."""
+"""Sensitivities of peaks to parameters, in lines."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ _GUESS = 1e3
 def strength_lines(
     solution: Solution, wanted: Sequence[str], scene: Scene | None = None
 ) -> Iterator[str]:
-    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be
-    told.
+    """Lines of strength outputs of links that have a beam; of an output that is not asked for by
+    name, why it is not available.
 
     With its ``scene`` it is that of all times, else that of the instants.
     """
@@ -45,8 +45,8 @@ def strength_lines(
 
 
 def untold_lines(solution: Solution, besides: Collection[str] = ()) -> Iterator[str]:
-    """Which links and joints are left out of figures and tables of strength, and why, but for those
-    that were told of.
+    """Lines on links and joints without figures and tables of strength, and the reasons, except
+    those reported before.
     """
     for part, why in untold(solution).items():
         if part not in besides:

@@ -74,7 +74,7 @@ def _rows(
 
 
 def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
-    """Which columns are not shown, by their axes, and how to have them."""
+    """Name the columns that are not shown, by their axes, and how to show them."""
     others: dict[tuple[str, ...], list[str]] = {}
     for kept in sweep.columns.values():
         if kept.name not in shown:

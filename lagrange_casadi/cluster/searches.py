@@ -61,7 +61,7 @@ def searching(address: str) -> Workers:
 
 
 def _descend(sent: bytes, words: Mapping[str, Any], errand: Errand) -> Trail:
-    """On a worker: the way of an errand."""
+    """Run a start on a worker."""
     try:
         with _building:  # a finder goes one way at a time
             finder = _built(sent)

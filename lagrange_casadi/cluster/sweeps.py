@@ -1,4 +1,4 @@
-"""Who evaluates blocks: the workers of a Dask cluster.
+"""Evaluation of blocks by the workers of a Dask cluster.
 
 They are sent what is derived and designs, and send back columns.
 """
@@ -37,7 +37,7 @@ _GLANCE, _ROLL, _PROBED, _GOODBYE = 2e-3, 1.0, 3.0, 0.3
 say what they have; and in which the scheduler is told that all is over."""
 
 _PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not None"
-"""What a worker is asked, in words that need nothing of this package."""
+"""Question to a worker, in words that need nothing of this package."""
 
 _AHEAD = 2
 """Blocks sent out for each thread of the cluster."""
@@ -77,8 +77,8 @@ class Cluster:
     def done(
         self, asked: Callable[[int, int], Asked], queue: Queue
     ) -> Iterator[tuple[int, int, Any] | None]:
-        """What is ``asked`` for each block of a queue, in the order in which workers are done; None
-        where nothing came for long.
+        """Yield the results of ``asked`` for each block of a queue, in the order in which workers
+        finish; None if nothing came for long.
         """
         _dask()
         with _silenced():
@@ -109,7 +109,7 @@ class Cluster:
                 waiting.add(future)
 
         def pause() -> bool:
-            """Whether nothing more is waited for, after an interrupt.
+            """True if nothing more is waited for, after an interrupt.
 
             Raises for what cannot go on.
             """
@@ -226,8 +226,7 @@ async def _greet(address: str) -> None:
 
 
 class _Roll:
-    """Who the workers are, asked again and again by a thread of its own: one that does not answer
-    holds nobody up.
+    """List of workers, updated by a thread of its own: one that does not answer delays nobody.
 
     ``threads`` is how many they have, which come and go; ``without`` are those that have not this
     package.
@@ -246,7 +245,7 @@ class _Roll:
 
     @property
     def ready(self) -> bool:
-        """Whether it is known who there is, and what they have; or would be, if all answered."""
+        """True if the workers and their contents are known, or would be if all answered."""
         return (
             self._known.is_set() and all(map(Future.done, list(self._asked.values())))
         ) or time.monotonic() > self._until
@@ -335,7 +334,7 @@ class Asked:
 
 
 def _evaluate(sent: bytes, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
-    """On a worker: the columns of a block of designs."""
+    """Evaluate the columns of a block of designs on a worker."""
     try:
         with _building:
             graph, harvest = _built(sent, task)

@@ -1,4 +1,4 @@
-"""From a scene's graphs to C, and from C to a loaded library."""
+"""Translation of a scene's graphs to C, and of C to a loaded library."""
 
 from .batch import CHOSEN, BatchLibrary, load_batch
 from .compiler import Compiler, Language, find_compiler

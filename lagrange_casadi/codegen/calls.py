@@ -1,5 +1,4 @@
-"""What compiled code is called with: a struct whose members Python sets by name and C reads by
-name.
+"""Arguments of compiled code: a struct whose members Python sets by name and C reads by name.
 
 One list of members makes both the C struct and the :class:`ctypes.Structure`, so neither depends on
 an order that is written down twice. ``tests/test_calls.py`` asks a compiler whether both lie alike
@@ -41,7 +40,7 @@ class Call:
 
     @cached_property
     def type(self) -> type[ctypes.Structure]:
-        """The same in Python; pointers are addresses."""
+        """Structure of ``ctypes``; pointers are addresses."""
         fields = [
             (name, ctypes.c_void_p if kind.endswith("*") else _NUMBERS[kind])
             for name, kind in self.members.items()

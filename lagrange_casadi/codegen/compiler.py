@@ -86,7 +86,7 @@ class Compiler:
 
 
 def statements(source: str) -> int:
-    """How many statements a source has, about: a measure of what it costs to compile and to run."""
+    """Number of statements of a source, about: a measure of the time to compile and to run it."""
     return source.count(";\n")
 
 
@@ -104,7 +104,7 @@ def find_compiler(language: Language = "c") -> Compiler | None:
 
 @functools.lru_cache(maxsize=16)
 def _find_compiler(language: Language, chosen: str, _path: str) -> Compiler | None:
-    """The same for what the environment says, which a process may change."""
+    """Find the compiler of the environment, which a process may change."""
     variable, names = _NAMES[language]
     if chosen:
         try:
@@ -220,7 +220,7 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
 
 
 def broken(compiler: Compiler, error: Exception) -> CompilerError:
-    """What to say of a library that does not load, or has not what it was built for."""
+    """Message on a library that does not load, or lacks a function."""
     return CompilerError(
         f"the library built by {' '.join(compiler.command)} does not load: {error}"
     )
@@ -310,7 +310,7 @@ def complaint(compiler: Compiler, run: subprocess.CompletedProcess[str]) -> str:
 
 
 def _machine() -> str:
-    """What ``native`` means here: a cache may be shared by several machines."""
+    """Description of ``native`` on this machine: several machines may share a cache."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -58,7 +58,7 @@ CALL = Call(
         "tops": "double*",
     },
 )
-"""What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
+"""Arguments of :data:`DESIGNS`; the C says which it reads and writes."""
 
 CHECKS = ("CLOSURE", "BRANCH", "GAP", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
 """Kinds of what is checked at every instant (:class:`.Bound`) that are seen beside other instants,
@@ -74,7 +74,7 @@ _PLACES = {"BASE": BASE, "TIP": TIP, "OFF": OFF}
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
+    """Reduction of the instants of a design: the results that are kept, in numbers of columns.
 
     ``quantities`` off links are one column, or the size of a vector of two; then come the forces of
     each of ``links``. ``units`` numbers the units of all of them, ``efforts`` says which have
@@ -102,9 +102,7 @@ class Reduction:
 
     @property
     def curves(self) -> list[tuple[int, int, int]]:
-        """Of each curve: its quantity, its link or -1, and its
-        place, as in :data:`.search.CURVES`.
-        """
+        """Quantity of each curve, its link or -1, and its place, as in :data:`.search.CURVES`."""
         found = [(q, -1, OFF) for q in range(len(self.quantities))]
         q, first = len(self.quantities), 0
         for k, link in enumerate(self.links):

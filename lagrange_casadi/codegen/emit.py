@@ -29,9 +29,10 @@ NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
 """A correction after which the next one would be rounding."""
 
 NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.25
-"""Of one correction to the one before: from where on they shrink too slowly to go with the square.
-At a dead centre it is 1/2; where corrections end early, as in single, their square is not far below
-them."""
+"""Least ratio of one correction to the one before from which corrections shrink too slowly to be
+quadratic. At a dead centre it is 1/2; if corrections end early, as in single precision, their
+square is not far below them.
+"""
 
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
@@ -50,7 +51,7 @@ INSTANTS = Call(
         "status": "int*",
     },
 )
-"""What :data:`EVALUATE` and :data:`FOLLOW` take; the C says of each what it reads and writes."""
+"""Arguments of :data:`EVALUATE` and :data:`FOLLOW`; the C says which it reads and writes."""
 
 START = f"""\
 {LANES_PLACE}#include <math.h>
@@ -95,7 +96,7 @@ WIDE = """
 #undef casadi_real
 #define casadi_real lanes_pack
 """
-"""What follows is for packs."""
+"""Definitions for packs of instants."""
 
 _PACK = """
 /* The columns y of a pack of instants: at begins with its times; its iterated coordinates come
@@ -256,9 +257,7 @@ def emit(graph: Program, stages: Stages | None = None, newton: int | None = None
 
 
 def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts) -> str:
-    """What every C file of a scene begins with: its functions, and what runs them for a pack of
-    instants.
-    """
+    """First part of every C file of a scene: its functions, and the loop for a pack of instants."""
     sizes = parts.sizes
     text = (
         (_START_SINGLE if stages.precision == "single" else "")
@@ -276,9 +275,7 @@ def emit_scene(graph: Program, stages: Stages, newton: int | None, parts: Parts)
 
 @dataclass(frozen=True)
 class Parts:
-    """What an emitted file is made of: functions of one instant at a time, functions of packs, and
-    sizes.
-    """
+    """Parts of an emitted file: functions of one instant, functions of packs, and sizes."""
 
     narrow: Mapping[str, ca.Function]
     wide: Mapping[str, ca.Function]
@@ -286,7 +283,7 @@ class Parts:
 
     @classmethod
     def of(cls, graph: Program, stages: Stages) -> Parts:
-        """Those of a scene."""
+        """Make the parts of a scene."""
         constants, instant = hoisted(stages.instant)
         narrow = {"lead": stages.drive, "loops": stages.loops} if stages.loops else {}
         wide = {"drive": stages.drive, "constants_of": constants, "instant": instant}
@@ -331,7 +328,7 @@ def following(graph: Program, stages: Stages, newton: int | None, sizes: dict[st
 
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
-    """When iterated loops are done, and lost: the numbers that the emitted C and the virtual
+    """Limits of Newton's method for iterated loops: the numbers that the emitted C and the virtual
     machine share.
     """
     single = precision == "single"
@@ -355,7 +352,7 @@ def _told(newton: int | None) -> str:
 
 
 def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
-    """What the templates are filled with."""
+    """Values for the templates."""
     columns = len(graph.columns)
     return {
         "evaluate": EVALUATE,
@@ -380,8 +377,8 @@ def _sizes(graph: Program, stages: Stages) -> dict[str, Any]:
 def hoisted(
     instant: ca.Function, rows: Sequence[int] | None = None
 ) -> tuple[ca.Function, ca.Function]:
-    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant
-    with c for p; of some ``rows``.
+    """Split an instant: ``constants_of(p) -> c``, the part that depends on parameters alone, and
+    the instant with c for p; of some ``rows``.
     """
     inputs = instant.sx_in()
     out = instant(*inputs) if rows is None else instant(*inputs)[list(rows)]

@@ -22,7 +22,7 @@ from .emit import EVALUATE, FOLLOW, INSTANTS
 from .search import Search, Tables, load_search
 
 Array = npt.NDArray[Any]
-"""Of the precision that the code was emitted in."""
+"""Array in the precision of the emitted code."""
 Status = npt.NDArray[np.int32]
 
 _WORTH_A_THREAD = 1 << 24
@@ -199,8 +199,8 @@ class DesignsLibrary:
         results: Mapping[str, npt.NDArray[Any] | None],
         listed: Listed | None = None,
     ) -> Callable[[], None]:
-        """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when
-        it is called.
+        """Return a function that fills ``results`` for designs ``p``, (n, parameters), from the
+        contents of the arrays when it is called.
 
         They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n,
         t - 1) tells in which steps between them the motion bends more than they show; one row of
@@ -294,7 +294,7 @@ def load_designs(
     guess: npt.NDArray[np.float64],
     precision: Precision,
 ) -> DesignsLibrary:
-    """The same of a file for many designs over ``count`` instants, whose iterated loops begin from
+    """Load a file for many designs over ``count`` instants, whose iterated loops begin from
     ``guess``.
     """
     search = load_search(compiler, extra, precision)

@@ -37,12 +37,12 @@ class Along:
 
     @property
     def space(self) -> bool:
-        """Whether it is a link in space."""
+        """True if the link is in space."""
         return len(self.law) == len(SPACE.law)
 
     @property
     def uniform(self) -> bool:
-        """Whether nothing but its own even mass acts between its ends."""
+        """True if nothing but the link's own even mass acts between its ends."""
         return (
             not self.space
             and not self.stations
@@ -53,23 +53,23 @@ class Along:
 
     @property
     def parted(self) -> int:
-        """How many places it is parted at: stations, and where loads along it begin and end."""
+        """Number of places that divide the link: load points, and ends of distributed loads."""
         return len(self.stations) + len(self.marks)
 
     @property
     def directions(self) -> int:
-        """In how many directions loads along it act."""
+        """Number of directions of distributed loads."""
         return 6 if self.thick else 3 if self.space else 2
 
     @property
     def powers(self) -> tuple[int, ...]:
-        """How many powers each load along it has."""
+        """Number of powers of each distributed load."""
         return tuple((len(spread) - 2) // self.directions for spread in self.spreads)
 
     @property
     def places(self) -> tuple[tuple[int | str, ...], ...]:
-        """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or
-        ``TIP``. See ``sections.c``.
+        """Places along the link of each curve of each force: a row of places, ``BASE`` or ``TIP``.
+        See ``sections.c``.
         """
         parts, stations = self.parted + 1, self.parted
         turns = self._turns
@@ -86,12 +86,12 @@ class Along:
 
     @property
     def rows(self) -> int:
-        """How many rows of places there are."""
+        """Number of rows of places."""
         return sum(self._turns) * (self.parted + 1) + self.parted
 
     @property
     def degrees(self) -> tuple[int, ...]:
-        """Of the polynomials that are zero where forces turn: see :mod:`.section_law`.
+        """Degrees of the polynomials that are zero at extrema of forces: see :mod:`.section_law`.
 
         In space first of the resultants of shear and of bending. With loads along the link of the
         axial force and the shear too, and of the bending moment.
@@ -102,8 +102,8 @@ class Along:
 
     @property
     def _turns(self) -> tuple[int, ...]:
-        """Of each section force, in the order of its table: how often it may turn between two
-        stations.
+        """Largest number of extrema of each section force between two load points, in the order of
+        its table.
         """
         if self.spreads:
             return (2, 2, 2, 2 if self.thick else 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
@@ -111,7 +111,7 @@ class Along:
 
 
 def along(number: int, link: Along, into: str, offset: int) -> str:
-    """What makes the curves of a link of columns y."""
+    """Code for the curves of a link of columns y."""
     loads = [f"y[{column}]" for station in link.stations for column in station]
     for mark in link.marks:
         place = (
@@ -159,8 +159,8 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
 
 
 def _room(link: Along) -> int:
-    """What both planes of a link in space need, and torsion where slices are thick: a law, loads,
-    values and places.
+    """Variables that both planes of a link in space need, and torsion of thick slices: a law,
+    loads, values and places.
     """
     stations, parts = link.parted, link.parted + 1
     turns = 2 * parts if link.spreads else parts
@@ -170,8 +170,8 @@ def _room(link: Along) -> int:
 
 
 def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
-    """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as
-    many terms: see there.
+    """Arguments of ``sections.c`` for a link, from its length [m] and its cells [kg], filled up to
+    as many terms.
     """
     if link.uniform:
         return [length, cells[0][0]]

@@ -88,8 +88,8 @@ class _Statement:
 
 @dataclass(frozen=True, eq=False)
 class _Printer:
-    """What writes functions in a precision, for packs or not; ``looked_up`` are the tables that
-    they call, by CasADi's name.
+    """Writer of functions in a precision, for packs or not; ``looked_up`` are the tables that they
+    call, by CasADi's name.
     """
 
     precision: Precision

@@ -52,10 +52,11 @@ CURVES = Call(
         "knot": "const double*",
     },
 )
-"""What is searched. Of each curve its ``quantity``, its ``link`` or -1, and where along that it is
-``placed``: a row of places, or :data:`BASE`, :data:`TIP`, :data:`OFF`; of each quantity its
-``first`` curve, and the number of its ``unit``; of what is watched its kind and the ``watch_first``
-of the numbers ``watch_at``."""
+"""Curves of a search. For each curve its ``quantity``, its ``link`` or -1, and where along that it
+is ``placed``: a row of places, or :data:`BASE`, :data:`TIP`, :data:`OFF`; for each quantity its
+``first`` curve, and the number of its ``unit``; for each watched function its kind and the
+``watch_first`` of the numbers ``watch_at``.
+"""
 
 BASE, TIP, OFF = -1, -2, -3
 
@@ -63,9 +64,10 @@ AT = """\
 typedef int lagrange_casadi_at(void* of, long long count, const double* t, unsigned long long need,
                                real* out, long long apart);
 """
-"""What evaluates curves: at so many times, of the links that ``need`` tells by bits, into rows that
-lie ``apart``: of curves, of their places, of what is watched. It returns 0, or another number to
-end the search."""
+"""Function that evaluates curves: at given times, for the links whose bits ``need`` sets, into rows
+that lie ``apart``: of curves, of their places, of watched functions. It returns 0, or another
+number to end the search.
+"""
 
 CALL = Call(
     "lagrange_casadi_search_call",
@@ -95,22 +97,22 @@ CALL = Call(
         "told": "signed char*",
     },
 )
-"""What the search takes; the C says of each member what it reads and writes."""
+"""Arguments of the search; the C says which members it reads and writes."""
 
 _ROUNDING: dict[Precision, float] = {"double": reference.ROUNDING, "single": 1e-6}
-"""By how much of itself a peak may be off: less is not worth another look."""
+"""Relative error of a peak that is worth no further refinement."""
 
 _NOISE: dict[Precision, float] = {"double": reference.NOISE, "single": 1e-2}
-"""Of itself: how far rounding may throw a quantity and be no more than that."""
+"""Largest relative error of a quantity by rounding."""
 
 _DEEPEST: dict[Precision, int] = {"double": reference.DEEPEST, "single": 8}
 """Panels within each other."""
 
 _FINEST: dict[Precision, int] = {"double": reference.FINEST, "single": 5}
-"""Of these, the one in whose steps nothing hides but beside a pole."""
+"""Finest level, in whose steps nothing hides but beside a pole."""
 
 _SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
-"""Of a step between instants: how near to a kink or a jump its sides are."""
+"""Distance of the sides of a kink or a jump, in steps between instants."""
 
 _STRETCH: dict[Precision, float] = {"double": reference.STRETCH, "single": 1e-2}
 _LAST: dict[Precision, float] = {"double": reference.LAST, "single": 1e-5}
@@ -163,7 +165,7 @@ SEARCH_INLINE lanes_pack search_larger(lanes_pack x, lanes_pack y) { return lane
 
 
 def _macros(precision: Precision) -> dict[str, object]:
-    """What the search takes for small, and for far."""
+    """Macros for small and large numbers in the search."""
     numbers = np.finfo(DTYPES[precision])
     reals = {
         "ROUNDING": _ROUNDING[precision],
@@ -216,7 +218,7 @@ class Tables:
         knots: Sequence[float],
         precision: Precision = "double",
     ) -> Tables:
-        """Those of curves, each with its quantity, in order, its link and its place."""
+        """Make it from curves, each with its quantity, in order, its link and its place."""
         quantity, link, placed = zip(*curves, strict=True)
         arrays: dict[str, npt.NDArray[Any]] = {
             name: np.array([*values], np.intc)
@@ -256,7 +258,7 @@ class Search:
 
     @property
     def address(self) -> int | None:
-        """Where compiled code finds it."""
+        """Address for compiled code."""
         return ctypes.cast(self.entry, ctypes.c_void_p).value
 
     def call(
@@ -290,7 +292,9 @@ class Search:
         hiding: Flags,
         listed: Listed | None = None,
     ) -> Peaks:
-        """The same as :func:`..summits.search.peaks`; what ``source`` raises is raised."""
+        """Find peaks as :func:`..summits.search.peaks` does; exceptions of ``source`` are
+        raised.
+        """
         values, places, watched = samples
         t = np.ascontiguousarray(t, float)
         n, count, quantities = t.size, len(values), len(curves.units)

@@ -172,8 +172,8 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any
 
 
 def stages_for(graph: Program, precision: Precision, t: Array, p: Array) -> Stages:
-    """Those for instants and parameters: in pairs where numbers are single, and where angles count
-    many turns.
+    """Stages for instants and parameters: in pairs if numbers are single, and if angles count many
+    turns.
     """
     return (
         compensated(graph, precision)
@@ -183,7 +183,9 @@ def stages_for(graph: Program, precision: Precision, t: Array, p: Array) -> Stag
 
 
 def turns_many(graph: Program, t: Array, p: Array) -> bool:
-    """Whether some angle counts so many turns over the instants that one double loses its phase."""
+    """Return whether some angle counts so many turns over the instants that one double loses its
+    phase.
+    """
     functions = (graph.instant, graph.laws.motion, *([graph.newton.step] if graph.newton else []))
     if not all(followable(function) for function in functions):
         return False
@@ -321,8 +323,8 @@ _FOLLOWED = {
 def _counted(
     graph: Program, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]
 ) -> tuple[Any, Any | None, Any]:
-    """What the drive hands on of time and driven coordinates, and the loops and the instant that
-    take it.
+    """Outputs of the drive stage for time and driven coordinates, and the loops and the instant
+    that take them.
     """
     counting = _Counting(pairs)
     _, _, rate, acceleration, z, symbols = graph.instant.sx_in()

@@ -1,1 +1,1 @@
-"""What is said: mechanisms, their parts and what is possible of them, motions, scenes."""
+"""Declarations: mechanisms, their parts and conditions on these, motions, scenes."""

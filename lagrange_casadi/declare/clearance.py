@@ -20,24 +20,24 @@ from ..base.symbolic import symbolic_property
 from .limits_beside import Flags
 
 _STRETCHES = 64
-"""In so many stretches is a path taken whose bounds as a whole do not suffice."""
+"""Number of parts of a path whose bounds as a whole do not suffice."""
 
 _KEPT = 4
-"""Of so many numbers of designs are the arrays kept."""
+"""Number of sizes of batches whose arrays are kept."""
 
 _NEAR = 1e-6
-"""Of the largest on the path: what is nearer to zero is looked at."""
+"""Fraction of the largest value on a path below which a value is examined."""
 
 
 class _Kept(threading.local):
-    """Of each thread what was bound, by the number of designs."""
+    """Arrays of each thread, by the number of designs."""
 
     def __init__(self) -> None:
         self.calls: dict[int, tuple[list[Array], list[Array], Callable[[], None], Any]] = {}
 
 
 class Clearance:
-    """What says that ``marks(x, p)`` stay off zero, or off whole numbers if ``whole``, all along a
+    """Proof that ``marks(x, p)`` stay off zero, or off whole numbers if ``whole``, all along a
     path.
 
     What stays the same there makes no kink either, unless it is ``open``.
@@ -74,8 +74,8 @@ class Clearance:
         )
 
     def near(self, low: Array, high: Array, p: Array, paths: Callable[[Flags], Array]) -> Flags:
-        """Of which paths within ``low`` and ``high`` (d, symbols) a mark may come near, for values
-        ``p`` (d, fixed) of each.
+        """Return which paths within ``low`` and ``high`` (d, symbols) may have a mark near zero,
+        for values ``p`` (d, fixed) of each.
 
         ``paths`` gives some of them, (d, symbols, n), of straight steps.
         """
@@ -100,8 +100,8 @@ class Clearance:
         return near
 
     def _looked(self, low: Array, high: Array, p: Array, most: Any) -> tuple[Flags, Array]:
-        """Whether any mark comes near within boxes (d, symbols), and how large marks are there (d,
-        marks).
+        """Return whether any mark comes near within boxes (d, symbols), and the size of marks there
+        (d, marks).
         """
         count = len(low)
         calls = self._kept.calls

@@ -27,9 +27,7 @@ _LOOKED_AT = 4001
 
 
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
-    """That a constraint must have no kink over the symbols of what it sees; None where it can have
-    none.
-    """
+    """Condition that a constraint has no kink over its symbols; None if it can have none."""
     curve = constraint.phi if constraint.lift is None else constraint.lift
     return Smooth.of(
         curve, ca.vertcat(mechanism.measures.places, mechanism.time), mechanism.symbols
@@ -38,7 +36,7 @@ def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | 
 
 @dataclass(frozen=True, eq=False)
 class Corners(Graphs):
-    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and
+    """Functions of a scene that may have a kink, by joint or name: ``laws`` of motion, and
     ``constraints``; some are ``cams``.
     """
 
@@ -115,8 +113,8 @@ class Corners(Graphs):
                 )
 
     def broken_laws(self, t: Array, p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs ``p`` (d, parameters) a motion has a kink between their instants ``t``
-        (1 or d, t), or is isolated.
+        """Return the designs ``p`` (d, parameters) in which a motion has a kink between the
+        instants ``t`` (1 or d, t), or is isolated.
         """
         found = np.zeros(len(p), bool)
         start, stop = (np.broadcast_to(t[:, k], len(p)) for k in (0, -1))
@@ -138,8 +136,8 @@ class Corners(Graphs):
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs a constraint has a kink, or is isolated; ``seen`` as above, (d, symbols,
-        t).
+        """Return the designs in which a constraint has a kink, or is isolated; ``seen`` as above,
+        (d, symbols, t).
         """
         found = np.zeros(len(p), bool)
         for name, smooth in self.constraints.items():
@@ -154,7 +152,7 @@ class Corners(Graphs):
 
 @functools.lru_cache(maxsize=256)
 def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
-    """For each row of a start, a stop and parameters whether a law has a kink."""
+    """Return, for each row of a start, a stop and parameters, whether a law has a kink."""
     start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
     return smooth.broken(_instants(start, stop), np.array(p).T.reshape(start.size, -1))
 
@@ -165,7 +163,7 @@ def _instants(start: Array, stop: Array) -> Array:
 
 
 def _broken_constraint(smooth: Smooth, paths: Array, p: Array) -> npt.NDArray[np.bool_]:
-    """Which of the paths (d, symbols, t) have a kink; designs often share what a cam sees."""
+    """Return which paths (d, symbols, t) have a kink; designs often share a cam's coordinates."""
     rows = np.concatenate([paths.reshape(len(paths), -1), p], axis=1)
     _, which, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     paths, p = paths[which], p[which]

@@ -17,9 +17,7 @@ from ..errors import DeclarationError, NumberError, shown
 from .splines import Cell, smoothed, through
 
 _SAME = 1e-12
-"""Of the range of a curve's values: by so little the ends of a periodic one may differ, by
-rounding.
-"""
+"""Largest relative difference of the ends of a periodic curve that is rounding."""
 
 
 def rows(

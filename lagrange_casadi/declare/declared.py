@@ -165,7 +165,7 @@ class Declared:
         return {axis.coordinate: axis.kind for joint in self.joints.values() for axis in joint.axes}
 
     def oriented(self, body: str) -> bool:
-        """Whether a body has a direction, as a point mass has not."""
+        """Return whether a body has a direction; a point mass has none."""
         return body == "ground" or self.bodies[body].length is not None
 
 

@@ -1,5 +1,5 @@
-"""How mass lies along a straight link: piecewise polynomial in the ratio u = xi/l, which covers
-every density a table can give.
+"""Distribution of mass along a straight link: piecewise polynomial in the ratio u = xi/l, which
+covers every density a table can give.
 
 From a section at u to the tip the moments of the material are combinations of T_k(u) = int_u^1 p(w)
 (w - u)^k dw with p = dm/du: mu0 = T0, mu1 = l (u T0 + T1), mu1 - xi mu0 = l T1, mu2 - xi mu1 = l^2
@@ -40,7 +40,7 @@ class Density:
 
     @property
     def even(self) -> bool:
-        """Whether it is one constant."""
+        """True if it is one constant."""
         return len(self.cells) == len(self.cells[0]) == 1
 
     @property
@@ -122,7 +122,7 @@ class Slices:
         return tuple(sorted({place for moment in self.each for place in moment.breaks}))
 
     def whole(self, length: Any) -> tuple[Any, Any, Any]:
-        """Those of the whole link [kg m^2]."""
+        """Moments of the whole link [kg m^2]."""
         yy, zz, yz = (sum(moment.ends(length)[:2]) for moment in self.each)
         return yy, zz, yz
 
@@ -136,7 +136,7 @@ class NumericDensity:
 
     @property
     def uniform(self) -> bool:
-        """Whether it is one constant."""
+        """True if it is one constant."""
         return len(self.cells) == 1 and len(self.cells[0]) == 1
 
     @property

@@ -65,7 +65,7 @@ IN_PLANE = _shape(
     joint={"coordinate": (str, None), "driven": bool, "axis": [float], "angle": float},
     load={},
 )
-"""What every description of a planar mechanism is like, in the words of :mod:`.untrusted`."""
+"""Form of every description of a planar mechanism, in the words of :mod:`.untrusted`."""
 
 IN_SPACE = _shape(
     place=_PLACE | {"z": float},
@@ -81,16 +81,16 @@ IN_SPACE = _shape(
     },
     load={"turning": bool},
 ) | {"bars": [str], "unmeasured": [str]}
-"""The same of a mechanism in space."""
+"""Form of the description of a mechanism in space."""
 
 
 def in_space(description: Description) -> bool:
-    """Whether a described mechanism lies in space: its gravity has a z."""
+    """Return whether a described mechanism lies in space: its gravity has a z."""
     return len(description["gravity"]) > 2
 
 
 def shape_of(value: Any) -> dict[str, Any]:
-    """What a description is like: that of a planar mechanism, or that of one in space."""
+    """Form of a description: that of a planar mechanism, or that of one in space."""
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
     optional = {
@@ -127,7 +127,7 @@ def density_of(body: Description) -> NumericDensity:
 
 
 def oriented(description: Description, body: str) -> bool:
-    """Whether a body has a direction, as a point mass has not."""
+    """Return whether a body has a direction; a point mass has none."""
     return body == "ground" or description["bodies"][body]["length"] is not None
 
 
@@ -334,8 +334,8 @@ def template_of(
 
 
 def _lies_by_default(joint: Joint) -> bool:
-    """Whether a slender link slides along one line of its parent, and nothing was said of how it
-    lies there.
+    """Return whether a slender link slides along one line of its parent, and its direction there
+    was not declared.
     """
     body = joint.child.body
     slender = isinstance(body, Link) and isinstance(body.mass, Density)

@@ -36,7 +36,7 @@ FAINT = 1e-15
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Where a body is in the reference posture: its origin, its axes, and the tip of a link, in
+    """Pose of a body in the reference posture: its origin, its axes, and the tip of a link, in
     ground axes.
     """
 
@@ -119,13 +119,13 @@ def triad_of(what: str, axis: Any, second: Any, own: Ownership, part: str = "") 
 
 
 def not_right(what: str, cosine: float) -> str:
-    """Why two axes are refused, in words."""
+    """Reason why two axes are refused, in words."""
     degrees = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
     return f"{what}: its axes must be at right angles, and are at {degrees:.6g} deg"
 
 
 def most_across(axis: Sequence[float]) -> int:
-    """Which coordinate axis is most across a direction; of those that are but for rounding, the
+    """Coordinate axis that is most across a direction; of those that are equal within rounding, the
     first.
     """
     least = min(map(abs, axis))
@@ -246,8 +246,8 @@ def rotated(
 
 
 def _is_same(one: Expression, other: Expression, size: Expression) -> bool:
-    """Whether two expressions are one, as they are written; numbers but for rounding, beside a
-    size.
+    """Return whether two expressions are the same as written; numbers within rounding, relative to
+    a size.
     """
     if isinstance(one, float) and isinstance(other, float):
         return one == other or (isinstance(size, float) and abs(one - other) <= SAME * size)

@@ -1,6 +1,4 @@
-"""Which joints' efforts make a motion, where those are others than the joints whose motion is
-given.
-"""
+"""Joints whose efforts make a motion, if these are others than the joints whose motion is given."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far what is put into curves is beyond their ends, where they are not defined."""
+"""Distance of curves' arguments beyond the curves' ends, where curves are not defined."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..base.symbolic import symbolic
 from ..base.vocabulary import Precision
 
 BEYOND: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far an argument may be beyond the ends of a curve by rounding, as :func:`beyond_ends` tells
-it.
+"""Largest distance of an argument beyond the ends of a curve that is rounding, in the measure of
+:func:`beyond_ends`.
 """
 
 
 @symbolic
 def beyond_ends(expression: Any) -> list[Any]:
-    """How far each argument of an expression's curves is beyond the curve's ends; of curves that
+    """Distance of each argument of an expression's curves beyond the curve's ends, for curves that
     have ends.
 
     The square of how far it is from the middle between the ends, over the square of how far these
@@ -43,5 +43,5 @@ def beyond_ends(expression: Any) -> list[Any]:
 
 
 def share_beyond(beyond: float) -> float:
-    """How far that is beyond the nearer end, over what is between the ends."""
+    """Distance beyond the nearer end, relative to the distance of the ends."""
     return (math.sqrt(1.0 + max(beyond, -1.0)) - 1.0) / 2.0

@@ -18,13 +18,13 @@ EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
 
 _MADE_FROM = 3
-"""How many arrays points are, with what they are made from."""
+"""Number of arrays of points, with those from which they are made."""
 
 _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
 
 _UNEVEN = 1e-9
-"""Of a step: what is off by less is off by rounding."""
+"""Fraction of a step that is rounding."""
 
 
 def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
@@ -83,7 +83,7 @@ def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Ar
 
 
 def are_even(values: Array) -> bool:
-    """Whether values are equal steps, but for rounding."""
+    """Return whether values are in equal steps, within rounding."""
     if values.size < 3:
         return True
     gaps = np.abs(values - np.linspace(values[0], values[-1], values.size))

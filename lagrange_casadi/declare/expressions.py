@@ -1,4 +1,4 @@
-"""What may stand for a name or a number in a declaration."""
+"""Values that may stand for a name or a number in a declaration."""
 
 from __future__ import annotations
 
@@ -120,8 +120,8 @@ def sound(condition: Any) -> Any:
 
 
 def told(error: BaseException) -> str:
-    """What an error says, in a line; of a choice that Python cannot make for a symbol, what makes
-    it instead.
+    """Message of an error in a line; for a choice that Python cannot make for a symbol, the
+    function that makes it.
     """
     text = one_line(error)
     if "truth value of a CasADi" in text:

@@ -1,4 +1,4 @@
-"""What a joint is made of: pins, plain bearings and rolling bearings, by their numbers."""
+"""Fittings of a joint: pins, plain bearings and rolling bearings, by their numbers."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
 
 
 def positive(name: str, number: float) -> bool:
-    """Whether a number of a part may be what it is."""
+    """Check that a number of a part is positive."""
     return 0.0 <= number < math.inf if name in _MAY_BE_ZERO else 0.0 < number < math.inf
 
 

@@ -1,4 +1,4 @@
-"""Which links give way where elasticity shares out what equilibrium leaves open."""
+"""Links that are compliant, if elasticity determines what equilibrium leaves indeterminate."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ Elastic = bool | Sequence[str]
 
 
 def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
-    """What a scene says of elasticity, checked: no, yes, or the links that give way, in their
-    order.
+    """Check the scene's ``elastic``: no, yes, or the compliant links, in their order.
 
     Raises :class:`.UnknownNameError` for what is no link, and :class:`.DeclarationError` for a link
     that has no beam, or a material without elasticity.

@@ -1,4 +1,6 @@
-"""How joints hold the ends of a link, and what that makes of it as a column, and as a beam."""
+"""Support of a link's ends by joints, and its consequence for the link as a column and as a
+beam.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ End = Literal["pinned", "clamped", "free", "guided"]
 Ends = tuple[End, End]
 
 ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
-"""How an end of a beam is held: its place, its place and slope, not at all, its slope alone."""
+"""Supports of a beam's end: its place, its place and slope, not at all, its slope alone."""
 
 
 @public
@@ -48,7 +50,7 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
 
 
 def ends_of(description: Description, link: str) -> Ends:
-    """How base and tip are held, by the rule by which columns are."""
+    """Supports of base and tip, by the rule for columns."""
     base, tip = held_ends(description, link)
     space = in_space(description)
     if not (base or tip):
@@ -65,12 +67,14 @@ def ends_of(description: Description, link: str) -> Ends:
 
 
 def held_ends(description: Description, link: str) -> tuple[str, str]:
-    """How joints hold the base and the tip of a link: "turns", "held", or "" where nothing does."""
+    """Supports of the base and the tip of a link by joints: "turns", "held", or "" if there is
+    none.
+    """
     return _holds(description, link, False), _holds(description, link, True)
 
 
 def _holds(description: Description, link: str, tip: bool) -> str:
-    """How an end is held: "turns", "held", or not at all."""
+    """Support of an end: "turns", "held", or none."""
     length, found = description["bodies"][link]["length"], ""
     for joint in description["joints"].values():
         for place, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):

@@ -30,7 +30,8 @@ Triad = tuple[Vector, Vector, Vector]
 
 
 class Freedom(NamedTuple):
-    """What a kind of joint lets free: a slide or turn along a direction of its triad, by number.
+    """Degree of freedom of a kind of joint: a slide or turn along a direction of its triad, by
+    number.
 
     ``name`` tells it among the freedoms of its joint; None where it is no coordinate.
     """
@@ -71,7 +72,7 @@ IN_PLANE: dict[JointKind, tuple[Freedom, ...]] = {
     "slot": (Freedom("", "slide", 0), Freedom(None, "turn", 2)),
     "weld": (),
 }
-"""The same in a plane, whose normal is the third direction of every triad."""
+"""Degrees of freedom of joints in a plane, whose normal is the third direction of every triad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +93,7 @@ class Axis:
 
     @property
     def kind(self) -> Literal["angle", "slide"]:
-        """What its coordinate is."""
+        """Kind of the coordinate."""
         return "slide" if self.move == "slide" else "angle"
 
 
@@ -144,7 +145,7 @@ class Joint:
         return self.parent.body, self.child.body
 
     def on(self, body: Body) -> Point:
-        """Its point on one of its bodies."""
+        """Point of the joint on one of its bodies."""
         return self.child if self.child.body is body else self.parent
 
     @property
@@ -154,13 +155,15 @@ class Joint:
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """Its coordinates, in the sequence in which they move the child; without directions there
-        are no turns to measure.
+        """Coordinates, in the sequence in which they move the child; without directions there are
+        no turns to measure.
         """
         return self._axes(turns=all(body.oriented for body in self.bodies))
 
     def axes_of(self, body: Body) -> tuple[Axis, ...]:
-        """The same that place a body that hangs on it, whatever it hangs on."""
+        """Coordinates that place a body, measured from whichever body of the joint is its
+        parent.
+        """
         return self._axes(turns=body.oriented)
 
     def _axes(self, *, turns: bool) -> tuple[Axis, ...]:
@@ -182,12 +185,12 @@ class Joint:
 
     @property
     def slides(self) -> bool:
-        """Whether its child's point moves along a line of its parent, or more."""
+        """True if the child's point moves along a line of the parent, or more."""
         return any(freedom.move != "turn" for freedom in self.lets)
 
     @property
     def holds_direction(self) -> bool:
-        """Whether the child's direction follows from the parent's."""
+        """True if the child's direction follows from the parent's."""
         return self.child.body.oriented and all(freedom.move == "slide" for freedom in self.lets)
 
     @property
@@ -197,7 +200,7 @@ class Joint:
 
     @property
     def bears_moment(self) -> bool:
-        """Whether it can hold its child against turning, about some axis."""
+        """True if the joint can transmit a moment about some axis."""
         return (
             self.child.body.oriented
             and self.parent.body.oriented
@@ -206,7 +209,7 @@ class Joint:
 
     @property
     def aligns(self) -> bool:
-        """Whether it holds a direction that must not be off by half a turn."""
+        """True if the joint holds a direction that must not be off by half a turn."""
         return self.bears_moment and self.turns < (1 if self.turned is None else 2)
 
     @property

@@ -1,5 +1,5 @@
-"""Where an expression has a kink or a jump, found numerically along a path, from the operations in
-which it can have one.
+"""Kinks and jumps of an expression, found numerically along a path, from the operations in which
+there can be one.
 
 What is differentiated twice must have a slope that does not jump: else rates jump, and
 accelerations say nothing of it. With comparisons, sizes, whole parts and divisors, and with
@@ -30,24 +30,26 @@ from .marks import marks_of
 from .steps import Steps, called, sides_of
 
 _SAME, _FAINT = 1e-6, 1e-9
-"""What is no jump: of the value or slope there, and of the largest along the path."""
+"""Relative size of a jump that is rounding: of the value or slope there, and of the largest along
+the path.
+"""
 
 _MOST_PLACES = 0.9
-"""At which share of instants a constraint's terms are no larger than what they are measured by."""
+"""Fraction of instants at which a constraint's terms are no larger than their reference."""
 
 _ROUNDS, _SLACK = 8, 10.0
-"""How many places are looked for in a step; and by how much more limits may differ, which are
-extrapolated.
+"""Number of places that are sought in a step; and the factor by which extrapolated limits may
+differ more.
 """
 
 _DIP, _TOUCH = 0.3, 1e-12
-"""Of what is beside it: how near to zero an argument seems to come, and what is zero."""
+"""Relative distance to zero at which an argument is examined, and that which counts as zero."""
 
 _APART = (-1.0, -(2.0**-10), -(2.0**-20), 2.0**-20, 2.0**-10, 1.0)
-"""How many steps from an instant it is first compared with what is beside it."""
+"""Distances, in steps, from an instant to the neighbours with which it is first compared."""
 
 _STRETCHES = 0.25 ** np.arange(20, -1, -1)
-"""How many steps rounding may spread a place over."""
+"""Numbers of steps over which rounding may spread a place."""
 
 _ROUNDING = 16 * np.finfo(float).eps
 
@@ -77,8 +79,8 @@ class Smooth:
 
     @classmethod
     def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
-        """That of an expression of ``moving`` and ``fixed`` symbols; None where nothing can make a
-        kink.
+        """Make it from an expression of ``moving`` and ``fixed`` symbols; None if nothing can make
+        a kink.
         """
         expression = ca.SX(expression)
         own = (
@@ -185,12 +187,12 @@ class Smooth:
         return Clearance(self.marks, self.whole, self.open)
 
     def broken(self, paths: Array, p: Array) -> Flags:
-        """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
+        """Return which paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
         return _owners(self._kinks, paths, p)
 
     def isolates(self, paths: Array, p: Array, *, between: bool = False) -> Flags:
-        """Which paths (d, symbols, n) have an isolated instant, or place ``between``, for values
-        ``p`` (d, fixed) of each.
+        """Return which paths (d, symbols, n) have an isolated instant, or place ``between``, for
+        values ``p`` (d, fixed) of each.
         """
         return _owners(partial(self._isolated, between=between), paths, p)
 
@@ -278,8 +280,8 @@ class Smooth:
             yield int(steps.owner[k]), what, places[:, k]
 
     def _stretch(self, steps: Steps, alone: Flags) -> Array:
-        """How many steps a place is spread over: the least for which a mark that is ``alone``
-        there, (marks, m), stays as it is.
+        """Number of steps over which a place is spread: the least for which a mark that is
+        ``alone`` there, (marks, m), does not change.
 
         Two curves that touch in a third power are the same number for so long.
         """
@@ -290,12 +292,12 @@ class Smooth:
         return np.asarray(found.min(axis=0))
 
     def _exact(self, marks: Array) -> Flags:
-        """Which marks (marks, m) are zero, or a whole number, to the last bit."""
+        """Return which marks (marks, m) are zero, or a whole number, to the last bit."""
         return np.asarray(marks == np.where(self.whole[:, None], np.rint(marks), 0.0))
 
     def _places(self, steps: Steps, marks: Array) -> tuple[Steps, Steps, Steps]:
-        """Where marks pass, where something is open, and where marks turn back: steps from just
-        before to just after.
+        """Places at which marks pass, are undefined, or turn back: steps from just before to just
+        after.
         """
         states = self._states(marks)
         changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
@@ -327,7 +329,9 @@ class Smooth:
         return Steps.joined(passed or [steps.some([])]), Steps.joined(touched), turned
 
     def _turned(self, steps: Steps, marks: Array) -> tuple[Steps, npt.NDArray[np.intp]]:
-        """Where marks turn back near zero between instants, or near a whole number; and which."""
+        """Places between instants at which marks turn back near zero, or near a whole number; and
+        which marks.
+        """
         n = marks.shape[2]
         if n < 3:
             return steps.some([]), np.zeros(0, np.intp)
@@ -354,7 +358,7 @@ class Smooth:
         return called(self.marks, steps.at(x), steps.p)
 
     def _states(self, marks: Array) -> Array:
-        """On which side of a place each mark is."""
+        """Side of a place on which each mark is."""
         whole = self.whole.reshape(-1, *[1] * (marks.ndim - 1))
         return np.where(whole, np.floor(marks), marks > 0.0)
 
@@ -408,7 +412,7 @@ class Smooth:
 
 
 def _usual(slopes: Array, paths: Array) -> Array:
-    """How large the value and the slopes (rows, d, n) along paths (d, symbols, n) are, (2, d).
+    """Size of the value and the slopes (rows, d, n) along paths (d, symbols, n), (2, d).
 
     A constraint's value is zero but for rounding: it is as large as what is added up in it, at most
     places. A slope beside a pole says nothing of what is added up elsewhere.
@@ -427,7 +431,7 @@ def _finite(rows: Array) -> Array:
 def _owners(
     look: Callable[[Array, Array], Iterator[tuple[Any, ...]]], paths: Array, p: Array
 ) -> Flags:
-    """Of which paths (d, symbols, n) anything is found."""
+    """Return which paths (d, symbols, n) have a finding."""
     found = np.zeros(len(paths), bool)
     size = max(1, _AT_ONCE // max(paths.shape[2], 1))
     for start in range(0, len(paths), size):
@@ -437,7 +441,7 @@ def _owners(
 
 
 def _both(rows: Array) -> Array:
-    """Of rows of a value and of slopes, that of the value and the largest of slopes."""
+    """Row of the value, and that of the largest of slopes."""
     return np.array([rows[0], rows[1:].max(axis=0)])
 
 

@@ -1,5 +1,5 @@
-"""What the parts must be together, and what the values of parameters may make of them: lengths,
-masses, densities, stations.
+"""Limits of parts together, and of values of parameters: lengths, masses, densities, load
+points.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .mechanism import Mechanism
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
-"""Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
+"""Fraction of a link's length within which a point is at the link's end."""
 
 ROUNDED = 1e-6
-"""What the rounding of a drawing puts directions [rad] and places [of a link's length] off by."""
+"""Largest rounding of a drawing, of directions [rad] and places [of a link's length]."""
 
 _TOLD = 8
 """Parameters that a message names."""
@@ -71,13 +71,13 @@ def parameter_values(
 
 
 def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:
-    """What is wrong with values of parameters, each in words of its own."""
+    """Faults of values of parameters, each in words of its own."""
     return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
 
 
 def margins(point: Point, precision: Precision) -> list[Expression]:
-    """What must not be negative for a fixed point to be on its link, where that has sections: how
-    far it is from either end.
+    """Distances of a fixed point from both ends of its link, if that has sections: neither must be
+    negative.
     """
     if not (
         isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None
@@ -117,7 +117,7 @@ def along_link(
 
 
 def at_end(point: Point) -> Expression:
-    """Where a fixed point of a link is along it [m]: at an end, if it misses that by rounding."""
+    """Position of a fixed point along its link [m]: at an end, if it misses that by rounding."""
     assert isinstance(point.body, Link)
     x, length = point.x, point.body.length
     if isinstance(x, float) and x == 0.0:
@@ -129,8 +129,8 @@ def at_end(point: Point) -> Expression:
 
 
 def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
-    """Why a body has no sections, in words: a link, of which it is not known how its mass lies, or
-    none of the links.
+    """Reason why a body has no sections, in words: a link whose distribution of mass is not known,
+    or none of the links.
     """
     if link:
         return (
@@ -141,8 +141,8 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
 
 
 def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
-    """With which parameters something was found, to end a message with: the defaults, or others;
-    nothing where there are none.
+    """Parameters of a result, to end a message with: the defaults, or others; empty if there are
+    none.
     """
     return told_values(
         values or {name: parameter.default for name, parameter in mechanism.parameters.items()},

@@ -1,5 +1,5 @@
-"""Whether what is known at ever smaller distances from a place, on both sides of it, has limits
-there, and the same ones.
+"""Existence and equality of limits on both sides of a place, from values at ever smaller
+distances.
 """
 
 from __future__ import annotations
@@ -14,20 +14,22 @@ from ..base.arrays import Array
 Flags = npt.NDArray[np.bool_]
 
 _ORDERS = 5
-"""How many terms, of the first to the fourth power of the distance, are taken out of a difference
-one after another.
+"""Number of terms, from the first to the fourth power of the distance, that are removed from a
+difference one after another.
 """
 
 _NOISY, _NOISIER = 1e-3, 2.0
-"""Of how large it is, noise of which a distance still counts; or how much above the least noise,
-where all have more.
+"""Relative noise up to which a distance counts; or its multiple of the least noise, if all have
+more.
 """
 
 _TINY = np.finfo(float).tiny
 
 _HALVINGS, _FEWEST = 8, 4
-"""In so many halvings of the distance what falls to zero is halved, as powers of it do that are
-slopes of nothing sharp; and in how many at least that is seen."""
+"""Number of halvings of the distance in which a value that falls to zero is halved, as powers of
+the distance do that are slopes of nothing sharp; and the least number of halvings that must show
+it.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,20 +46,20 @@ class Side:
 
     @property
     def steps(self) -> Side:
-        """What changes from a distance to the next one."""
+        """Changes from one distance to the next."""
         there = self.there[1:] & self.there[:-1]
         return Side(np.diff(self.value, axis=1), self.off[:, 1:] + self.off[:, :-1], there)
 
     @property
     def sizes(self) -> Array:
-        """How large they are, over two distances."""
+        """Sizes over two distances."""
         large = np.abs(self.value)
         return np.maximum(large[:, 1:], large[:, :-1])
 
     @property
     def nearest_signs(self) -> Array:
-        """Their signs (rows, m) at the least distance that rounding does not hide; zero where it
-        hides all.
+        """Signs (rows, m) at the least distance that rounding does not hide; zero if it hides
+        all.
         """
         clear = self.there & np.isfinite(self.value) & (np.abs(self.value) > self.off)
         last = self.value.shape[1] - 1 - clear[:, ::-1].argmax(axis=1)[:, None]
@@ -67,13 +69,13 @@ class Side:
 
 
 def between(before: Side, after: Side) -> Side:
-    """What is different on both sides."""
+    """Difference between both sides."""
     return Side(after.value - before.value, after.off + before.off, after.there & before.there)
 
 
 def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
-    """Which rows (rows, m) tend to zero with the distance; and what rests of them, over ``sizes``
-    (rows, distances, m).
+    """Return which rows (rows, m) tend to zero with the distance; and what remains of them, over
+    ``sizes`` (rows, distances, m).
 
     Zero is what is less than ``least``. What tends to rest + c h + d h^2 is extrapolated to h = 0,
     by as many terms as serve. Rounding spoils it where h is small, what is of higher order where it
@@ -114,7 +116,7 @@ def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
 
 
 def _falls(gaps: Array, clear: Flags) -> Flags:
-    """Which go on falling to the least distances that noise does not hide."""
+    """Return which rows fall down to the least distances that noise does not hide."""
     count = gaps.shape[1]
     last = count - 1 - clear[:, ::-1].argmax(axis=1)
     first = np.maximum(last - _HALVINGS, clear.argmax(axis=1))

@@ -101,7 +101,7 @@ def _of_function(
     end: Expression,
     checked: Callable[[Expression], Expression],
 ) -> list[Expression]:
-    """The same of a polynomial of the distance xi."""
+    """Line load as a polynomial of the distance xi."""
     distance = ca.SX.sym("xi")
     try:
         value = function(distance)

@@ -11,15 +11,15 @@ from typing import Any
 import casadi as ca
 
 _HALVINGS = 30
-"""How often an interval with a zero of a derivative is halved.
+"""Number of halvings of an interval with a zero of a derivative.
 
 At a turning point a miss by 1e-9 changes a value by its square.
 """
 
 
 def lowest(cell: Sequence[Any], start: float, stop: float) -> tuple[Any, Any]:
-    """Where sum_j cell[j] u^j is lowest for u from ``start`` to ``stop``, and its value there, for
-    finite coefficients.
+    """Place u from ``start`` to ``stop`` at which sum_j cell[j] u^j is lowest, and its value there,
+    for finite coefficients.
     """
     place, value = ca.SX(start), _at(cell, ca.SX(start))
     turning = _zeros(_derivative(cell), start, stop) if len(cell) > 2 else []

@@ -1,4 +1,4 @@
-"""Of each operation of CasADi, where it may make a kink or a jump."""
+"""Places of kinks and jumps of each operation of CasADi."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_O
 
 
 def marks_of(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
-    """What makes an operation a kink where it passes zero, or a whole number; and whether it is
-    open there.
+    """Expressions at whose zeros, or whole numbers, an operation has a kink; and whether it is
+    undefined there.
     """
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):

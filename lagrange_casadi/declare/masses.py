@@ -11,7 +11,7 @@ from .mechanism import Mechanism
 from .parts import Link, PointMass, RigidMass
 
 ALL = "all"
-"""What the mass of everything that moves is called."""
+"""Name of the mass of everything that moves."""
 
 
 def masses_of(mechanism: Mechanism) -> Any:

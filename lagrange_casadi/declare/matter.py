@@ -1,6 +1,4 @@
-"""How the mass of a link is told: even, by a density, by what it is made of, or by mass, centre and
-inertia.
-"""
+"""Declarations of a link's mass: even, by a density, by a beam, or by mass, centre and inertia."""
 
 from __future__ import annotations
 
@@ -73,7 +71,7 @@ def matter_of(
 
 
 def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
-    """What a link is made of, its dimensions looked at.
+    """Beam of a link, with its dimensions checked.
 
     Raises :class:`DeclarationError` for what is no beam.
     """

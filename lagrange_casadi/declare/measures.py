@@ -16,7 +16,7 @@ from .parts import Link, Point
 
 @dataclass(frozen=True, eq=False)
 class Measure:
-    """What is measured, the symbols of where it is, and those of their rates and accelerations.
+    """Measured quantity, the symbols of its value, and those of its rate and acceleration.
 
     A joint has its coordinate along an ``axis``, a point its x and y, and in space its z, a link of
     a plane the angle of its axis.

@@ -127,12 +127,12 @@ class Mechanism(Graphs):
 
     @property
     def space(self) -> bool:
-        """Whether it lies in space, not in a plane."""
+        """True if it lies in space, not in a plane."""
         return False
 
     @property
     def own(self) -> Ownership:
-        """What belongs to the mechanism."""
+        """Parts and names of the mechanism."""
         return Ownership(self)
 
     @property

@@ -1,5 +1,5 @@
-"""What teeth, belts and chains do to the bodies that they couple: forces on their real lines, that
-one multiplier tells.
+"""Action of teeth, belts and chains on the bodies that they couple: forces on their real lines,
+from one multiplier.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .joints import Joint
 from .parts import Body, Expression, Point, Vector
 
 FITTING = 1e-9
-"""How far two numbers that must be the same may differ by rounding, over their size."""
+"""Largest relative difference of two numbers that must be equal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,8 @@ class Wrench:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Where two bodies touch, or a belt runs over them; ``carrier`` is the body on which both turn.
+    """Place where two bodies touch, or where a belt runs over them; ``carrier`` is the body on
+    which both turn.
 
     The first bears, at its point ``first``, lambda ``along`` + s ``apart`` + c ``braking``, and the
     second the opposite. lambda is the multiplier, of either sign; s is never negative; c is what
@@ -51,8 +52,8 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """What friction takes in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with
-    sigma the sign of a rate.
+    """Friction loss in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with sigma
+    the sign of a rate.
 
     The rate is that of the sum of coordinates of joints, each with its sign, ``turns``. ``symbol``
     stands for c until it is found, as a friction's does.
@@ -77,14 +78,14 @@ class Fit:
     size: Expression
 
     def refusal(self, got: float, meant: float) -> str:
-        """What is wrong where they differ."""
+        """Describe the difference of two numbers."""
         return self.words.format(got=readable(got, meant), meant=readable(meant, got))
 
 
 @dataclass(frozen=True, eq=False)
 class Transmission:
-    """What a constraint's multiplier lambda is: the force along the teeth, or the difference of a
-    belt's tensions [N].
+    """Meaning of a constraint's multiplier lambda: the force along the teeth, or the difference of
+    a belt's tensions [N].
 
     It acts in every one of ``meshes``: several share a load evenly. With it comes s = (|lambda +
     slack| + |lambda - slack|)/2: of teeth, whose ``slack`` is zero, the size of lambda; of a belt
@@ -108,5 +109,5 @@ class Transmission:
 
     @property
     def presses(self) -> bool:
-        """Whether s does anything."""
+        """True if s has an effect."""
         return any(mesh.apart is not None for mesh in self.meshes)

@@ -90,7 +90,7 @@ def polynomial(*coefficients: Expression) -> Motion:
 
 
 def _per(order: int) -> str:
-    """What a derivative by time is per, in units."""
+    """Unit suffix of a derivative by time."""
     return "" if order == 0 else "/s" if order == 1 else f"/s^{order}"
 
 
@@ -176,7 +176,7 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
 
 
 def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth]:
-    """Of laws that may have kinks in time, by the joint's name, that they must not have them.
+    """Check that laws have no kinks in time, by the joint's name.
 
     Moves go on smoothly by their making, wherever parameters allow them.
     """

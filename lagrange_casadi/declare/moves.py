@@ -23,7 +23,7 @@ from .stretches import Stretch
 
 _PER = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
 _FORGIVEN = 1e-9
-"""Of itself: by how much a time may be too short, or a cycle not close, by rounding."""
+"""Relative tolerance by which a time may be too short, or a cycle not close, by rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +215,7 @@ def _graph(
 
 
 def _bends(stretch: Stretch) -> bool:
-    """Whether a stretch may begin and end with an acceleration."""
+    """Return whether a stretch may begin and end with an acceleration."""
     if stretch.law is None:
         return False
     bend = stretch.law.begins[0]
@@ -223,9 +223,7 @@ def _bends(stretch: Stretch) -> bool:
 
 
 def _chosen(rows: Any) -> Any:
-    """Of values, each with its condition of which one holds at most, the one that does; zero where
-    none does.
-    """
+    """Select the value whose condition holds, of which at most one does; zero if none does."""
     total: Any = 0.0
     for here, value in rows:
         if not (isinstance(value, float) and value == 0.0):
@@ -304,7 +302,7 @@ def _expression(what: str, value: Any, unit: str = "1") -> Any:
 def _way(
     what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded
 ) -> tuple[Expression, Expression]:
-    """How far a move goes, and where it ends."""
+    """Distance of a move, and its end."""
     if part.by is not None:
         by = demands.coordinate(f"{what}: by", part.by)
         return by, way.then(by)

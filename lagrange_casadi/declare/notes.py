@@ -1,4 +1,4 @@
-"""What is worth a word of a solution that is right all the same."""
+"""Remarks on a solution that is valid."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .description import Description, drives_of, in_space, motions_of
 from .limits import ROUNDED
 
 _EDGE = 1e-9
-"""Of a link's length: what leaves it by so little does so by rounding."""
+"""Relative tolerance, of a link's length, for points outside it by rounding."""
 
 
 def notes(
@@ -70,8 +70,8 @@ def notes(
 
 
 def drawing_notes(description: Description) -> Iterator[str]:
-    """What was moved because a drawing rounds it, and by how much: to ends of links and right
-    angles, and so that loops close.
+    """Corrections of rounded drawings, and their size: at ends of links and right angles, and so
+    that loops close.
     """
     snapped = description.get("snapped", {})
     for k, what, exact, unit in (
@@ -121,8 +121,8 @@ def _across(description: Description) -> Iterator[str]:
 
 
 def _is_carrier(description: Description, link: str) -> bool:
-    """Whether a link has no mass, and joins and bears all at one place: then how it lies matters to
-    nothing.
+    """Return whether a link has no mass, and all joins and loads at one place: then its direction
+    has no effect.
     """
     ends = [joint[end] for joint in description["joints"].values() for end in ("parent", "child")]
     loaded = [point for load in description["loads"].values() for point in load["points"]]
@@ -137,7 +137,9 @@ def _is_carrier(description: Description, link: str) -> bool:
 
 
 def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np.bool_]) -> str:
-    """When a joint that rubs is at rest, as it is at some instants, and which frictions are."""
+    """Note on a joint with friction that is at rest at some instants, and on the frictions
+    there.
+    """
     open_ = [
         o.part
         for o, values in outputs.items()
@@ -154,8 +156,8 @@ def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np
 
 
 def _along(name: str, joint: Description) -> dict[Output, float]:
-    """How far a joint's point goes along its parent's axis, by the motions that move it; nothing
-    where it does not slide.
+    """Distance of a joint's point along its parent's axis, from the motions that move it; empty if
+    it does not slide.
     """
     if "coordinates" not in joint:
         return (

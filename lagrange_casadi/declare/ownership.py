@@ -1,5 +1,5 @@
-"""What a declaration is given, looked at: parts of the mechanism's own, expressions of its own
-symbols, names that are free.
+"""Checks of a declaration's arguments: parts of the same mechanism, expressions of its own symbols,
+names that are free.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Ownership:
-    """What belongs to a mechanism.
+    """Parts and names of a mechanism.
 
     Methods return what they were given, and raise :class:`.DeclarationError` for anything else.
     """

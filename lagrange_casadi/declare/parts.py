@@ -48,9 +48,7 @@ class Parameter:
         return number(value, self.unit, finite=False)
 
     def fault(self, value: Any) -> str:
-        """What is wrong with a value, in words; nothing where it is a finite number within ``[low,
-        high]``.
-        """
+        """Describe the fault of a value; empty if it is a finite number within ``[low, high]``."""
         try:
             found = self.number(value)
         except NumberError:
@@ -74,7 +72,7 @@ class Body:
 
     @property
     def oriented(self) -> bool:
-        """Whether it has a direction of its own."""
+        """True if it has a direction of its own."""
         return True
 
 
@@ -162,7 +160,7 @@ class PointMass(Body):
 
     @property
     def oriented(self) -> bool:
-        """It has none."""
+        """False: it has none."""
         return False
 
 
@@ -194,7 +192,7 @@ class Force:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where it acts."""
+        """Place where it acts."""
         return (self.point,)
 
 
@@ -220,7 +218,7 @@ class Torque:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where it acts, first the point it is for."""
+        """Places where it acts, first the point it is for."""
         return (self.point, self.against)
 
 
@@ -239,7 +237,7 @@ class Spring:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Its ends."""
+        """End points."""
         return (self.first, self.second)
 
 
@@ -263,7 +261,7 @@ class LineLoad:
 
     @property
     def whole(self) -> bool:
-        """Whether it acts from the base to the tip."""
+        """True if it acts from the base to the tip."""
         start, end = self.between
         return isinstance(start, float) and start == 0.0 and end is self.link.length
 
@@ -279,18 +277,18 @@ class LineLoad:
 
     @property
     def end(self) -> Expression:
-        """Where it ends, as a ratio xi/l."""
+        """End, as a ratio xi/l."""
         return 1.0 if self.whole else self.between[1] / self.link.length
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where its resultant is told: the middle of the part on which it acts."""
+        """Place of its resultant: the middle of the part on which it acts."""
         start, end = self.between
         return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
 
 
 POSITIVE = ("radius", "length", "stribeck", "smooth")
-"""What of a friction must not be zero."""
+"""Numbers of a friction that must not be zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,23 +326,23 @@ class Friction:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where it acts: on the joint's child, and back on its parent."""
+        """Places where it acts: on the joint's child, and back on its parent."""
         return (self.joint.child, self.joint.parent)
 
     @property
     def numbers(self) -> dict[str, Expression]:
-        """What is told of it, by the words that declare it."""
+        """Numbers of the friction, by the keywords of its declaration."""
         words = ("mu", "radius", "length", "viscous", "static", "stribeck", "smooth")
         return {word: getattr(self, word) for word in words if getattr(self, word) is not None}
 
     @property
     def every_way(self) -> bool:
-        """Whether it acts along whatever way the joint turns, and not along a coordinate."""
+        """True if it acts against any turning of the joint, and not along a coordinate."""
         return self.joint.kind == "spherical"
 
     @property
     def dry(self) -> bool:
-        """Whether it follows what the joint bears."""
+        """True if it depends on the joint's reaction."""
         return not (isinstance(self.mu, float) and self.mu == 0.0 and self.static is None)
 
 

@@ -1,5 +1,5 @@
-"""What makes parts possible: one function of the parameters, which :func:`.evaluate`, sweeps and
-exported C all ask.
+"""Conditions for possible parts: one function of the parameters, for :func:`.evaluate`, sweeps and
+exported C.
 """
 
 from __future__ import annotations
@@ -83,8 +83,8 @@ class Demands:
 
 @dataclass(frozen=True, eq=False)
 class Margins(Graphs):
-    """What parameters must keep positive, ``positive`` numbers of ``function(p)``, and then what
-    must not be negative.
+    """Expressions that must stay positive, ``positive`` numbers of ``function(p)``, and then those
+    that must not be negative.
     """
 
     function: Any
@@ -107,8 +107,8 @@ class Margins(Graphs):
 
 @symbolic
 def demands(mechanism: Mechanism, precision: Precision = "double") -> Demands:
-    """What a mechanism's parts demand: of lengths, masses, densities, stations; what a precision
-    rounds is forgiven.
+    """Conditions on a mechanism's parts: lengths, masses, densities, load points; with the
+    tolerance of a precision.
     """
     return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
 
@@ -195,7 +195,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
 
 
 def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
-    """That what parameters put into curves is between the curves' ends."""
+    """Conditions that arguments of curves are between the curves' ends."""
     symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
     found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
     told = f"{what}: what is put into its curve is beyond the curve's ends"
@@ -230,7 +230,7 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
 
 
 def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
-    """That two numbers of a transmission are the same."""
+    """Condition that two numbers of a transmission are equal."""
     apart = max(FITTING, END[precision]) * fit.size - ca.fabs(ca.SX(fit.got - fit.meant))
     return Demand(
         apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}"
@@ -303,8 +303,8 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
 
 
 def _of_beam(what: str, link: Link) -> list[Demand]:
-    """That dimensions of its cross-section are some; between two breaks they are linear, and so are
-    their demands.
+    """Conditions on the dimensions of a cross-section; between two breaks they are linear, and so
+    are the conditions.
     """
 
     def demand(kind: str, value: Expression, words: str) -> Demand:
@@ -321,7 +321,7 @@ def _of_beam(what: str, link: Link) -> list[Demand]:
 
 
 def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
-    """That moments of inertia are those of some mass: no principal second moment of it is negative.
+    """Conditions that moments of inertia belong to a mass: no principal second moment is negative.
 
     So it is where no minor on the diagonal of the matrix of second moments is, each beside its
     largest terms.
@@ -381,8 +381,8 @@ def _of_density(
 
 
 def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
-    """That second moments of slices are those of some mass: neither yy, nor zz, nor yy zz - yz yz
-    is negative anywhere.
+    """Conditions that second moments of slices belong to a mass: neither yy, nor zz, nor yy zz - yz
+    yz is negative anywhere.
     """
 
     def refusal(_: Evaluator) -> str:
@@ -418,7 +418,9 @@ def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[
 
 
 def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
-    """That something is massive, or loaded: without either there is no force anywhere."""
+    """Condition that something has a mass, or is loaded: without either there is no force
+    anywhere.
+    """
     total = sum(masses[1:], masses[0])
 
     def refusal(number: Evaluator) -> str:
@@ -437,14 +439,14 @@ def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
 
 
 def _surely_positive(mass: Expression) -> bool:
-    """Whether a mass is positive whatever the parameters are."""
+    """Return whether a mass is positive for all values of the parameters."""
     constant = ca.SX(mass)
     return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
 
 
 def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
-    """That directions in space that parameters set are some, and at right angles where they are
-    told apart.
+    """Conditions that directions in space that depend on parameters are not zero, and at right
+    angles where two are given.
     """
     what = f"joint '{joint.name}'"
     own = _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []

@@ -27,7 +27,7 @@ def rough_posture(mechanism: Mechanism, posture: Mapping[str, object]) -> dict[s
 
 
 def _rough(name: str, value: object, turns: bool) -> float:
-    """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
+    """Direction [rad] or place [m] of a posture. Raises :class:`DeclarationError`."""
     try:
         found = number(value, ANGLE if turns else LENGTH)
     except NumberError as error:

@@ -128,4 +128,4 @@ _POLYNOMIAL: dict[int, Callable[..., Polynomial]] = {
     ca.OP_CONSTPOW: _power,
     ca.OP_ASSIGN: lambda a: a,
 }
-"""What makes polynomials of polynomials."""
+"""Operations that make polynomials of polynomials."""

@@ -1,5 +1,5 @@
-"""When the motion of a drive is at given coordinates: laws of motion inverted, for many values of
-the parameters at once.
+"""Times at which the motion of a drive is at given coordinates: laws of motion inverted, for many
+values of the parameters at once.
 
 Where the rate does not depend on time, the time follows by one subtraction and one division. Any
 other law is followed from a time at which it is known, by steps in which the coordinate changes
@@ -22,34 +22,32 @@ from ..base.arrays import Array
 from .laws import Laws
 
 _SHARE = 1 / 32
-"""Of the way that is asked for: by about so much does the coordinate change in a step."""
+"""Fraction of the distance by which the coordinate changes in a step."""
 
 _FIRST = 1e-6
 """Seconds of the first step from where a law rests with neither rate nor acceleration."""
 
 _STEPS, _HALVINGS = 5000, 80
-"""How many steps a motion is followed at most, and by how many halvings a time is known where it
-turns back.
-"""
+"""Largest number of steps along a motion, and of halvings for a time of reversal."""
 
 _NEWTON, _TRIALS = 60, 200
-"""How often a time is bettered by Newton's method, and in all; the rest are halvings."""
+"""Largest number of Newton steps for a time, and of trials in all; the rest are halvings."""
 
 _ROUNDING = 16 * float(np.finfo(float).eps)
-"""By how much of itself a coordinate may be off by rounding."""
+"""Relative rounding error of a coordinate."""
 
 _RESTS = 1e-9
-"""Of the largest rate: what is no rate back but rounding."""
+"""Fraction of the largest rate below which a rate of the wrong sign is rounding."""
 
 _FEW, _MANY = 1 << 4, 1 << 10
-"""How many times a law is evaluated at, at once."""
+"""Numbers of times at which a law is evaluated at once."""
 
 _ROOM = 1 << 16
-"""How many times are held at once."""
+"""Number of times that are kept at once."""
 
 
 class Missed(enum.IntEnum):
-    """Why a coordinate has no time."""
+    """Reason why a coordinate has no time."""
 
     REACHED = 0
     STANDS_STILL = 1
@@ -130,7 +128,8 @@ class Reaching:
         return self.law.map(_MANY)
 
     def way(self, start: Array, stop: Array, p: Array, around: Array, *, looks: int) -> Way:
-        """When the motion goes from ``start`` to ``stop``, (n,), all the way in one direction.
+        """Times at which the motion goes from ``start`` to ``stop``, (n,), all the way in one
+        direction.
 
         ``p`` is (n, parameters). A law that is not steady is followed from the times ``around``
         (n,) [s], or from where it is defined; that it does not turn back is looked at ``looks``
@@ -217,8 +216,8 @@ class Reaching:
     def _met(
         self, target: Array, way: Array, sense: Array, p: Array, around: Array
     ) -> tuple[Array, npt.NDArray[np.int8], Array, Array]:
-        """When the motion that goes through where it is at ``around`` is at a target; why not, and
-        where that is seen.
+        """Time at which the motion through its place at ``around`` is at a target; or the reason
+        why there is none, and its time.
         """
         low, high = self.span
         here = np.clip(around, low, high)
@@ -288,7 +287,7 @@ class Reaching:
         return np.where(missed == Missed.REACHED, time, np.nan), missed, seen, at
 
     def _turning(self, was: Array, now: Array, sense: Array, p: Array) -> tuple[Array, Array]:
-        """Where between two times a motion turns back, and its coordinate there."""
+        """Time of reversal between two times, and the coordinate there."""
         near, far = was.copy(), now.copy()
         for _ in range(_HALVINGS):
             middle = near + (far - near) / 2

@@ -29,10 +29,10 @@ _LEAST = 5
 """So many rows are needed at least for four pieces."""
 
 _CLOSES = 6.0
-"""How many times the noise the ends of a cycle may differ."""
+"""Largest difference of the ends of a cycle, as a multiple of the noise."""
 
 _SAME = 1e-9
-"""Of the range: by how much they may differ where nothing is smoothed."""
+"""Largest relative difference of the ends if nothing is smoothed."""
 
 _FOURTH = 70.0
 """The variance of the fourth difference of noise, over that of the noise: 1 + 16 + 36 + 16 + 1."""
@@ -134,8 +134,8 @@ def _finite(what: str, value: object) -> None:
 
 
 def _is_meant(cell: str) -> bool:
-    """Whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``, or
-    digits of another script.
+    """Return whether a cell that is no finite number is no word of a head either: ``nan``, ``1_0``,
+    or digits of another script.
     """
     endless = cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
     return endless or (any(map(str.isdigit, cell)) and not any(map(str.isalpha, cell)))

@@ -59,8 +59,8 @@ class RestLaw:
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """What a move must keep to: the largest speed, acceleration and jerk, in rad or m and s; None
-    is no limit.
+    """Limits of a move: the largest speed, acceleration and jerk, in rad or m and s; None is no
+    limit.
     """
 
     speed: Expression | None = None
@@ -69,7 +69,7 @@ class Limits:
 
     @property
     def told(self) -> dict[str, Expression]:
-        """Those that there are, by name."""
+        """Limits that are given, by name."""
         each = {"speed": self.speed, "acceleration": self.acceleration, "jerk": self.jerk}
         return {name: limit for name, limit in each.items() if limit is not None}
 
@@ -141,8 +141,8 @@ def trapezoid_within(way: Expression, limits: Limits) -> RestLaw:
 
 
 def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
-    """Of the shares of the time that the rectangle of speed and its two averages take, the longest
-    first; their sum is one.
+    """Fractions of time of the rectangle of speed and of its two averages, the longest first; their
+    sum is one.
     """
     top = 1.0 / first
     steep = top / second

@@ -35,7 +35,7 @@ class Asked:
 
     @property
     def wanted(self) -> str:
-        """What is to be wanted for it."""
+        """Outputs that must be wanted for it."""
         return (
             "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
         )
@@ -106,8 +106,8 @@ class SectionForces(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """What :meth:`.Mechanism.output` may be made of beside what loads see: symbols of accelerations
-    and forces, in SI units.
+    """Symbols for :meth:`.Mechanism.output` beside those for loads: accelerations and forces, in SI
+    units.
 
     Methods raise :class:`.DeclarationError` for a part of another mechanism, or one that has no
     such result.

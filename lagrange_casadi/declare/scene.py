@@ -34,8 +34,8 @@ from .wanted_names import SENSITIVITY, among, others
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
-"""What is told of links that have a beam: it follows from their sections,
-which are wanted with it.
+"""Outputs of links that have a beam: they follow from section forces, which are wanted with
+them.
 """
 
 
@@ -112,7 +112,7 @@ class Wanted:
 
     @property
     def forces(self) -> bool:
-        """Whether any force is wanted that equilibrium gives."""
+        """True if any force from equilibrium is wanted."""
         return bool(
             self.effort or self.reactions or self.multipliers or self.frictions or self.sections
         )
@@ -356,8 +356,8 @@ class Scene(Graphs):
         )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a drawing at the first instant, where it can be assembled, and the
-        parts.
+        """Show a drawing at the first instant, if the mechanism can be assembled, and the parts, in
+        a notebook.
         """
         return str(method("Scene._repr_html_")(self))
 
@@ -418,7 +418,7 @@ class Scene(Graphs):
 
     @fitting
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
-        """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
+        """Definition of the instants: the scene's own, or ``t`` or ``over``.
 
         Raises :class:`.DeclarationError` where both are given, and for what cannot be.
         """
@@ -436,12 +436,12 @@ class Scene(Graphs):
 
     @symbolic_property
     def span(self) -> tuple[float, float]:
-        """Its own first and last instant [s], with the parameters with which it is assembled."""
+        """First and last instant [s], with the parameters with which the scene is assembled."""
         return span_of(self.prescribed, self.timing(), self.mechanism.values(self.assembly))
 
     def demands(self, precision: Precision = "double") -> Demands:
-        """What the mechanism's parts and the moves of its motion demand of the parameters; what a
-        precision rounds is forgiven.
+        """Conditions on the parameters, of the mechanism's parts and of the moves of its motion,
+        with the tolerance of a precision.
         """
         parts, moved = (
             demands(self.mechanism, precision),

@@ -77,7 +77,7 @@ class SpatialMechanism(Mechanism):
 
     @property
     def space(self) -> bool:
-        """Whether it lies in space: it does."""
+        """True: it lies in space."""
         return True
 
     def link(  # type: ignore[override]

@@ -80,7 +80,7 @@ def smoothed(
     solver = ca.Linsol("smoothing", "ldl", (R + square).sparsity())
 
     def off(weight: float) -> np.ndarray:
-        """How far the curve is from the points."""
+        """Distance of the curve from the points."""
         return np.asarray(
             (weight * Q.T @ solver.solve(R + weight * square, bent)).full().ravel() * size
         )

@@ -92,7 +92,7 @@ class Entries(Graphs):
 
     @classmethod
     def of(cls, found: Sequence[_Measured], p: Any) -> Entries:
-        """Those of symbols."""
+        """Make it from symbols."""
         points = ca.horzcat(ca.SX(3, 0), *(ca.vertcat(*one.point) for one in found))
         return cls(
             tuple((one.kind, one.part) for one in found),
@@ -100,7 +100,7 @@ class Entries(Graphs):
         )
 
     def at(self, p: Sequence[float]) -> tuple[Entry, ...]:
-        """The same for values of all parameters."""
+        """Evaluate it for values of all parameters."""
         points = self.points(list(p)).full().T.tolist()
         return tuple(
             Entry(*one, tuple(point)) for one, point in zip(self.each, points, strict=True)
@@ -255,7 +255,7 @@ class Equation:
 
     @property
     def row(self) -> bool:
-        """Whether it is a non-holonomic row."""
+        """True if it is a non-holonomic row."""
         return self.graph.row
 
     def at(self, places: Array, rates: Array, accelerations: Array, t: Array) -> Array:
@@ -267,7 +267,7 @@ class Equation:
         )
 
     def slopes_at(self, places: Array, rates: Array, t: Array) -> Array:
-        """What it changes by each entry, (entries, t)."""
+        """Derivatives by each entry, (entries, t)."""
         return np.asarray(self.graph.slopes(places, rates, t[None], list(self.p)).full())
 
 
@@ -332,7 +332,7 @@ class LoadLaw:
         return self.graph.name
 
     def at(self, places: Array, rates: Array, t: Array) -> Array:
-        """Its numbers over instants, a row each, from entries (entries, t)."""
+        """Numbers over instants, a row each, from entries (entries, t)."""
         return np.asarray(self.graph.values(places, rates, t[None], list(self.p)).full())
 
 
@@ -349,7 +349,7 @@ class Stated:
     @classmethod
     @symbolic
     def of(cls, mechanism: Mechanism, motions: Mapping[str, Motion]) -> Stated:
-        """What is stated of a mechanism whose coordinates, those of guides too, have ``motions``.
+        """Declared facts of a mechanism whose coordinates, those of guides too, have ``motions``.
 
         Friction has a law of its own.
         """
@@ -388,7 +388,7 @@ class Stated:
 
 
 def _seen(mechanism: Mechanism, expression: Any) -> list[_Measured]:
-    """What of all that is measured stands in an expression."""
+    """Measured symbols in an expression."""
     return [
         one
         for one in _measured(mechanism)
@@ -413,7 +413,7 @@ def _measured(mechanism: Mechanism) -> Iterator[_Measured]:
 
 
 def _moved(mechanism: Mechanism, coordinate: str) -> _Measured:
-    """What a motion is of: a coordinate of a joint, or of a guide one of a point or of a body."""
+    """Coordinate that a motion moves: of a joint, or, for a guide, of a point or of a body."""
     if coordinate in mechanism.coordinates:
         return _Measured("coordinate", coordinate)
     name, _, what = coordinate.rpartition(".")

@@ -15,10 +15,10 @@ from .clearance import bound
 from .limits_beside import Side
 
 _HALVINGS = 64
-"""How often a step is halved."""
+"""Number of times that a step is halved."""
 
 _WIDEST, _LIMITS = 2048.0, 47
-"""From how many steps away a limit is taken, and at how many distances, each half of the one
+"""Number of steps away from which a limit is taken, and number of distances, each half of the one
 before.
 """
 
@@ -55,7 +55,8 @@ class Steps:
 
     @classmethod
     def through(cls, paths: Array, p: Array) -> Steps:
-        """From all instants on, or where the path rests there, as it came; as far as is asked for.
+        """Values from all instants on, or, if the path rests there, in the direction from which it
+        came; as far as asked for.
 
         A single one goes anywhere.
         """
@@ -98,7 +99,7 @@ class Steps:
         return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
 
     def halved(self, state: Callable[[Any], Array]) -> Steps:
-        """To where the state of each, (rows, m), changes from what it is at its low share."""
+        """Bisect to where the state of each, (rows, m), changes from that at its low share."""
         low, high = self.low, self.high
         before = state(low)
         for _ in range(_HALVINGS if self.owner.size else 0):
@@ -126,7 +127,7 @@ def called(function: Any, *columns: Array) -> Array:
 
 
 def sides_of(function: Any, steps: Steps, middle: Any) -> tuple[Side, Side]:
-    """What a function of places, fixed symbols and ways gives at ever smaller distances before and
+    """Values of a function of places, fixed symbols and paths at ever smaller distances before and
     after a share of each step.
     """
     far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]

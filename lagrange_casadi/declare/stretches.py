@@ -13,7 +13,7 @@ from .possible import Evaluator
 from .rest_laws import RestLaw
 
 _SAME = 1e-9
-"""Of the largest of its kind: a jump that is less is rounding."""
+"""Relative size of a jump, of the largest of its kind, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ def _timed(stretches: Sequence[Stretch], number: Evaluator) -> list[TimedStretch
 
 
 def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> list[Jump]:
-    """Where accelerations jump, and where only jerks do, in the order of time."""
+    """Times at which accelerations jump, and at which only jerks do, in the order of time."""
     rest = (0.0, 0.0)
     begins, ends, inner = [], [], []
     for stretch in stretches:
@@ -150,8 +150,8 @@ def _jumps(stretches: Sequence[Stretch], number: Evaluator, *, cyclic: bool) -> 
 
 
 def _places(law: RestLaw, number: Evaluator) -> list[tuple[float, float, float]]:
-    """Where a law jumps within, and by how much; jumps at one place are one, as where no constant
-    acceleration is left.
+    """Places and sizes of jumps within a law; jumps at one place are one, as between parts without
+    constant acceleration.
     """
     found: list[tuple[float, float, float]] = []
     for place, change in law.inner:

@@ -1,5 +1,4 @@
-"""At which instants a scene is evaluated: in equal steps of time, or of the coordinate of a driven
-joint.
+"""Instants of a scene: in equal steps of time, or of the coordinate of a driven joint.
 
 Start and stop may be expressions of the parameters. Then every design has instants of its own.
 """
@@ -49,12 +48,12 @@ and whole numbers over a drive.
 """
 
 _MOST_LOOKS = 1 << 16
-"""At so many times at most is a motion looked at, whether it turns back."""
+"""Largest number of times at which a motion is checked for reversal."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """How instants are asked for: ``count`` from ``start`` to ``stop``, of time [s], or of the
+    """Definition of instants: ``count`` from ``start`` to ``stop``, of time [s], or of the
     coordinate of ``joint`` [rad or m].
 
     A law of motion that is not steady is followed to that joint's coordinate from the time
@@ -72,8 +71,8 @@ class Timing:
     def of(
         cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None
     ) -> Timing:
-        """What a user says: ``t``, or where that is given ``over``; ``t`` then says where ``over``
-        is looked for.
+        """Parse the user's ``t``, or ``over`` if that is given; ``t`` is then the range in which
+        ``over`` is sought.
 
         Raises :class:`.DeclarationError` for what is neither, :class:`.UnknownNameError` for a
         joint that is not driven.
@@ -104,12 +103,12 @@ class Timing:
 
     @property
     def fixed(self) -> bool:
-        """Whether start and stop are numbers, the same for all parameters."""
+        """True if start and stop are numbers, the same for all parameters."""
         return not isinstance(self.start, str) and not isinstance(self.stop, str)
 
     @property
     def shared(self) -> bool:
-        """Whether the instants are the same whatever the parameters are."""
+        """True if the instants are the same for all parameters."""
         return self.fixed and not self.joint
 
     def bounds(self, p: Array) -> tuple[Array, Array, Array]:
@@ -126,8 +125,9 @@ class Timing:
         return start, stop
 
     def words(self, symbols: Any) -> list[Any]:
-        """The same for JSON: start, stop, count, and where there is one the joint and around;
-        expressions as text that tells them apart."""
+        """Form for JSON: start, stop, count, and for a joint its name and around; expressions as
+        text that distinguishes them.
+        """
         bounds = (self.start, self.stop, self.around)
         start, stop, around = (
             _text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds
@@ -167,12 +167,12 @@ class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
 
     @property
     def long_name(self) -> str:
-        """What it is, in words."""
+        """Name in words."""
         return f"coordinate of joint '{self.joint}'"
 
     @property
     def label(self) -> str:
-        """The same for an axis of a figure, with the unit of :meth:`drawn`."""
+        """Label of an axis of a figure, with the unit of :meth:`drawn`."""
         return f"{self.joint} [{'deg' if self.unit == ANGLE else self.unit}]"
 
     def shown(self, value: float) -> str:
@@ -248,7 +248,7 @@ def instants_of(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Inst
 
 
 def _way(laws: Laws, timing: Timing, values: Mapping[str, float]) -> Way:
-    """When a drive goes from start to stop.
+    """Times at which a drive goes from start to stop.
 
     Raises :class:`.DeclarationError` where it does not, and says what it does instead.
     """
@@ -330,7 +330,7 @@ def _bound(name: str, bound: Any, unit: str) -> Any:
 
 
 def _rising(even: Any) -> Any:
-    """The same with the lesser end first, where that can be told."""
+    """Interval with the lesser end first, if that is known."""
     try:
         return (even[1], even[0], *even[2:]) if even[1] < even[0] else even
     except (TypeError, IndexError):

@@ -1,5 +1,5 @@
-"""How far a drive turns within the instants that are asked for: whether a cycle is whole, and the
-same for all parameters.
+"""Revolutions of a drive within the instants: whether a cycle is whole, and the same for all
+parameters.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from .times import Timing
 
 _LOOKS = 129
 _GOES_ON = 0.5
-"""Of its mean rate: a drive that ends slower comes to rest, and does not turn."""
+"""Fraction of the mean rate: a drive that ends slower comes to rest, and does not turn."""
 
 _WHOLE = 1e-6
-"""Of a turn: what is left of one by less is left by rounding."""
+"""Fraction of a turn that is rounding."""
 
 _BACK = 1e-9
-"""Of the largest rate: what is no rate back but rounding."""
+"""Fraction of the largest rate below which a rate of the wrong sign is rounding."""
 
 _BEYOND = 1.5
-"""How many times longer than its mean rate tells is waited for a whole turn."""
+"""Largest duration of a whole turn, as a multiple of that at the mean rate."""
 
 _PLACES = 6
-"""Of an angle in degrees that is told."""
+"""Decimal places of an angle in degrees."""
 
 
 def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
@@ -69,8 +69,8 @@ def note(laws: Laws, kinds: Kinds, timing: Timing, p: Array) -> str:
 
 
 def _goes_round(law: Reaching, start: Array, stop: Array, turns: Array, p: Array) -> bool:
-    """Whether a drive goes one way all the time, does not come to rest, and if it is let goes on to
-    a whole turn.
+    """Return whether a drive goes one way all the time, does not come to rest, and if it continues
+    makes a whole turn.
     """
     with np.errstate(all="ignore"):
         longer = (stop - start) * np.maximum(1.0, _BEYOND / np.abs(turns))

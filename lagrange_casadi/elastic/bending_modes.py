@@ -206,6 +206,6 @@ def _moments(
 
 
 def closed(stiffness: float, mass: float, length: float, ends: Ends) -> float:
-    """The same angular frequency of a uniform beam in closed form [rad/s]."""
+    """Angular frequency of a uniform beam in closed form [rad/s]."""
     root = ROOTS[ends if ends in ROOTS else (ends[1], ends[0])]
     return float(root**2 * np.sqrt(stiffness / (mass * length**4)))

@@ -35,7 +35,7 @@ MOVES = {
     False: ("along", "across", "turn"),
     True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z"),
 }
-"""What is told of a place of a link, in the plane and in space."""
+"""Displacements at a place of a link, in the plane and in space."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class DeflectionPeak:
 @public
 @dataclass(frozen=True, eq=False)
 class Deflection:
-    """How a link bends, stretches and twists, over time and along it.
+    """Bending, stretch and twist of a link, over time and along it.
 
     ``against`` says from where deflections count. ``ends``: from the straight line between the
     link's ends as they are. ``base``: from the link's own axes at its base. Stretch and twist count
@@ -71,7 +71,7 @@ class Deflection:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is told of every place."""
+        """Names of the displacements at every place."""
         return MOVES[self.member.space]
 
     def __repr__(self) -> str:
@@ -81,7 +81,7 @@ class Deflection:
         )
 
     def at(self, name: str, u: Numeric) -> Array:
-        """What is told by a name, at a ratio, or at ratios (t, ...), a row an instant."""
+        """Displacement by a name, at a ratio, or at ratios (t, ...), a row an instant."""
         if name not in self.names:
             raise UnknownNameError("deflection", name, self.names)
         u = np.asarray(u, float)
@@ -107,13 +107,13 @@ class Deflection:
         return np.asarray(found - u * self._tips[name].reshape(ends))
 
     def grid(self, name: str, xi: Array | None = None) -> Array:
-        """The same (t, xi) over ratios, by default those of the solution."""
+        """Displacement (t, xi) over ratios, by default those of the solution."""
         u = self.member.xi if xi is None else np.asarray(xi, float)
         return self.at(name, np.broadcast_to(u, (self.member.t.size, u.size)))
 
     @property
     def tip(self) -> Mapping[str, Array]:
-        """What is told of the tip, each (t,): against the base how the ends move against each
+        """Displacements of the tip, each (t,): relative to the base those of the ends against each
         other.
         """
         one = np.ones((self.member.t.size, 1))
@@ -121,7 +121,7 @@ class Deflection:
 
     @property
     def base(self) -> Mapping[str, Array]:
-        """What is told of the base, each (t,): against the ends, how far it turns."""
+        """Rotation of the base, each (t,), relative to the line through the ends."""
         nil = np.zeros((self.member.t.size, 1))
         return {name: self.at(name, nil)[:, 0] for name in self.names}
 
@@ -217,7 +217,7 @@ class Deflection:
         return self._valued(self._curves[name], u)
 
     def _rising(self, name: str, u: Array) -> Array:
-        """How a deflection across rises along the link."""
+        """Slope of a transverse deflection along the link."""
         turn, sign, shear = {
             "across": ("turn", 1.0, "shear"),
             "across_y": ("turn_z", 1.0, "shear_y"),
@@ -248,7 +248,7 @@ class Deflection:
 
 
 def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
-    """How a link bends under its section forces, quasi-statically: see :class:`Deflection`.
+    """Quasi-static deflection of a link under its section forces: see :class:`Deflection`.
 
     By default deflections count from the line between the ends where joints hold both
     (:func:`..declare.held.ends_of`), else from the link's axes at its base.

@@ -27,7 +27,7 @@ from .bending_modes import Mode, first_mode
 from .compliance import Compliance
 
 ENOUGH = 0.1
-"""By how much bending may be off where rigid links are enough."""
+"""Relative error of bending up to which rigid links are enough."""
 
 _CYCLE = 1e-3
 _UNEVEN = 1e-6
@@ -61,7 +61,7 @@ class Vibration:
 
     @property
     def enough(self) -> bool | None:
-        """Whether rigid links are enough: bending is off by a tenth at most.
+        """True if rigid links are enough: bending is off by a tenth at most.
 
         None where it cannot be told.
         """
@@ -69,7 +69,7 @@ class Vibration:
 
     @property
     def words(self) -> str:
-        """The same in a sentence."""
+        """Result in a sentence."""
         if math.isinf(self.frequency):
             return "no bending frequency of its own, for it has no mass"
         told = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
@@ -126,7 +126,7 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
 
 
 def swinging(solution: Solution) -> Iterator[str]:
-    """In words the links of whose deflections a solution has series, and for which rigid links are
+    """Names of the links whose deflections are series in a solution, and for which rigid links are
     not enough.
     """
     for output in solution.outputs:
@@ -166,7 +166,7 @@ class _Plane:
         return cls(mode, np.asarray(moments))
 
     def force(self) -> Array:
-        """What bends the mode, (t,): the sum of M times curvature, as large as moments are."""
+        """Modal load, (t,): the sum of M times curvature, as large as moments are."""
         return np.asarray(self.moments @ (self.mode.weights * self.mode.curvature))
 
 
@@ -192,7 +192,7 @@ def _stiffness(compliance: Compliance, u: Array) -> Array:
 
 
 def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
-    """Why harmonics cannot be told; nothing where they can."""
+    """Reason why there are no harmonics; empty if there are."""
     if t.size < _FEWEST:
         return "of so few instants harmonics cannot be told"
     steps = np.diff(t)

@@ -30,7 +30,7 @@ from .follower import STEEL, largest_pressure, rise_of, stiffness_of
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Where the contact is, by the symbol ``angle`` of the cam [rad], from the cam's centre in
+    """Position of the contact, by the symbol ``angle`` of the cam [rad], from the cam's centre in
     ground axes, each (x, y).
 
     ``place`` is the follower's point, ``normal`` of length one from the cam to the follower,
@@ -168,7 +168,7 @@ def disc_cam(
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Where a cam and its follower are."""
+    """Positions of a cam and its follower."""
 
     cam: Joint
     follower: Joint
@@ -179,7 +179,9 @@ class Layout:
 
     @property
     def away(self) -> tuple[Any, Any]:
-        """From the cam's centre to the place on the ground at which the follower is led."""
+        """Vector from the cam's centre to the place on the ground at which the follower is
+        guided.
+        """
         return (
             self.follower.parent.x - self.cam.parent.x,
             self.follower.parent.y - self.cam.parent.y,
@@ -187,8 +189,8 @@ class Layout:
 
     @property
     def arm(self) -> tuple[Any, Any]:
-        """From the point at which the follower is led to the one that touches, in the follower's
-        axes.
+        """Vector from the point at which the follower is guided to the one that touches, in the
+        follower's axes.
         """
         return self.held.x - self.follower.child.x, self.held.y - self.follower.child.y
 
@@ -204,7 +206,7 @@ def layout_of(
     side: int,
     base: Expression,
 ) -> Layout:
-    """What :func:`disc_cam` is told of a cam and its follower.
+    """Check the arguments of :func:`disc_cam` on a cam and its follower.
 
     Raises :class:`.DeclarationError` as that does.
     """
@@ -397,8 +399,8 @@ def curvature(design: Design) -> Any:
 
 
 def progress(design: Design) -> Any:
-    """How far the contact goes on the cam by its angle [m], counter-clockwise round it: what is not
-    negative is undercut.
+    """Speed of the contact along the cam by its angle [m], counter-clockwise round it: undercut if
+    it is not negative.
     """
     x, contact = design.angle, design.contact
     moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0]

@@ -21,7 +21,7 @@ from ..errors import DeclarationError, LagrangeCasadiError, shown
 
 _LEAST, _MOST = 16, 1 << 20
 _SAME = 1e-9
-"""Of its size: by how much a profile may be open, by rounding."""
+"""Relative gap of a closed profile that is rounding."""
 
 _MILLIMETRES = 1e3
 
@@ -50,7 +50,7 @@ class CamProfile:
 
     @property
     def told_undercut(self) -> str:
-        """Where it is undercut, in words; nothing where it is not."""
+        """Places of undercut, in words; empty if there are none."""
         found = np.degrees(self.angle[self.undercut])
         return (
             f"its profile is undercut at {found[0]:.4g} deg of the cam, and at {found.size} angles"

@@ -1,5 +1,5 @@
-"""How a body turns or slides on another one: about which axis, and
-by which coordinates of joints.
+"""Motion of a body relative to another one: its axis of rotation or sliding, and coordinates of
+joints.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ _AS_IT_IS = Rotation()
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a point of a body moves as seen from a carrier: it stays on an ``axis``, or ``slides``
-    along it.
+    """Motion of a point of a body relative to a carrier: the point stays on an ``axis``, or
+    ``slides`` along it.
 
     ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero;
     ``turns`` are the joints whose coordinates, each with its sign, add up to the angle about the
@@ -85,7 +85,7 @@ def courses_on(
     *,
     rack: bool = True,
 ) -> tuple[Course, Course]:
-    """How two points move on the one body on which both turn, or the second slides.
+    """Motions of two points on the one body on which both turn, or the second slides.
 
     Raises :class:`.DeclarationError` where there is none, or where that is not the ``carrier``.
     """
@@ -116,7 +116,7 @@ def courses_on(
 
 
 def fits_of(what: str, course: Course) -> list[Fit]:
-    """That the axes of all joints of a course are one, for other parameters too."""
+    """Condition that the axes of all joints of a course are one, for other parameters too."""
     words = (
         f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis,"
         " {got} m off"
@@ -196,7 +196,7 @@ def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) ->
 
 
 def _zero(joint: Joint) -> Rotation:
-    """How a joint's child is turned in its parent's axes where its coordinates are zero."""
+    """Rotation of a joint's child in its parent's axes if its coordinates are zero."""
     if joint.turned is not None:
         return Rotation.of(*joint.turned)
     return Rotation.by(joint.angle) if joint.kind != "revolute" else Rotation()

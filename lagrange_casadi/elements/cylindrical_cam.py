@@ -43,7 +43,7 @@ _LOOKED_AT = 721
 
 @dataclass(frozen=True, eq=False)
 class Groove:
-    """Where the roller is, by the symbol ``angle`` of the drum [rad], in ground axes.
+    """Position of the roller, by the symbol ``angle`` of the drum [rad], in ground axes.
 
     ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the
     direction in which the follower moves the centre; ``axis`` is that of the drum through
@@ -190,7 +190,7 @@ def cylindrical_cam(
 
 
 def _carried(joint: Joint, angle: Any) -> Rotation:
-    """How the child of a joint on the ground is turned, at an angle of the joint."""
+    """Rotation of the child of a joint on the ground, at an angle of the joint."""
     assert joint.turned is not None
     resting = Rotation.of(*joint.turned)
     return (

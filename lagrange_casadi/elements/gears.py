@@ -221,7 +221,7 @@ def _teeth(
 def _mesh(
     mechanism: Mechanism, first: Point, second: Point, one: Course, two: Course, pitch: Pitch
 ) -> Mesh:
-    """Where two gears touch; on a rack it is a place that moves."""
+    """Place where two gears touch; on a rack the place moves."""
     if two.slides:
         way = two.way(mechanism)
         assert two.axis is not None
@@ -251,7 +251,7 @@ def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pit
 
 
 def braking_of(pitch: Pitch) -> Wrench:
-    """What a unit of friction does to the first gear: a couple against its turning on the second,
+    """Action of a unit of friction on the first gear: a couple against its turning on the second,
     or a force against sliding.
     """
     way = along(pitch.relative, length(pitch.relative))

@@ -1,5 +1,5 @@
-"""Where gears touch: the pitch point, the direction of the teeth's force there, and the radii about
-which it turns them.
+"""Contact of gears: the pitch point, the direction of the force of the teeth there, and the radii
+about which it turns them.
 
 All is in the carrier's axes. At the pitch point e leads from the first gear's axis outward, t = u x
 e is the way in which it moves when the gear turns about its axis u. The force of the teeth on the
@@ -27,7 +27,7 @@ from .courses import Course, Numbers, along, length
 
 @dataclass(frozen=True, eq=False)
 class Teeth:
-    """What gears are told to be: radii [m] of their pitch circles, ratio of their teeth, pressure
+    """Declared numbers of gears: radii [m] of their pitch circles, ratio of their teeth, pressure
     and helix angle [rad], hand.
     """
 

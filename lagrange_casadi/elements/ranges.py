@@ -1,5 +1,5 @@
-"""What numbers of parts must be: numbers are refused where a part is declared, expressions for
-values of parameters.
+"""Ranges of numbers of parts: numbers are refused when a part is declared, expressions for values
+of parameters.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from ..declare.parts import Expression
 from ..errors import DeclarationError
 
 LEAST = 1e-12
-"""What is smaller is not above zero."""
+"""Least number that counts as positive."""
 
 
 def whole(what: str, told: str, value: Expression) -> list[Fit]:
-    """That a number is whole, and 1 or more."""
+    """Check that a number is whole, and 1 or more."""
     if isinstance(value, ca.SX):
         nearest = ca.fmax(ca.floor(value + 0.5), 1.0)
         return [Fit(f"{told} must be whole, and 1 or more, got {{got}}", value, nearest, 1.0)]
@@ -30,7 +30,7 @@ def whole(what: str, told: str, value: Expression) -> list[Fit]:
 
 
 def positive(what: str, told: str, value: Expression) -> list[Fit]:
-    """That a length is positive."""
+    """Check that a length is positive."""
     if isinstance(value, ca.SX):
         return [Fit(f"{told} must be positive, got {{got}} m", value, ca.fmax(value, LEAST), LEAST)]
     if value <= 0.0:
@@ -39,7 +39,7 @@ def positive(what: str, told: str, value: Expression) -> list[Fit]:
 
 
 def within(what: str, told: str, angle: Expression, low: float, high: float) -> list[Fit]:
-    """That an angle [rad] is between two others."""
+    """Check that an angle [rad] is between two others."""
     bounds = f"{told} must be from {math.degrees(low):.6g} to {math.degrees(high):.6g} deg"
     if isinstance(angle, ca.SX):
         return [Fit(f"{bounds}, got {{got}} rad", angle, ca.fmin(ca.fmax(angle, low), high), 1.0)]
@@ -49,7 +49,7 @@ def within(what: str, told: str, angle: Expression, low: float, high: float) -> 
 
 
 def at_least(what: str, words: str, value: Expression, low: float, told: Expression) -> list[Fit]:
-    """That a number is not below another; an error tells ``told``."""
+    """Check that a number is not below another; an error names ``told``."""
     if isinstance(value, ca.SX):
         return [Fit(f"{words}, got {{got}}", told, told + ca.fmax(low - value, 0.0), LEAST)]
     if value < low:
@@ -58,6 +58,6 @@ def at_least(what: str, words: str, value: Expression, low: float, told: Express
 
 
 def share(what: str, value: Expression) -> list[Fit]:
-    """That an efficiency is above 0, and 1 at most."""
+    """Check that an efficiency is above 0, and 1 at most."""
     found = at_least(what, "efficiency must be above 0", value, LEAST, value)
     return found + at_least(what, "efficiency must not be above 1", 1 - value, 0.0, value)

@@ -1,1 +1,3 @@
-"""From what is declared to graphs: kinematics of loops, Lagrange's terms, internal forces."""
+"""Derivation of graphs from a declaration: kinematics of loops, Lagrange's terms, internal
+forces.
+"""

@@ -1,4 +1,4 @@
-"""What loads and multipliers do to bodies, and the work that they do."""
+"""Action of loads and multipliers on bodies, and the work that they do."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
 def held_by(
     resting: Grown, name: str, expression: Any, of: LoopEquations | RowGraph
 ) -> Iterator[Applied]:
-    """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a
+    """Action of a multiplier on bodies, by the terms of its equation: a joint's coordinate, a
     place, a direction.
     """
     multiplier, seen = (
@@ -162,7 +162,7 @@ def _along(load: LineLoad, resting: Grown) -> Applied:
 def _along_coordinate(
     resting: Grown, name: str, joint: Joint, axis: Axis, force: Any
 ) -> Iterator[Applied]:
-    """What works along a joint's coordinate does to its bodies."""
+    """Action on its bodies of a force that works along a joint's coordinate."""
     parent, child = resting.ends(joint)
     along = times(force, resting.along(joint, axis))
     under = joint.parent

@@ -164,7 +164,7 @@ def assemble(
 
 
 def _held(resting: Grown, constraint: Constraint, loop: LoopEquations) -> Iterable[Applied]:
-    """What a constraint's multiplier does to bodies."""
+    """Action of a constraint's multiplier on bodies."""
     if constraint.transmission is not None:
         return meshed_by(resting, constraint.transmission, loop.multipliers)
     return held_by(resting, constraint.name, constraint.phi, loop)

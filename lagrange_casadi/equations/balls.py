@@ -46,13 +46,13 @@ class Ball:
 
     @classmethod
     def of(cls, joint: Joint, near: str, *, reverse: bool) -> Ball:
-        """That of a joint."""
+        """Make it for a joint."""
         axes = ca.vertcat(*(ca.SX.sym(f"{joint.name}_{axis}{k}") for axis in "xyz" for k in "xyz"))
         return cls(joint, near, reverse, axes, ca.SX.sym(f"{joint.name}_side"))
 
     @property
     def rotation(self) -> Rotation:
-        """How the body is turned."""
+        """Rotation of the body."""
         x, y, z = (self._axis(k) for k in range(3))
         return Rotation(x, y, None, z)
 

@@ -43,7 +43,7 @@ class Bar:
 
     @property
     def aimed(self) -> bool:
-        """Whether its y axis was declared."""
+        """True if the y axis was declared."""
         return self.link.beside is not None
 
     def own(self, joint: Joint) -> Point:
@@ -56,12 +56,12 @@ class Bar:
 
     @property
     def start(self) -> Any:
-        """Where along the bar its first joint is [m]."""
+        """Position of the first joint along the bar [m]."""
         return self.own(self.joints[0]).x
 
     @property
     def length(self) -> Any:
-        """How far its joints are apart [m]."""
+        """Distance of the joints [m]."""
         return self.own(self.joints[1]).x - self.start
 
 
@@ -127,7 +127,7 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
 
 
 def unaimed(link: str) -> str:
-    """Why no stress of a bar is told whose cross-section is not round and whose y axis was not
+    """Reason why a bar has no stress if its cross-section is not round and its y axis was not
     declared.
     """
     return (
@@ -139,7 +139,7 @@ def unaimed(link: str) -> str:
 
 
 def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
-    """Of links that are no bars, in words: which spins between two spherical joints nothing holds,
+    """Describe spins between two spherical joints that nothing holds, of links that are no bars,
     and what to do.
     """
     bars, joints = [bar.link for bar in bars_of(mechanism, driven)], mechanism.joints.values()
@@ -223,7 +223,7 @@ def _marked(mechanism: Mechanism, link: Link) -> Iterator[Point]:
 
 
 def _twisted(mechanism: Mechanism, link: Link) -> bool:
-    """Whether a load may twist a link, or turns with it."""
+    """Return whether a load may twist a link, or turns with it."""
     return any(
         (isinstance(load, Torque) or getattr(load, "turning", False))
         and any(point.body is link for point in load.points)

@@ -30,8 +30,7 @@ from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
 
 _ABSENT = 1e-13
-"""Of the largest slope of an equation, or of what its gaps are large beside: what stands in it by
-rounding alone, as a line that a link slides along may, or all of an equation that says nothing."""
+"""Relative slope of an equation below which a variable stands in it by rounding alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +48,7 @@ class Equation:
 
     @property
     def aligns(self) -> bool:
-        """Whether it holds the direction of a joint's child: by its sine, which a half turn has
+        """True if it holds the direction of a joint's child: by its sine, which a half turn has
         too.
         """
         joint = self.loop.joint
@@ -75,12 +74,12 @@ class Block:
 
     @property
     def gap_rate(self) -> Any:
-        """Their total time derivative."""
+        """Total time derivative of the residuals."""
         return column(equation.gap_rate for equation in self.equations)
 
     @property
     def gap_acceleration(self) -> Any:
-        """Their second one."""
+        """Second total time derivative of the residuals."""
         return column(equation.gap_acceleration for equation in self.equations)
 
     @property

@@ -72,7 +72,7 @@ class Column:
 
 
 def used(column: Column, compression: Any, moments: Sequence[Any]) -> Any:
-    """How far a column is used by compression and moments, about z and in space about y: one over
+    """Utilisation of a column by compression and moments, about z and in space about y: one over
     the factor of safety.
 
     That is the largest u with N/(N_cr u) + M_z/(M_y,z (u - N/N_e,z)) + M_y/(M_y,y (u - N/N_e,y)) =

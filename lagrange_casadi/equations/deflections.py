@@ -1,5 +1,4 @@
-"""How far a link bends at an instant: the deflection across it that is largest along it, as an
-expression.
+"""Deflection of a link at an instant: the largest transverse deflection along it, as an expression.
 
 Strains of Timoshenko's beam, turn' = M/EI and across' = turn + V/GAs, are told at Chebyshev's nodes
 of each part between two stations, and the polynomials through them are integrated: exactly where
@@ -68,7 +67,7 @@ _PLANES = {
     False: (("bending", "shear", 1.0),),
     True: (("bending_z", "shear_y", 1.0), ("bending_y", "shear_z", -1.0)),
 }
-"""Of each plane of bending the section forces, and the sign with which the first turns the link."""
+"""Section forces of each plane of bending, and the sign with which the first turns the link."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +83,7 @@ class _Piece:
         return len(self.coefficients) - 1
 
     def at(self, x: Any) -> Any:
-        """Its value at a place from 0 to 1, by Clenshaw's rule."""
+        """Value at a place from 0 to 1, by Clenshaw's rule."""
         twice = 4.0 * x - 2.0
         last, before = 0.0, 0.0
         for coefficient in reversed(self.coefficients[1:]):

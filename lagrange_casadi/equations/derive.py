@@ -1,4 +1,4 @@
-"""From a scene to its graphs: kinematics, Lagrange terms and internal forces put together, and
+"""Derivation of a scene's graphs: kinematics, Lagrange terms and internal forces together, and
 nothing that is not wanted.
 """
 
@@ -46,11 +46,13 @@ from .stations import gathered
 from .strength import stresses, utilisation
 
 _FITS = 2e-14
-"""How far equations that are too many may miss where they are exact, of the links' length."""
+"""Largest residual of redundant equations that count as consistent, relative to the links'
+length.
+"""
 
 _SERVES = 1e-10
-"""How far they may miss at the start for other parameters, and graphs serve for these too: a tenth
-of what certificates allow.
+"""Largest residual of redundant equations at the start for other parameters, for which the graphs
+are still valid: a tenth of the certificates' tolerance.
 """
 
 _STEPS = 50
@@ -200,8 +202,8 @@ def _kept(scene: Scene, want: Wanted) -> _Derived | AssemblyError | MobilityErro
 
 
 def _misses(graph: Program, values: Mapping[str, float], *, iterated: bool) -> float:
-    """By how much loops with too many equations miss at the start, of the links' length: all of
-    them, or those ``iterated``.
+    """Residual of loops with redundant equations at the start, relative to the links' length: of
+    all of them, or those ``iterated``.
     """
     rows = [
         row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated
@@ -348,7 +350,7 @@ def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict
 
 
 def _felt_alone(key: Column, asked: Wanted) -> bool:
-    """Whether a column is there for strain energy alone."""
+    """Return whether a column is there for strain energy alone."""
     output = key.part if isinstance(key, Check) else key
     if not isinstance(output, Output):
         return False

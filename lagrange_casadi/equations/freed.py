@@ -29,8 +29,8 @@ is there twice.
 
 @dataclass(frozen=True)
 class Posture:
-    """Where coordinates are: numbers ``u``, nothing of balls, which are where quaternions ``q``
-    say.
+    """Values of coordinates: numbers ``u``, none for spherical joints, whose values are quaternions
+    ``q``.
     """
 
     u: Array
@@ -60,8 +60,8 @@ class Freed:
         values: Sequence[Any],
         by: Sequence[Any],
     ) -> Freed:
-        """Those near what is ``told`` of coordinates; ``values`` are the numbers of the symbols
-        ``inputs`` at first.
+        """Coordinates near the given ones; ``values`` are the initial numbers of the symbols
+        ``inputs``.
         """
         coordinates, numbers = multibody.coordinates, Numbers()
         for symbols, value in zip(inputs, values, strict=True):
@@ -108,7 +108,7 @@ class Freed:
         return [gap.ravel(), *slopes]
 
     def moved(self, posture: Posture, step: Array) -> Posture:
-        """Where a step leads; a large one is shortened."""
+        """Posture after a step; a large step is shortened."""
         u = posture.u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
         return Posture(np.where(self.resting, 0.0, u), self.turned(u, posture.q).full().ravel())
 
@@ -131,7 +131,7 @@ class Freed:
 
 
 def rank_of(slope: Array) -> int:
-    """How many of the loops' equations say something of their own."""
+    """Number of independent equations of the loops."""
     lengths = np.linalg.norm(slope, axis=0)
     scaled = slope / np.where(lengths > _NO_SLOPE, lengths, 1.0)
     return int(np.linalg.matrix_rank(scaled, tol=_DEPENDENT)) if scaled.size else 0

@@ -109,7 +109,7 @@ class _Pressed:
         return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
 
     def seen(self, k: int) -> Any:
-        """How much it changes at most with a friction; None where not at all."""
+        """Largest dependence on a friction; None if there is none."""
         column_ = [row[k] for row in self.slopes if row[k] is not None]
         lean = self.contact.lean
         most = self.contact.arm if lean is None else self.contact.arm + ca.fabs(lean)
@@ -121,7 +121,7 @@ class _Pressed:
         return size if lean is None else size + sigma * (lean * pressing[0])
 
     def weights(self, pressing: Sequence[Any], sigma: Any, unit: Any) -> list[Any]:
-        """How ``unit`` times the push changes with each component; their products with the
+        """Derivatives of ``unit`` times the normal force by each component; their products with the
         components add up to it.
         """
         arm, lean = self.contact.arm, self.contact.lean
@@ -205,8 +205,8 @@ class _Law:
         return start, slopes
 
     def depends(self, k: int) -> bool:
-        """Whether it depends on a friction: never where its joint does not move at all, for then it
-        is open.
+        """Return whether it depends on a friction: never if the joint does not move at all, for
+        then the friction is indeterminate.
         """
         return not self.still and any(part.seen(k) is not None for part in self.pressed)
 
@@ -240,7 +240,8 @@ def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
 
 
 def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
-    """How much a friction that slides changes at most with those at rest; None where with none.
+    """Largest change of slope of a law by sliding friction, or by those at rest; None if there is
+    none.
 
     Its force is then no straight line in theirs, and need not be largest where they are at their
     limits.

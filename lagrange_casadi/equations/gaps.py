@@ -1,5 +1,5 @@
-"""What is left of the equations of loops once they are solved, and beside what length a gap is
-large.
+"""Residuals of loops' equations after their solution, and the length relative to which a residual
+is large.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def left(multibody: Multibody, block: Block, length: Any) -> Any:
-    """What is left of a block's equations, in one number [m]: gaps as they are, any other over its
+    """Residual of a block's equations in one number [m]: distances as they are, others over their
     slopes, times a ``length``.
     """
     total = ca.SX(0)
@@ -72,7 +72,7 @@ def extent(mechanism: Mechanism) -> Any:
 
 
 def units(loop: LoopEquations, size: float) -> Array:
-    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
+    """Units of a loop's residuals: the mechanism's size [m], or 1 for directions."""
     held = held_directions(loop.joint) if loop.joint is not None else 0
     return np.array([size] * (loop.gap.numel() - held) + [1.0] * held)
 
@@ -85,8 +85,8 @@ def _turned(multibody: Multibody, equation: Equation) -> Any:
 
 
 def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:
-    """How much an equation changes with all coordinates: angles by a radian or their own size,
-    slides by a length or theirs.
+    """Change of an equation with all coordinates: angles by a radian or their own size, slides by a
+    length or theirs.
     """
     total = ca.SX(0)
     for coordinate in multibody.coordinates:

@@ -88,8 +88,8 @@ class Grown:
         return self._measured(expression, turns=True)
 
     def at_state(self, expression: Any) -> Any:
-        """The same with rates; angles that are not driven are symbols of their own, for
-        :mod:`.turns` to tell.
+        """Expression with rates; angles that are not driven are symbols of their own, for
+        :mod:`.turns`.
         """
         return self._measured(expression, turns=False)
 
@@ -351,7 +351,7 @@ def _rates(free: Sequence[Coordinate]) -> Vector:
 
 
 def _accelerations(free: Sequence[Coordinate]) -> Vector:
-    """Its change."""
+    """Accelerations of free coordinates."""
     x, y, z = (coordinate.acceleration for coordinate in free)
     return x, y, z
 

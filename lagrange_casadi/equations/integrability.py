@@ -1,4 +1,4 @@
-"""Whether velocities are rates of places: total time derivatives of functions of the coordinates
+"""Check that velocities are rates of places: total time derivatives of functions of the coordinates
 and of time.
 
 They are just where d/dt(dw/dq') = dw/dq holds, whatever the coordinates, rates and accelerations.
@@ -23,7 +23,7 @@ _SAME, _NOTHING = 1e-8, 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """How a system moves: symbols of coordinates p, rates q', accelerations q'' and time t, and p'
+    """Motion of a system: symbols of coordinates p, rates q', accelerations q'' and time t, and p'
     = tangent q' + drift.
     """
 
@@ -79,7 +79,7 @@ def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) 
     identity = ca.Function("identity", [weights, moving, others, resting], outputs)
 
     def broken(at: Array, fixed: Array, weighted: Array) -> list[bool]:
-        """Whether the sum is broken along the coordinates; and which graphs are along the
+        """Return whether the sum is broken along the coordinates, and which graphs are along the
         mobilities.
         """
         *sides, _ = (x.full() for x in identity(weighted, at, fixed, np.zeros(resting.numel())))

@@ -15,15 +15,15 @@ from .multibody import Coordinate, Multibody, column
 from .substitution import Numbers
 
 LARGEST_STEP = 0.3
-"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on
-another branch.
+"""Largest step of an angle [rad], or of a slide over the length of all links: a full step from afar
+may land on another branch.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class NewtonLoop:
-    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess
-    for the first instant.
+    """Iteration of a loop: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for
+    the first instant.
 
     ``names`` are those of its blocks, which are judged by a volume; ``joints`` says what closes
     them, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns
@@ -87,9 +87,7 @@ class Iterated:
         )
 
     def step(self, gaps: Any) -> tuple[Any, Any]:
-        """What a step adds to the symbols, so that gaps vanish, and how large it is; a large one is
-        shortened.
-        """
+        """Newton correction of the symbols, and its size; a large one is shortened."""
         slope = ca.jacobian(
             gaps,
             column(
@@ -113,7 +111,7 @@ class Iterated:
         return self._moved(bounded) if self.balls else bounded, relative
 
     def _moved(self, correction: Any) -> Any:
-        """What is added to the symbols for a correction of numbers, and by small rotations."""
+        """Change of the symbols by a correction of numbers, and by small rotations."""
         added, start = [], 0
         for k, part in enumerate(self.parts):
             size = 3 if k in self.balls else 1

@@ -1,4 +1,4 @@
-"""What joints look like in space: where they slide, what they close, what they bear.
+"""Joints in space: sliding directions, closure equations, reactions.
 
 What a plane has none of is nil.
 
@@ -28,7 +28,7 @@ def orientation(joint: Joint) -> Rotation:
 
 
 def apart(joint: Joint, parent: Frame, child: Frame) -> Vector:
-    """From the parent's point to the child's, in the parent's axes."""
+    """Vector from the parent's point to the child's, in the parent's axes."""
     return minus(parent.local(child.place_of(joint.child.place)), joint.parent.place)
 
 
@@ -46,7 +46,7 @@ def gap_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, Vecto
 
 
 def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expression:
-    """How far the child's point is from the parent's along a direction in the parent's axes."""
+    """Distance of the child's point from the parent's along a direction in the parent's axes."""
     return dot(apart(joint, parent, child), along)
 
 
@@ -130,7 +130,7 @@ def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tup
 def borne(
     joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vector
 ) -> tuple[Vector, Vector]:
-    """What a joint bears of a force and a moment in ground axes: nothing along its slides, nothing
+    """Reaction of a joint to a force and a moment in ground axes: nothing along its slides, nothing
     about its turns.
 
     A screw bears a moment about its axis that is less its force along it times its pitch, so that
@@ -183,7 +183,7 @@ def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
 
 
 def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
-    """How the child is turned from where the joint's coordinates are zero."""
+    """Rotation of the child from the position in which the joint's coordinates are zero."""
     return child.rotation.against(parent.rotation.then(orientation(joint)))
 
 
@@ -204,7 +204,7 @@ def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
 
 
 def held_directions(joint: Joint) -> int:
-    """How many equations of directions a joint that closes a loop has, after those of places."""
+    """Number of direction equations of a joint that closes a loop, after those of places."""
     return len(_held(joint))
 
 

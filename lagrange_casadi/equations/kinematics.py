@@ -33,8 +33,8 @@ from .substitution import Expressions, Numbers
 from .winding import wound
 
 _WAYS = 32
-"""How many ways to close loops that are open are tried, where the first
-does not close the others.
+"""Largest number of ways to close open loops that are tried if the first does not close the
+others.
 """
 
 _READ = {"angle": 12, "slide": 15}
@@ -155,8 +155,8 @@ class _Solver:
             self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
 
     def beginning(self) -> dict[str, Any]:
-        """What the count of freedoms needs: the rough posture, drives included, and the inputs with
-        their values at the start.
+        """Data for the count of degrees of freedom: the rough posture, drives included, and the
+        inputs with their values at the start.
         """
         mechanism = self.multibody.mechanism
         told = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
@@ -267,9 +267,7 @@ class _Solver:
         return near[0]
 
     def _distance(self, form: ClosedForm, values: Sequence[float]) -> float:
-        """How far a solution is from the posture, by all that the posture
-        says of what it places.
-        """
+        """Distance of a solution from the posture, in everything that the posture gives."""
         (size,) = self.numbers.of(self.length)
         total, placed = 0.0, {*self.known, *form.unknown}
         self.numbers.note(column(c.variables for c in form.unknown), values)
@@ -290,8 +288,8 @@ class _Solver:
     def _rough(
         self, coordinates: Sequence[Coordinate], *, needed: bool = True
     ) -> dict[Coordinate, float]:
-        """What the posture says of coordinates, by their own names, or else of angles through
-        joints; some may lack.
+        """Rough values of coordinates from the posture, by their own names, or else from angles
+        through joints; some may be missing.
 
         Where it is not ``needed``, joints that hold directions are not looked through, for that
         takes time.

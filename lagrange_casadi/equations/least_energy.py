@@ -45,7 +45,7 @@ from .strength import Loaded
 from .stress import FORCES
 
 _NONE = 1e-6
-"""Of all that forces change with something: what is no change, in numbers of either precision."""
+"""Relative change of forces that counts as none, in numbers of either precision."""
 
 _MORE, _FINER = 12, 4
 """Nodes more where the cross-section changes, and more than that by which it is checked that the

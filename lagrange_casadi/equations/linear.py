@@ -59,7 +59,7 @@ class LinearSystem:
 
     @property
     def free(self) -> int:
-        """How many unknowns of the transposed system are free."""
+        """Number of free unknowns of the transposed system."""
         return int(self.matrix.shape[0] - self.matrix.shape[1])
 
     def solve(self, right: Any) -> Any:

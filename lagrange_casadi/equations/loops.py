@@ -200,7 +200,7 @@ def _matching(
 
 
 def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordinate]) -> bool:
-    """Whether solutions, each of which may hold what those before it solved, are ones of Phi = 0 on
+    """Return whether solutions, each of which may depend on those before, are ones of Phi = 0 on
     all branches.
     """
     symbols = column(c.variables for form in forms for c in form.unknown)
@@ -308,8 +308,8 @@ def _two_circles(
 
 
 def _turns(columns: Any, coordinates: Sequence[Coordinate]) -> bool:
-    """Whether two columns, slopes by a cosine and a sine, are those of an arm that turns: (u, v)
-    and (-v, u).
+    """Return whether two columns, slopes by a cosine and a sine, are those of a rotating arm: (u,
+    v) and (-v, u).
     """
     return vanish(columns[:, 1] - ca.vertcat(-columns[1, 0], columns[0, 0]), coordinates, columns)
 

@@ -23,8 +23,8 @@ from .pressing import Contact, Rubbing, slowest_of
 
 
 def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> Iterator[Applied]:
-    """What a transmission does to bodies: in each of its meshes the multiplier along the teeth, and
-    what presses apart.
+    """Action of a transmission on bodies: in each of its meshes the multiplier along the teeth, and
+    the separating force.
     """
     for mesh in transmission.meshes:
         frame = resting.frames[mesh.carrier.name]
@@ -53,13 +53,13 @@ def transmissions_of(mechanism: Mechanism) -> dict[str, Transmission]:
 
 
 def pressing_apart(transmission: Transmission, multiplier: Any) -> Rubbing:
-    """What presses the parts of a transmission apart, by its multiplier."""
+    """Separating force of a transmission, by its multiplier."""
     contacts = tuple(Contact(factor, (multiplier + slack,)) for factor, slack in transmission.parts)
     return Rubbing(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))
 
 
 def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> Rubbing:
-    """What friction takes in a transmission, by its multiplier."""
+    """Friction loss of a transmission, by its multiplier."""
     rate, acceleration = ca.SX(0), ca.SX(0)
     for sign, joint in loss.turns:
         one, change = rates_along(joint, joint.axes[0], multibody.frames, multibody.coordinates)

@@ -205,7 +205,7 @@ class Action:
         return Action(plus(self.force, other.force), plus(self.couple, other.couple))
 
     def seen(self, rotation: Rotation) -> Action:
-        """The same in turned axes."""
+        """Reaction in turned axes."""
         return Action(rotation.resolve(self.force), rotation.resolve(self.couple))
 
     def __neg__(self) -> Action:
@@ -214,7 +214,7 @@ class Action:
 
 @dataclass(frozen=True, eq=False)
 class Reaction:
-    """What a joint's parent does to its child: in ground axes, and in the parent's."""
+    """Force and moment of a joint's parent on its child: in ground axes, and in the parent's."""
 
     ground: Action
     own: Action
@@ -274,8 +274,8 @@ def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
-    """Whether pins of a plane without effort at a link's base and at its tip are all that acts on
-    it.
+    """Return whether pins of a plane without effort at a link's base and at its tip are all that
+    acts on it.
     """
     if multibody.mechanism.space:
         return False
@@ -290,7 +290,7 @@ def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
 
 
 def _material(multibody: Multibody, name: str) -> Any:
-    """What holds the piece of a link beyond a section, along the link and across, for a unit of its
+    """Force on the part of a link beyond a section, along the link and across, for a unit of its
     mass and of its first moment.
 
     In axes at rest that lie along the link at the instant: the energy does not see which axes at
@@ -305,8 +305,8 @@ def _material(multibody: Multibody, name: str) -> Any:
 
 @functools.cache
 def _of_any_link(space: bool) -> tuple[Any, Any]:
-    """The same for symbols of the velocity and acceleration of the link's base, its angular
-    velocity, and its change; and these.
+    """Inertia terms with symbols for the velocity and acceleration of the link's base, its angular
+    velocity, and its change; and these symbols.
     """
     symbols = ca.SX.sym("motion", 12)
     at_rest = () if space else (2, 5, 6, 7, 9, 10)
@@ -339,7 +339,8 @@ def _of_any_link(space: bool) -> tuple[Any, Any]:
 def _loads_on(
     multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Any
 ) -> Iterator[tuple[str, tuple[Any, Any, Any], Action]]:
-    """What acts on a link beyond its base: by whom, and in the link's axes where and what.
+    """Actions on a link beyond its base: the part that acts, and in the link's axes the place and
+    the force.
 
     At the tip x is None.
     """
@@ -390,7 +391,7 @@ def _at_base(point: Point) -> bool:
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Reaction:
-    """What a joint's parent does to its child, without efforts; the moment is about the child's
+    """Reaction of a joint's parent on its child, without efforts; the moment is about the child's
     point.
     """
     rotation = multibody.frames[joint.parent.body.name].rotation
@@ -439,8 +440,8 @@ def _branch(multibody: Multibody, joint: Joint) -> Branch:
 def _on_child(
     multibody: Multibody, joint: Joint, actions: Mapping[str, Any]
 ) -> tuple[Vector, Vector]:
-    """What a mobility of the tree tells of a joint, on its child: force and moment, in the axes of
-    the mobility.
+    """Force and moment on a joint's child, from a mobility of the tree, in the axes of the
+    mobility.
     """
     action = _branch(multibody, joint).sign * actions[joint.name]
     if multibody.mechanism.space:

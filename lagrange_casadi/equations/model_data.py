@@ -1,5 +1,5 @@
-"""What is asked of a mechanism once it is compiled: its tables as plain data, and its numbers as
-functions of the parameters.
+"""Data of a compiled mechanism: its tables as plain data, and its numbers as functions of the
+parameters.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ class ModelData(Graphs):
 
     @property
     def space(self) -> bool:
-        """Whether it lies in space."""
+        """True if it lies in space."""
         return in_space(self.template.content)
 
     @cached_property
@@ -218,7 +218,7 @@ class ModelData(Graphs):
 
     @cached_property
     def materials(self) -> dict[str, Material]:
-        """What links with a beam are made of."""
+        """Materials of links with a beam."""
         return materials_of(self.template.content)
 
     @symbolic
@@ -240,7 +240,7 @@ class ModelData(Graphs):
         return Section(link, table_of(self.space), columns, *self.matter(link, p))
 
     def closing(self, part: str) -> str:
-        """What closes a loop, in words."""
+        """Describe the part that closes a loop."""
         content = self.template.content
         kinds = (
             ("joint", content["joints"]),
@@ -291,7 +291,7 @@ _WRITTEN: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "stated": (Stated.words, Stated.loads),
     "template": (Template.dumps, Template.loads),
 }
-"""How each field is written for JSON, and read."""
+"""Writers and readers of each field for JSON."""
 
 
 def _rounding(scene: Scene) -> float:

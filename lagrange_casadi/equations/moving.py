@@ -73,7 +73,7 @@ class Moving:
 
     @property
     def inputs(self) -> list[Any]:
-        """What every column is a function of."""
+        """Arguments of every column."""
         solved, mechanism = self.solved, self.scene.mechanism
         return [
             mechanism.time,
@@ -96,8 +96,8 @@ class Moving:
         return ca.Function("start", self.inputs, [expression])(*at_start)
 
     def columns(self) -> tuple[dict[Column, Any], dict[Output, dict[Column, int]]]:
-        """What takes no force to tell: checks, motion and loads; and what the angles that loops set
-        are sums of.
+        """Columns that need no force: checks, motion and loads; and the sums of angles that loops
+        determine.
         """
         columns, loop_angles = self._checks(), dict[Output, dict[Column, int]]()
         if self.want.motion:
@@ -113,7 +113,7 @@ class Moving:
         return dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True)), loop_angles
 
     def _checks(self) -> dict[Column, Any]:
-        """Whether loops close, and rows and curves are kept to."""
+        """Checks that loops close, and that rows and curves are kept to."""
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
         seen = (
@@ -201,8 +201,8 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
 
 
 def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
-    """How far what is put into curves with ends is beyond them, by the constraint, load or row that
-    does it.
+    """Distance of curves' arguments beyond their ends, by the constraint, load or row that uses the
+    curve.
     """
     found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.declared}
     columns: dict[Column, Any] = {}
@@ -215,8 +215,8 @@ def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
 
 
 def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Column, Any]:
-    """Of joints whose three turns are coordinates, the square of the cosine of the second: nil
-    where the third axis is the first.
+    """Square of the cosine of the second angle of joints with three turns as coordinates: zero if
+    the third axis is the first.
 
     There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is
     told where it is given.
@@ -233,8 +233,8 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
 
 
 def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
-    """Of bars whose y axis was declared, the square of the sine of their angle with that direction:
-    nil where it tells none.
+    """Square of the sine of the angle of bars with their declared y direction: zero if the
+    direction is undefined.
 
     Of those whose cross-section is not round, and whose sections are wanted.
     """
@@ -248,8 +248,8 @@ def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
 
 
 def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
-    """Of the turns of balls, by a check that they are ``open``, where they are not told, in gimbal
-    lock; the second's angle is.
+    """Check of the turns of spherical joints, which are ``open`` in gimbal lock; the second angle
+    is defined there.
     """
     columns: dict[Column, Any] = {}
     for ball in body.balls:
@@ -330,7 +330,7 @@ def _known_by(coordinate: Coordinate) -> Output:
 
 
 def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:
-    """How often each coordinate's angle goes into another angle: once, or less once."""
+    """Multiple with which each coordinate's angle enters another angle."""
     if not parts:
         return {}
     slopes = (

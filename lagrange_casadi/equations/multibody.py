@@ -58,12 +58,12 @@ class Coordinate:
 
     @property
     def kind(self) -> Literal["angle", "slide", "ball"]:
-        """What it is."""
+        """Kind of the coordinate."""
         return "ball" if self.ball is not None else self.axis.kind
 
     @property
     def resting(self) -> tuple[float, ...]:
-        """Its variables where it is zero."""
+        """Variables at zero."""
         if self.ball is not None:
             return AXES[
                 [axis.coordinate for axis in self.ball.joint.axes if axis.kind == "angle"].index(
@@ -79,13 +79,11 @@ class Coordinate:
 
     @property
     def told_as(self) -> str:
-        """By which name a posture tells it where it is not driven: the link whose direction it is,
-        or its own.
-        """
+        """Name in a posture if it is not driven: the link whose direction it is, or its own."""
         return self.body if self.kind == "angle" and not self.relative else self.name
 
     def placed(self, symbols: Any, values: Any) -> Any:
-        """Its variables for values of the coordinates ``symbols``."""
+        """Variables for values of the coordinates ``symbols``."""
         if self.kind == "slide":
             return ca.substitute(self.value, symbols, values)
         turn, angle = ca.vertsplit(
@@ -95,7 +93,7 @@ class Coordinate:
 
     @cached_property
     def keys(self) -> tuple[int, ...]:
-        """What its variables are known by, and then its rate and its acceleration."""
+        """Names of the variables, of their rates and of their accelerations."""
         return tuple(
             symbol.element_hash()
             for symbol in ca.vertsplit(ca.vertcat(self.variables, self.rate, self.acceleration))
@@ -123,18 +121,18 @@ class LoopEquations:
 
     @property
     def kind(self) -> str:
-        """What it is of, in a word."""
+        """Kind of the part, in a word."""
         return "joint" if self.joint else "bar" if self.bar else "constraint"
 
     @property
     def declared(self) -> bool:
-        """Whether it is a constraint of the user's."""
+        """True if it is a constraint of the user's."""
         return self.joint is None and self.bar is None
 
 
 @dataclass(frozen=True, eq=False)
 class Applied:
-    """What a load, or the multiplier of a constraint or row, does at a point of a body, as
+    """Action of a load, or of the multiplier of a constraint or row, at a point of a body, as
     expressions of the state.
 
     Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what
@@ -251,8 +249,7 @@ class Multibody:
         return column(self.mobilities.values())
 
     def terms(self) -> tuple[Any, Any]:
-        """What the Lagrange system of the whole says along the coordinates and along the
-        mobilities.
+        """Terms of the Lagrange system along the coordinates and along the mobilities.
 
         In space velocities are along axes that rest, and lie along the bodies' own at the instant:
         so what these axes and the levers in them depend on is put in at the end, by symbols that
@@ -343,7 +340,7 @@ def _ball(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Ball | None:
 
 
 def _number(joint: Joint, axis: Axis) -> int:
-    """Which of a joint's turns an axis is."""
+    """Number of an axis among a joint's turns."""
     return [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
 
 

@@ -1,5 +1,5 @@
-"""What a rough posture tells of a mechanism's start, and what it leaves open: all of it at once, in
-lines to paste.
+"""Start of a mechanism by a rough posture, and what the posture leaves undecided, in lines to
+paste.
 """
 
 from __future__ import annotations
@@ -20,16 +20,14 @@ from .substitution import Numbers
 
 
 def turns(multibody: Multibody, name: str) -> bool:
-    """Whether what a posture tells by a name is an angle."""
+    """Return whether a name of a posture is an angle."""
     return name in multibody.frames or multibody.mechanism.coordinates[name][1].kind == "angle"
 
 
 def measured(
     multibody: Multibody, names: Collection[str]
 ) -> dict[str, tuple[Any, set[Coordinate]]]:
-    """What a posture tells of by these names, as expressions, and the
-    coordinates that each is of.
-    """
+    """Expressions of the posture's names, and the coordinates of each."""
     owner = {key: c for c in multibody.coordinates for key in c.keys}
     told: dict[str, tuple[Any, set[Coordinate]]] = {}
     for name in names:
@@ -85,8 +83,8 @@ def directions(
 
 @dataclass(eq=False)
 class Undecided:
-    """What a posture leaves open of loops: the ways of each that has a closed form, and names that
-    iterated ones need.
+    """Missing entries of a posture: the ways to close each loop that has a closed form, and names
+    that iterated loops need.
     """
 
     ways: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)

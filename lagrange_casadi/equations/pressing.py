@@ -1,4 +1,4 @@
-"""What presses on the rubbing places of joints, and how fast these slide."""
+"""Normal forces at sliding places of joints, and the sliding speeds there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .growing import Grown
 from .multibody import Multibody, rates_along
 
 _REST = 1e-12
-"""Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
+"""Fraction of the fastest motion in the mechanism below which a rate is that of rest."""
 
 _TINY = 1e-30
 """The least size that a direction is divided by: at rest it is zero."""
@@ -27,8 +27,8 @@ _TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its
-    friction has: 1 or a radius [m].
+    """Normal force at a sliding place [N], of one component or two, and the ``arm`` of its
+    friction: 1 or a radius [m].
 
     Two components are those of a force; or, of a guide that rests on its ``edges``, what presses
     both together, and what a moment presses them together on opposite sides. Of a thread, ``lean``
@@ -41,7 +41,7 @@ class Contact:
     edges: bool = False
 
     def size(self, components: Sequence[Any]) -> Any:
-        """How much components press together."""
+        """Size of components together."""
         if self.edges and len(components) == 2:
             one, other = both_edges(components)
             return ca.fabs(one) + ca.fabs(
@@ -53,7 +53,7 @@ class Contact:
 
 
 def both_edges(components: Sequence[Any]) -> tuple[Any, Any]:
-    """What presses on either edge of a guide."""
+    """Normal forces on both edges of a guide."""
     both, tilt = components
     return (both + tilt) / 2, (both - tilt) / 2
 
@@ -90,7 +90,7 @@ class Rubbing:
         ]
 
     def of_rows(self, rows: Sequence[Any]) -> Rubbing:
-        """The same with other expressions."""
+        """Contact with other expressions."""
         left = iter(rows)
         contacts = tuple(
             replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts

@@ -1,6 +1,4 @@
-"""What a scene computes, as CasADi functions that hold nothing else; and the same as text, to be
-kept.
-"""
+"""Functions of a scene, as CasADi functions that hold nothing else; and their text, to be kept."""
 
 from __future__ import annotations
 
@@ -73,7 +71,7 @@ class Program(Graphs):
 
     @property
     def bounds(self) -> tuple[Bound, ...]:
-        """What columns must keep to."""
+        """Limits of columns."""
         return bounds_of(self)
 
     @property
@@ -89,8 +87,8 @@ class Program(Graphs):
         return status_of(self)
 
     def seen(self, constraint: str, out: Array) -> Array:
-        """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (...,
-        columns, t).
+        """Symbols, (..., symbols, t), of a constraint that may have kinks, from columns ``out``
+        (..., columns, t).
         """
         return np.asarray(out[..., self.seen_columns(constraint), :], float)
 
@@ -150,7 +148,7 @@ class Program(Graphs):
         return {check.part: k for check, k in checks if isinstance(check.part, Output)}
 
     def iterates(self, closure: str) -> bool:
-        """Whether the loops that stand under the name of a closure are iterated."""
+        """Return whether the loops of a closure are iterated."""
         return self.newton is not None and closure in self.newton.names
 
     @property

@@ -20,7 +20,7 @@ from ..base.symbolic import symbolic
 
 @symbolic
 def share_reciprocals(function: Any, parameters: str) -> Any:
-    """The same function of one output with divisions shared; ``parameters`` names the input whose
+    """Function of one output with divisions shared; ``parameters`` names the input whose
     reciprocals always pay.
 
     Less a difference is the opposite difference, to the last bit.
@@ -81,8 +81,8 @@ def _replayed(function: Any, made: Callable[[int, Step, list[Any]], Any]) -> Any
 
 
 def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:
-    """By step that divides: the step that made its divisor, and whether that depends on parameters
-    alone.
+    """For each step that divides: the step that made its divisor, and whether that depends on
+    parameters alone.
     """
     made: dict[int, int] = {}
     fixed: dict[int, bool] = {}

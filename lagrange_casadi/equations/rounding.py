@@ -42,10 +42,10 @@ from .tree import span
 
 _POSTURES = 24
 _STRIDE = 0.25
-"""How far it is from one posture to the next: in radians, or of the mechanism's extent."""
+"""Step from one posture to the next: in radians, or relative to the mechanism's extent."""
 
 _OTHER = 0.05
-"""By what part of itself a parameter is changed, to see whether loops close for others too."""
+"""Relative change of a parameter, to test whether loops close for others too."""
 
 _ROUNDS = 8
 _CLOSING_STEPS = 30
@@ -55,8 +55,8 @@ singular values.
 """
 
 _SEEN = 1e-4, 1e-10
-"""Of the largest singular value: at most and at least what corrections it tells of; less may be
-made of what loops miss.
+"""Largest and least relative singular values for corrections of rounding; less may be made of
+residuals of loops.
 """
 
 _LEFT = 1e-14
@@ -107,9 +107,7 @@ def _closed(scene: Scene, mechanism: Mechanism, size: float) -> Mechanism | None
 def _moves(
     declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]
 ) -> dict[str, tuple[float, float]]:
-    """By how much axes [rad] and places [m] of joints were moved, on one body or the other, by
-    joint.
-    """
+    """Displacements of axes [rad] and places [m] of joints, on one body or the other, by joint."""
     changed = {
         name: joint
         for name, joint in mechanism.joints.items()
@@ -135,7 +133,7 @@ def _moves(
 def _moved_loads(
     declared: Mechanism, mechanism: Mechanism, values: Mapping[str, float]
 ) -> dict[str, tuple[float, float]]:
-    """By how much points of loads were moved, as joints are told to be."""
+    """Displacements of points of loads, as for joints."""
     found = {}
     for name, load in mechanism.loads.items():
         if load is not declared.loads[name] and not isinstance(load, Friction):
@@ -151,7 +149,7 @@ def _moved_loads(
 
 
 def _where(joint: Joint) -> list[Vector]:
-    """Its directions on the parent and on the child, and its points."""
+    """Directions of a joint on the parent and on the child, and its points."""
     assert joint.turned is not None
     there = Rotation.of(*joint.turned)
     return [*joint.triad, *map(there.resolve, joint.triad), joint.parent.place, joint.child.place]
@@ -281,7 +279,9 @@ def _shifted(point: Point, shift: Any) -> Point:
 
 
 def _free(point: Point) -> bool:
-    """Whether a point may be moved on its body: not off the axis of a link that has sections."""
+    """Return whether a point may be moved on its body: not off the axis of a link that has
+    sections.
+    """
     sections = isinstance(point.body, Link) and isinstance(point.body.mass, Density)
     return point.body.oriented and not (sections and nil(point.y) and nil(point.z))
 
@@ -344,7 +344,7 @@ class _Search:
 
     @classmethod
     def of(cls, scene: Scene, mechanism: Mechanism, symbols: Any, size: float) -> _Search:
-        """Of a scene; ``mechanism`` is its own with symbols of corrections."""
+        """Make it from a scene; ``mechanism`` is its own with symbols of corrections."""
         body = assemble(mechanism, span(mechanism, scene.laws), scene.laws, ())
         values, t = list(scene.mechanism.values(scene.assembly).values()), scene.span[0]
         driven = [c for c in body.coordinates if c.driven]
@@ -409,7 +409,7 @@ class _Search:
             )
 
     def _closed(self, posture: Posture, case: Sequence[Any], x: Array) -> Posture | None:
-        """Where loops close but for rounding."""
+        """Posture in which loops close within rounding."""
         for _ in range(_CLOSING_STEPS):
             gap, slope, _ = self._scaled(posture, case, x)
             step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ gap)
@@ -423,8 +423,8 @@ class _Search:
     def _along_null(
         self, case: Sequence[Any], posture: Posture, x: Array
     ) -> tuple[Array, Array] | None:
-        """What loops miss in a posture that is closed anew, and the derivatives by corrections;
-        None where its rank is not told.
+        """Residual of loops in a posture that is closed anew, and the derivatives by corrections;
+        None if the rank is unclear.
         """
         closed = self._closed(posture, case, x)
         if closed is None:

@@ -23,7 +23,7 @@ _FEWEST = 8
 _ZERO = 1e-10
 
 Values = npt.NDArray[Any]
-"""Of doubles, or of complex numbers."""
+"""Array of doubles, or of complex numbers."""
 
 
 def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
@@ -79,8 +79,8 @@ def _turned(quaternions: Values) -> Values:
 
 
 def vanish(expressions: Any, coordinates: Iterable[Coordinate], beside: Any = 1.0) -> bool:
-    """Whether expressions are zero whatever their symbols are, but for rounding, beside the largest
-    of others.
+    """Return whether expressions are zero for all values of their symbols, within rounding relative
+    to the largest of others.
     """
     expressions = ca.SX(expressions)
     if expressions.is_zero():

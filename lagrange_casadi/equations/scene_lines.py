@@ -95,8 +95,8 @@ def _law(law: Motion, symbol: Any) -> str:
 
 
 def _moves(scene: Scene, joint: str) -> Iterator[str]:
-    """What each move and dwell of a drive is with the default parameters, and where accelerations
-    or jerks jump.
+    """Describe each move and dwell of a drive with the default parameters, and the jumps of
+    accelerations and jerks.
     """
     table = scene.timetable(joint, scene.assembly)
     unit = "m" if scene.guided.coordinates[joint][1].kind == "slide" else "rad"
@@ -118,7 +118,7 @@ def _moves(scene: Scene, joint: str) -> Iterator[str]:
 
 
 def _course(scene: Scene, joint: str) -> str:
-    """From where to where a drive goes with the default parameters, and within what."""
+    """Start, end and limits of a drive with the default parameters."""
     mechanism, (start, stop) = scene.mechanism, scene.span
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())

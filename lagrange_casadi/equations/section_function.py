@@ -71,7 +71,7 @@ class Section:
 
     @cached_property
     def stations(self) -> tuple[str, ...]:
-        """Its load points."""
+        """Load points of the link."""
         return stations_of(self._outputs, self.link)
 
     @cached_property
@@ -122,7 +122,7 @@ class Section:
         return [1, t0, l * (u * t0 + t1)][: len(terms.coefficients)]
 
     def _acting(self, terms: Terms, station: str, ratio: Any, beyond: Any) -> Any:
-        """What acts at a load point, where it is beyond a ratio."""
+        """Action of a load point, if it is beyond a ratio."""
         place, value = (
             self._of("station", member, station) for member in ("station", terms.acting)
         )
@@ -157,7 +157,7 @@ class SectionInputs:
 
     @classmethod
     def of(cls, outputs: Iterable[Output], link: str) -> SectionInputs:
-        """Those of a link, among others; of a load along it the directions that it has."""
+        """Make it for a link, among others; for a distributed load with its directions."""
         own = dict.fromkeys(output for output in outputs if output.along and output.part == link)
         table = table_of(Output("law", link, "mx0") in own)
         acting = [
@@ -181,11 +181,11 @@ class SectionInputs:
 
     @property
     def table(self) -> Table:
-        """Where the forces are told, and what each is made of."""
+        """Table of the forces, and of the terms of each."""
         return table_of(self.law[-1].member == "mx0")
 
     def alike(self) -> SectionInputs:
-        """The same of a link and of loads whose names are numbers: links of one kind have one
+        """Form of a link and of loads whose names are numbers: links of one kind have one
         function.
         """
         numbers: dict[str, str] = {"": ""}

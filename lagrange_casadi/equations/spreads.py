@@ -1,5 +1,5 @@
-"""What loads along a link add to its section forces: terms of their own, beside those of its
-matter.
+"""Contribution of distributed loads to section forces: terms of their own, beside those of the
+link's mass.
 
 A load acts up to ``end``, a ratio u = xi/l, on so much of the link as ``width`` says, with the
 value c_0 + c_1 s + c_2 s^2 + ... per length, where s = (end - u)/width. With x = s kept from 0 to
@@ -30,9 +30,7 @@ from .multibody import Multibody
 
 
 def spreads(multibody: Multibody, link: Link) -> dict[Column, Any]:
-    """Of each load along a link where it ends, on how much of the link it acts, and its
-    coefficients on the link's axes.
-    """
+    """End, width and coefficients on the link's axes of each distributed load of a link."""
     directions = table_of(multibody.mechanism.space).spread
     found: dict[Column, Any] = {}
     for part in multibody.applied:
@@ -49,8 +47,8 @@ def spreads(multibody: Multibody, link: Link) -> dict[Column, Any]:
 
 
 ROTARY = "rotary"
-"""By what the rotary inertia of slices is known among the loads along a link, unless something is
-called so.
+"""Name of the rotary inertia of slices among distributed loads, unless another load has this
+name.
 """
 
 

@@ -1,5 +1,5 @@
-"""What acts on a link at one place, put together: each part's share of it may be open where what
-they do together is not.
+"""Sum of the actions on a link at one place: it may be determined although each part's share is
+not.
 
 Two bearings on one pin share their load in a way that equilibrium does not tell; the sections on
 either side feel the sum alone. So where shares may be open, stations at one place act as one: the
@@ -31,15 +31,15 @@ _IN_SPACE = (
     (("fz0", "my0"), ("fz", "my"), -1),
     (("mx0",), ("mx",), 1),
 )
-"""What goes together, of the tip and of a station: a force across the link has an arm, one along it
-has none.
+"""Groups of members that act together, of the tip and of a load point: a force across the link has
+an arm, one along it has none.
 
 And the sign of the moment that a force has further out.
 """
 
 _TWICE = 1e-14
-"""Of a link's length: what is no further apart at random values of all symbols is one place that is
-written in two ways.
+"""Distance, relative to a link's length, up to which places at random values of all symbols are one
+place written in two ways.
 """
 
 
@@ -119,7 +119,7 @@ def _together(
 
 
 def _twice(here: Any, there: Any, coordinates: Sequence[Coordinate]) -> bool:
-    """Whether two places are, as far as random values tell, one that is written in two ways."""
+    """Return whether two places are one that is written in two ways, by random values."""
     return bool(np.abs(drawn(here - there, coordinates)).max() <= _TWICE)
 
 

@@ -61,7 +61,7 @@ _KINDS: Mapping[CheckKind, Kind] = {
 
 @dataclass(frozen=True)
 class Bound:
-    """What a column must keep to.
+    """Limit of a column.
 
     A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above
     its limit, and above its opposite unless links do not reach; so must a ``BRANCH``, whose loop is
@@ -142,7 +142,7 @@ def status_of(program: Program) -> Any:
 
 
 _Fails: TypeAlias = Callable[[Any, Any, Any], Any]
-"""Whether a rule is broken, by a column, its limit, and what is beside it.
+"""Test of a rule, by a column, its limit, and neighbouring values.
 
 What is no number breaks some rules, and not others.
 """

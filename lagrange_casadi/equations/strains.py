@@ -62,7 +62,7 @@ def resultants(
 
 
 def strains(p: Properties, force: Mapping[str, Any], moduli: Moduli) -> dict[str, Any]:
-    """By the names of section forces what each strains, for a unit of the link's length."""
+    """Strain of each section force, by its name, for a unit of the link's length."""
     found = dict.fromkeys(force, 0.0) | {
         name: value * soft for name, (value, soft) in resultants(p, force, moduli).items()
     }

@@ -1,5 +1,4 @@
-"""How near a link with a beam is to its limits, at an instant: stresses largest along it, and
-utilisation.
+"""Utilisation of a link with a beam at an instant, and its stresses, largest along the link.
 
 Between two stations, breaks of its density and of its cross-section, section forces are
 polynomials. Such a part is looked at at both ends and at places in between; from the summits that
@@ -42,7 +41,7 @@ _MORE = 6
 """More places where the cross-section changes."""
 
 _SLACK = END["single"]
-"""How near a station is at a section: one graph serves both precisions."""
+"""Distance of a load point at which it is at a section: one graph serves both precisions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +83,7 @@ class Loaded:
 
     @property
     def told(self) -> bool:
-        """Whether stresses have a formula: in space torsion must have one."""
+        """True if stresses have a formula: in space torsion must have one."""
         return not self.space or all(
             shape.properties().torsion is not None for shape in self.course.shapes()
         )
@@ -150,7 +149,7 @@ def stresses(mechanism: Mechanism, name: str, columns: Mapping[Column, Any]) -> 
 def utilisation(
     mechanism: Mechanism, name: str, columns: Mapping[Column, Any], effective: tuple[float, float]
 ) -> dict[Column, Any]:
-    """How far a link is used against yielding and against buckling: one over the factors of safety
+    """Utilisation of a link against yielding and against buckling: one over the factors of safety
     at an instant.
 
     ``effective`` are the effective lengths as a column over its own. For buckling see
@@ -170,8 +169,8 @@ def utilisation(
 
 
 def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
-    """How far a link is used as a column, with the largest compression and the largest moments
-    along it.
+    """Utilisation of a link as a column, with the largest compression and the largest moments along
+    it.
     """
     compression = _largest(link, lambda part, x: -part.force("axial", x))
     names = ("bending_z", "bending_y") if link.space else ("bending",)

@@ -29,10 +29,10 @@ FORCES = {
 """The section forces that stresses are linear in: in the plane, and in space."""
 
 _PLACES = {False: (0, 1, 5), True: (0, 1, 2, 3, 4, 5)}
-"""Their places in :meth:`.Properties.rows`."""
+"""Places of the forces in :meth:`.Properties.rows`."""
 
 KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
-"""Of each kind of stress the weights of s^2 and t^2 in its square."""
+"""Weights of s^2 and t^2 in the square of each kind of stress."""
 
 _LOOKED_AT = 65
 """Places at which the thinnest cross-section is sought where it changes."""
@@ -40,7 +40,7 @@ _LOOKED_AT = 65
 _Row = tuple[list[Any], list[Any]]
 
 _DEEP = 4
-"""How much of an expression is compared to see that two fibres are alike."""
+"""Depth to which expressions of two fibres are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Fibres(Graphs):
 
     @classmethod
     def of(cls, shape: Shape, space: bool) -> Fibres:
-        """Those of the kind of a shape; they are made once."""
+        """Make the fibres of the kind of a shape, once."""
         return _fibres(shape.kind, tuple(shape.dimensions), space)
 
 
@@ -135,7 +135,7 @@ class CrossSections:
         return normal, along_y, along_z
 
     def factors(self, cell: int, u: Array) -> Array:
-        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres,
+        """Factors of stresses by section forces between two breaks, at ratios ``u``: (3, fibres,
         forces, u...).
         """
         known, many = self.fibres(cell), len(self.forces)
@@ -167,8 +167,8 @@ class CrossSections:
 
 
 def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:
-    """Which of some fibres' rows are like no other one before; and where ``lower`` counts, below
-    no other.
+    """Return the numbers of the rows of fibres that equal none before; with ``lower`` also without
+    those below another one.
     """
     kept = list[int]()
     for k, row in enumerate(rows):
@@ -179,8 +179,8 @@ def _differing(rows: Sequence[_Row], *, lower: bool) -> tuple[int, ...]:
 
 
 def _plain(row: tuple[tuple[Any, ...], ...], space: bool) -> _Row:
-    """What a fibre takes for its normal stress, and for its shear stress: in the plane alone the
-    square of this counts.
+    """Return factors of a fibre's normal stress and shear stress: in the plane only the square of
+    the latter matters.
     """
     if space:
         return [ca.SX(x) for x in row[0]], [ca.SX(x) for each in row[1:] for x in each]
@@ -222,6 +222,6 @@ def _same(a: _Row, b: _Row) -> bool:
 
 
 def _below(a: _Row, b: _Row) -> bool:
-    """Whether a fibre has the normal stress of another one, no shear stress, and the other some."""
+    """Compare two fibres: the first has the normal stress of the second, which alone has shear."""
     same = all(ca.is_equal(x, y, _DEEP) for x, y in zip(a[0], b[0], strict=True))
     return same and all(x.is_zero() for x in a[1]) and not all(x.is_zero() for x in b[1])

@@ -1,4 +1,4 @@
-"""What is known of symbols: expressions to put in their place, or numbers.
+"""Substitution of symbols: by expressions or numbers.
 
 Only what an expression holds is looked at.
 """
@@ -25,14 +25,14 @@ class Expressions:
             self._known[symbol.element_hash()] = symbol, value
 
     def and_of(self, symbols: Any, values: Any) -> Expressions:
-        """What is known here, and some more."""
+        """Substitution with more symbols."""
         more = Expressions()
         more._known = dict(self._known)
         more.note(symbols, values)
         return more
 
     def with_values(self, of: Callable[[Any], Any]) -> Expressions:
-        """What is known here, with another expression made of each."""
+        """Substitution with another expression made of each."""
         more = Expressions()
         if self._known:
             symbols, values = (

@@ -76,13 +76,13 @@ class ThreeTurns:
 
     @cached_property
     def rates(self) -> tuple[Any, Any, Any]:
-        """Their rates."""
+        """Rates of the angles."""
         return self._along(minus(self.child.rate, self.parent.rate))
 
     @property
     def accelerations(self) -> tuple[Any, Any, Any]:
-        """Their accelerations: of the relative angular velocity, less what its axes' own motion
-        makes of it.
+        """Accelerations of the angles: from the relative angular acceleration, less the
+        contribution of the axes' own motion.
         """
         (u, *_), (*_, third) = self._axes
         first, second, last = self.rates

@@ -58,8 +58,8 @@ class Tree:
     bars: tuple[Bar, ...] = ()
 
     def measures(self, joint: Joint, axis: Axis) -> bool:
-        """Whether the motion of a joint along an axis is told: not the angles of one with three
-        turns that closes a loop.
+        """Return whether the motion of a joint along an axis is an output: not the angles of one
+        with three turns that closes a loop.
         """
         return (
             axis.kind == "slide"
@@ -177,9 +177,7 @@ def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
 
 
 def _is_turned(joint: Joint) -> bool:
-    """Whether the joint's child is turned against its parent where the joint's coordinates are
-    zero.
-    """
+    """Return whether the joint's child is turned against its parent at zero coordinates."""
     if joint.turned is None:
         return False
     pairs = [
@@ -227,8 +225,8 @@ def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:
-    """In a plane a point on a line places neither the body that carries the line, nor the direction
-    of the one that slides.
+    """Return whether a joint can place a body: in a plane a point on a line places neither the body
+    that carries the line, nor the direction of the one that slides.
     """
     if joint.directions is not None:
         return not reverse or (

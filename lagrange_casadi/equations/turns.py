@@ -30,17 +30,17 @@ from .kinematics import Kinematics, Start
 from .multibody import Multibody, Turned, column
 
 REACH = math.pi - 0.35
-"""How far an angle may swing [rad] before it might be a turn further."""
+"""Largest swing of an angle [rad] from its middle for which its revolution is certain."""
 
 LEAP = 1.5 * math.pi
 """So far from one instant to the next [rad], it has rather gone the other way, and made a turn."""
 
 _MOST_TURNS = 3
-"""Of other angles, all together, for one of an angle."""
+"""Largest number of revolutions of other angles, all together, for one of an angle."""
 
 _STEPS, _MOST_STEPS = 512, 32768
 _COUNTED_STEP, _STEP = math.pi / 16, math.pi / 4
-"""How far what counts turns [rad], and what does not, may go in a step to be followed."""
+"""Largest steps [rad] of counted angles, and of others, that can be followed."""
 
 _DIGITS = 2
 _NEWTON_STEPS, _NEWTON_DONE = 50, 1e-9
@@ -194,7 +194,7 @@ class _Guide:
 
     @property
     def timed(self) -> bool:
-        """Whether time itself, and not the drives alone, moves the loops."""
+        """True if time itself, and not the drives alone, moves the loops."""
         functions = [(self.angles, 0), *([(self.newton.step, 1)] if self.newton else [])]
         return any(function.jac_sparsity(0, place).nnz() > 0 for function, place in functions)
 
@@ -257,9 +257,7 @@ def _widest(rows: Array) -> float:
 
 
 def tells_turns(expression: Any, angle: Any) -> bool:
-    """Whether an expression may change where a whole turn is added to an
-    angle that it depends on.
-    """
+    """Return whether an expression may change if a whole turn is added to an angle."""
     expression = ca.densify(ca.vec(ca.SX(expression)))
     others = [
         symbol for symbol in ca.symvar(expression) if symbol.element_hash() != angle.element_hash()
@@ -290,7 +288,7 @@ class _Part:
 
 
 def _combined(code: int, *operands: Any) -> _Part:
-    """What an operation, one of CasADi's ``OP_`` codes, makes of parts."""
+    """Rule by which an operation, one of CasADi's ``OP_`` codes, combines its parts."""
     parts: list[_Part] = [operand for operand in operands if isinstance(operand, _Part)]
     first, last = parts[0], parts[-1]
     if code in (ca.OP_ADD, ca.OP_SUB):

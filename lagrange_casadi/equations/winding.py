@@ -42,9 +42,7 @@ def wound(
 
 
 def _turns(angle: Any, other: Coordinate, numbers: Numbers) -> int:
-    """How often an angle goes round while another one does so once; none where that cannot go
-    round.
-    """
+    """Revolutions of an angle for one of another angle; none if that cannot go round."""
     turn = ca.SX.sym("turn")
     start = numbers.of(other.value)[0]
     placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))

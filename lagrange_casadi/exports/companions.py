@@ -1,5 +1,5 @@
-"""What goes with the source: build files, a self-test with golden vectors, an example, and what to
-read first.
+"""Companions of the source: build files, a self-test with golden vectors, an example, and a
+README.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .fatigue import counting
 from .matlab import matlab
 
 _ROWS = 12
-"""That the example prints."""
+"""Number of rows that the example prints."""
 
 
 def companions(source: Source) -> dict[str, str]:

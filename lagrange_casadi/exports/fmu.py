@@ -204,7 +204,7 @@ def _archive(files: Mapping[str, bytes]) -> bytes:
 
 
 def _findings(archive: bytes) -> list[str]:
-    """What FMPy has to say against an archive."""
+    """Objections of FMPy to an archive."""
     with working_folder() as work:
         path = work / "unit.fmu"
         path.write_bytes(archive)

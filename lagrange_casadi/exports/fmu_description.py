@@ -1,5 +1,5 @@
-"""What an importer reads of a unit: its variables with units, start values and limits, and what
-depends on what.
+"""Model description of a unit: its variables with units, start values and limits, and their
+dependencies.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Description:
 
     @property
     def contract(self) -> Contract:
-        """What the program takes and gives."""
+        """Inputs and outputs of the program."""
         return self.source.contract
 
     @property
@@ -59,7 +59,7 @@ class Description:
 
     @cached_property
     def start(self) -> dict[str, float]:
-        """What inputs start with: the scene's motion at its first instant."""
+        """Start values of inputs: the scene's motion at its first instant."""
         graph = self.source.program.graph
         rows = [
             np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.data.span[0], self.p)
@@ -73,7 +73,7 @@ class Description:
 
     @cached_property
     def guid(self) -> str:
-        """Of the scene and of all that is said of it."""
+        """Identifier of the scene and of its description."""
         text = _text(self._root(""))
         whole = self.source.identity + self.source.code + text
         return f"{{{uuid.UUID(hashlib.sha256(whole.encode()).hexdigest()[:32])}}}"
@@ -205,7 +205,7 @@ _KINDS = {
 
 
 def reached(graph: Program) -> dict[str, frozenset[str]]:
-    """What each column of a graph depends on by its structure: ``time``, ``motion:...`` and
+    """Dependencies of each column of a graph, by its structure: ``time``, ``motion:...`` and
     ``parameter:NAME``.
     """
     named = [
@@ -250,7 +250,7 @@ inputs before, unless they are set anew."""
 
 
 def page(description: Description) -> str:
-    """What a reader of the unit is told: ``documentation/index.html``."""
+    """Documentation of the unit: ``documentation/index.html``."""
     c = description.contract
     tables = (("Parameters", c.settings), ("Inputs", description.inputs), ("Outputs", c.outputs))
     rest = "".join(_table(title, members) for title, members in tables if members)

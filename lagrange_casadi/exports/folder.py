@@ -37,7 +37,7 @@ MANIFEST = Manifest(
     "choose another folder, or say force=True, which touches no other file",
 )
 _BUILD = "build"
-"""Where README says to build: no obstacle to exporting once more, nor touched by it."""
+"""Build folder in README: a new export neither stops at it nor touches it."""
 
 
 @public
@@ -124,7 +124,7 @@ def export(
 
 
 def _told(source: Source) -> dict[str, Any]:
-    """What the folder holds, for programs: names, units and places of all members."""
+    """Contents of the folder, for programs: names, units and places of all members."""
     agreed = source.contract
 
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:

@@ -68,7 +68,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
 
 
 def _field(member: Member) -> str:
-    """How a script reads a member of a struct."""
+    """Expression by which a script reads a member of a struct."""
     plain = member.name[0].isalpha() and member.name not in _WORDS
     return f".{member.name}" if plain else f".('{member.name}')"
 
@@ -134,7 +134,7 @@ def _no_section(c: Contract) -> str:
 
 
 def _more(c: Contract, output: Member) -> Iterable[str]:
-    """What the example shows of links and parameters."""
+    """Links and parameters in the example."""
     if c.links:
         link = c.links[0].name
         yield f"forces = {c.prefix}_mex('section', outputs, '{link}', linspace(0, 1, 5));"

@@ -25,16 +25,14 @@ _POINTS = 8.0
 """The size of names [pt]."""
 
 _TALL, _LARGE, _PAGE = 4.4, 6.4, 9.0
-"""How large one of several drawings may be, one alone, and all together [inch]."""
+"""Largest sizes of one of several drawings, of one alone, and of all together [inch]."""
 
 _SQUARE = 5.5 * np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)])
 """Points of a point mass's mark, against its middle [pt]."""
 
 _FAINT = 0.2
 _AXIS = 0.06
-"""How far the line on which something slides goes beyond where it ever is, over the mechanism's
-size.
-"""
+"""Extension of a sliding line beyond its used range, relative to the mechanism's size."""
 
 Box = tuple[float, float, float, float]
 
@@ -127,7 +125,7 @@ def _when(solution: Solution, i: int) -> str:
 
 
 def _extent_of(words: str, points: float) -> float:
-    """How wide words are [pt]."""
+    """Width of words [pt]."""
     from matplotlib.textpath import TextPath
 
     return float(TextPath((0, 0), words, size=points).get_extents().width)

@@ -299,8 +299,8 @@ _FIGURES: dict[type[Spec], Callable[[Any, Solution, bool], Figure]] = {
 
 
 def _along(solution: Solution) -> tuple[Array, str]:
-    """What instants are drawn over: their times, or the coordinate by which they were asked for, an
-    angle in degrees.
+    """Abscissa of figures: times, or the coordinate by which instants were defined, an angle in
+    degrees.
     """
     if solution.over is None:
         return solution.t, "t [s]"
@@ -308,7 +308,7 @@ def _along(solution: Solution) -> tuple[Array, str]:
 
 
 def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
-    """Where a peak is drawn on such an axis, and the same in words."""
+    """Abscissa of a peak, and its description."""
     if solution.over is None or peak.over is None:
         return peak.t, f"t = {peak.t:.4g} s"
     return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)

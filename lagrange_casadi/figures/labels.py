@@ -13,11 +13,11 @@ import numpy as np
 from ..base.arrays import Array
 
 _REACHES, _DIRECTIONS = (6.0, 10.0, 15.0, 21.0, 28.0, 38.0, 50.0, 70.0), 16
-"""How far from its point a name may be [pt], and in how many directions."""
+"""Distances of a name from its point [pt], and number of directions, that are tried."""
 
 _OVERLAP, _HIDDEN, _OUTSIDE, _FAR = 1e4, 6.0, 1e4, 1.0
-"""What it costs to lie on another name, on a thing of the picture, beyond its edge; and to be far,
-for each point [pt].
+"""Costs of a name's place: on another name, on a part of the picture, beyond the edge; and for each
+point [pt] of distance.
 """
 
 
@@ -43,7 +43,7 @@ def placed(anchors: Array, sizes: Array, things: Array, box: Sequence[float]) ->
 
 
 def apart(corner: Array, size: Array, anchor: Array) -> float:
-    """How far a name is from its point [pt]."""
+    """Distance of a name from its point [pt]."""
     nearest = np.clip(anchor, corner, corner + size)
     return float(np.hypot(*(nearest - anchor)))
 
@@ -88,8 +88,8 @@ def _cost(
 
 
 def tell_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
-    """Which body has which colour, once below all drawings of a figure
-    whose layout is constrained.
+    """Draw the legend of bodies and colours, once below all drawings of a figure whose layout is
+    constrained.
     """
     if not figure.legends:
         figure.legend(

@@ -18,7 +18,7 @@ from ..studies.evaluate import evaluate
 from .into import draw_into
 
 _MOST, _LARGE = 8, 40
-"""How many ways are drawn, and of how many bodies a mechanism may be: each way is derived."""
+"""Largest number of ways that are drawn, and of bodies of a mechanism: each way is derived."""
 
 
 @one_at_a_time()

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _THINNED = 2000
-"""At how many instants paths are drawn at most."""
+"""Largest number of instants at which paths are drawn."""
 
 _FAINT = 0.22
 _POINTS = 8.0
@@ -47,7 +47,7 @@ _ROW = 0.21
 """The height of a row of the legend [inch]."""
 
 _ARROW = 26.0
-"""How long the ground's axes are shown [pt]."""
+"""Length of the ground's axes [pt]."""
 
 _RING = 4.5 * np.array(
     [
@@ -58,7 +58,7 @@ _RING = 4.5 * np.array(
 """Points of a joint's mark, against its middle [pt]."""
 
 Box = tuple[float, float, float, float]
-"""What a picture shows: left, right, bottom and top [m]."""
+"""Range of a picture: left, right, bottom and top [m]."""
 
 
 def draw_in_space(
@@ -155,9 +155,7 @@ def _instants(solution: Solution, chosen: list[int]) -> str:
 
 
 def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
-    """What a picture shows, and its scales, which have as many numbers as there is room for on its
-    ``size`` [inch].
-    """
+    """Range of a picture, and its scales, with as many numbers as fit its ``size`` [inch]."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     axes.set(xlim=box[:2], ylim=box[2:])
@@ -285,7 +283,7 @@ def _tell(
 
 
 def _triad_at(cloud: Array, edge: Sequence[float]) -> Array:
-    """Where the ground's axes are shown: in the corner of a picture around which least is [pt]."""
+    """Place of the ground's axes: the corner of a picture with least around it [pt]."""
     inside = 1.5 * _ARROW
     corners = [
         (x, y)

@@ -1,4 +1,4 @@
-"""At which instants a mechanism is drawn: postures that differ from each other."""
+"""Instants at which a mechanism is drawn: postures that differ from each other."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def _cloud(solution: Solution, spots: Iterable[Spot]) -> Array:
 
 
 def _ends_of_axes(description: Description, reach: float) -> Iterator[Spot]:
-    """Where axes of joints end on the bodies that carry them: by these one sees a shaft turn, whose
-    points stay where they are.
+    """Ends of joints' axes on the bodies that carry them: they show a shaft turn, whose points do
+    not move.
     """
     for joint in joint_shapes(description):
         carried = [(joint.parent, axis) for axis in joint.axes[:1]] + (

@@ -49,8 +49,8 @@ def draw_strength(
 
 
 def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
-    """How far every link and joint is used against each way to fail: one
-    over the factor of safety.
+    """Draw the utilisation of every link and joint for each mode of failure: one over the factor of
+    safety.
     """
     from matplotlib.figure import Figure
 

@@ -155,7 +155,7 @@ class Carried(Frame):
         )
 
     def displaced_along(self, translation: Vector, turning: Vector) -> Carried:
-        """The same by rates in the body's own axes."""
+        """Displacement by rates in the body's own axes."""
         there = self.displaced(self.rotation.apply(translation), self.rotation.apply(turning))
         return replace(there, own=self.own.displaced(translation, turning))
 

@@ -64,12 +64,12 @@ class Rotation:
 
     @property
     def c(self) -> Expression:
-        """Of a rotation about z, the cosine."""
+        """Cosine of a rotation about z."""
         return self.x[0]
 
     @property
     def s(self) -> Expression:
-        """Of a rotation about z, the sine."""
+        """Sine of a rotation about z."""
         return self.x[1]
 
     @cached_property
@@ -135,5 +135,5 @@ def direction(angle: Expression) -> tuple[Expression, Expression]:
 
 
 def _same(a: Vector, b: Vector) -> bool:
-    """Whether vectors are numbers, and the same ones."""
+    """Return whether vectors are numbers, and equal."""
     return all(isinstance(one, float) and one == other for one, other in zip(a, b, strict=True))

@@ -48,5 +48,5 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def nil(value: Any) -> bool:
-    """Whether a value is zero by structure."""
+    """Return whether a value is zero by structure."""
     return bool(as_expression(value).is_zero())

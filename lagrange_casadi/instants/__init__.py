@@ -1,3 +1,1 @@
-"""From graphs to arrays: how an instant is evaluated, what is refused, tables over a cycle, the law
-of sections.
-"""
+"""Evaluation of a program over instants: refusals, tables over a cycle, the law of sections."""

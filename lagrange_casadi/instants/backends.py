@@ -51,7 +51,9 @@ _NEEDS = {
 _TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
 _FEWEST_STEPS, _MOST_STEPS = 50, 5000
-"""From the scene's start to an evaluation that begins elsewhere."""
+"""Least and largest number of steps from the scene's start to an evaluation that begins
+elsewhere.
+"""
 
 Built = TypeVar("Built")
 
@@ -155,8 +157,8 @@ def _compiled(
 def compiled(
     rung: Rung, build: Callable[[codegen.Compiler], Built]
 ) -> tuple[codegen.Compiler, Built] | None:
-    """What is built by the compiler that a rung's backend takes, and that; None for the virtual
-    machine.
+    """Result of ``build`` with the compiler of a rung's backend, and that compiler; None for the
+    virtual machine.
     """
     backend = rung.backend
     for language in _LANGUAGES[backend]:
@@ -203,7 +205,7 @@ def _library(
 
 
 def unevaluated(graph: Program, stages: Stages, size: int) -> Evaluated:
-    """What is to be filled."""
+    """Empty arrays of an evaluation."""
     dtype = DTYPES[stages.precision]
     out, iterated = (
         rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z"))
@@ -221,7 +223,7 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
 
 
 def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
-    """How numbers were made, with the versions of what made them."""
+    """Provenance of numbers, with the versions of the programs involved."""
     import h5py  # which takes its time, and is needed for files alone
 
     versions = {
@@ -242,7 +244,7 @@ def _interpret(
     begin: Sequence[float],
     newton: int | None,
 ) -> None:
-    """What the emitted C does, by CasADi's virtual machine."""
+    """Evaluate by CasADi's virtual machine, as the emitted C does."""
     stages = evaluated.stages
     guess = np.array(begin)
     evaluated.iterated[:], evaluated.status[:] = follow(

@@ -34,12 +34,12 @@ class Basis:
 
     @cached_property
     def force(self) -> Array:
-        """Those of a force."""
+        """Basis of a force."""
         return self._rows(bends=False)
 
     @cached_property
     def bending(self) -> Array:
-        """Those of a bending moment."""
+        """Basis of a bending moment."""
         return self._rows(bends=True)
 
     def _rows(self, *, bends: bool) -> Array:

@@ -27,20 +27,22 @@ from ..errors import DeclarationError
 from .rules import passes_dead_centre
 
 TURNS = 4
-"""Of the longest period."""
+"""Number of the longest periods."""
 
 _STEPS = 512
 _OFFSET = 0.618
 _BLOCK = 4096
 _NEWTON_STEPS, _NEWTON_DONE = 50, 1e-9
 _SAME, _FAINT = 1e-9, 1e-11
-"""What is no change: so much of a column's own largest value, and of the largest of its unit."""
+"""Relative changes that count as none: of a column's own largest value, and of the largest of its
+unit.
+"""
 
 _ROUNDING = 16 * 2.0**-52
-"""Of the largest value of a unit."""
+"""Rounding relative to the largest value of a unit."""
 
 _GAP = 1e-8
-"""Of the mechanism's extent, what may be left of a loop's equations."""
+"""Largest residual of a loop's equations, relative to the mechanism's extent."""
 
 _PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
 _NAMED = 3
@@ -107,7 +109,7 @@ class Course:
         return self.places[:, np.clip(nearest, 0, self.angles.size - 1)]
 
     def turns_of(self, angles: Array, loose: Array) -> Array:
-        """What makes angles known up to whole turns continuous with those of the course, (m, n)."""
+        """Multiples of 2 pi that make angles continuous with those of the course, (m, n)."""
         rising = slice(None, None, 1 if self.angles[1] > self.angles[0] else -1)
         found = np.zeros_like(loose)
         for k, row in enumerate(self.loose):
@@ -369,8 +371,8 @@ def _sizes(graph: Program, p: Array, peaks: Array) -> Array:
 
 
 def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> None:
-    """Where all terms of a unit are zero but for rounding, as the slide of a shaft that has none,
-    they are small beside others.
+    """Raise units in which all terms are zero within rounding, such as a slide that never moves, to
+    the size of others.
 
     A motion is so beside a turn of all, whose points are as far away as the mechanism is large [m];
     a force beside moments, and moments beside forces, at that arm.
@@ -389,8 +391,8 @@ def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> 
 
 
 def _kind(graph: Program, column: Column) -> str | Column:
-    """What columns are compared by: their unit, or, where that says nothing, themselves; directions
-    with each other.
+    """Key by which columns are compared: their unit, or, if that says nothing, themselves;
+    directions with each other.
     """
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column

@@ -26,7 +26,7 @@ from ..codegen.compiler import loaded
 from ..errors import CompilerError, DeclarationError, warn
 
 FACTORS = ("1", "rate", "rate^2", "acceleration")
-"""What a term is multiplied by."""
+"""Factors of a term."""
 
 LEAST = 8
 """Nodes: so many coefficients at least that no weight falls twice on one."""
@@ -61,7 +61,7 @@ INTERPOLATE = Call(
         "out": "real*",
     },
 )
-"""What compiled code reads a table by; ``interpolate.c`` says of each what it is."""
+"""Arguments of compiled code that reads a table; ``interpolate.c`` describes each."""
 
 _ENTRY = """
 #ifdef __GNUC__
@@ -145,7 +145,7 @@ class CycleTable:
 
     @property
     def nodes(self) -> int:
-        """How many angles of a period are tabulated."""
+        """Number of tabulated angles of a period."""
         return int(self.coefficients.shape[0]) - _MORE
 
     @property
@@ -169,8 +169,8 @@ class CycleTable:
         return self.coefficients.dtype
 
     def single(self) -> CycleTable:
-        """The same in single precision; ``errors`` then hold what that rounds, too, at angles of
-        the first period.
+        """Table in single precision; ``errors`` then include its rounding, at angles of the first
+        period.
         """
         table = replace(self, coefficients=self.coefficients.astype(np.float32))
         angle = (self.period / (2 * self.nodes) * np.arange(2 * self.nodes)).astype(np.float32)
@@ -245,7 +245,7 @@ class CycleTable:
         )
 
     def _read(self, angle: Reals, rate: Reals, acceleration: Reals, out: Reals) -> None:
-        """What the compiled code does."""
+        """Read the table as the compiled code does."""
         inverse, first, rest, turn = self.cell
         nodes = self.dtype.type(self.nodes)
         with np.errstate(invalid="ignore", over="ignore"):
@@ -269,7 +269,7 @@ class CycleTable:
 
     @functools.cached_property
     def layout(self) -> Layout:
-        """How the terms lie in a row."""
+        """Order of terms in a row."""
         return arranged(self.kept)
 
     @functools.cached_property
@@ -292,9 +292,8 @@ class CycleTable:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """How terms lie in a row: ``order`` (columns), the column in each place; ``runs`` (k, 3) of
-    terms side by side, the number of a factor, the first place and how many; ``terms``, the factor
-    and the column of each.
+    """Order of terms in a row: ``order`` (columns), the column in each place; ``runs`` (k, 3) of
+    neighbouring terms, the number of a factor, the first place and the number of them.
     """
 
     order: Integers

@@ -54,7 +54,9 @@ class Derivatives:
         return found[str(name)]
 
     def notes(self) -> Iterator[str]:
-        """Which are no numbers at some instants, as where a square root of nothing grows."""
+        """Notes on derivatives that are not finite at some instants, as at a square root of
+        zero.
+        """
         for name, found in self.by.items():
             for output, x in found.items():
                 if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
@@ -64,7 +66,7 @@ class Derivatives:
                     )
 
     def of(self, outputs: Container[Output]) -> Derivatives:
-        """Those of some outputs."""
+        """Derivatives of some outputs."""
         return Derivatives(
             {
                 name: {o: x for o, x in found.items() if o in outputs}
@@ -73,7 +75,7 @@ class Derivatives:
         )
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
-        """The same at some of the instants."""
+        """Derivatives at some of the instants."""
         return Derivatives(
             {
                 name: {output: x[instants] for output, x in found.items()}

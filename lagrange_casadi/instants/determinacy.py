@@ -1,4 +1,4 @@
-"""What equilibrium determines, decided for the parameters and instants that are evaluated.
+"""Determinacy of forces by equilibrium, decided for the parameters and instants that are evaluated.
 
 In a mechanism with more constraints than it needs, forces are f + s u, where u is what equilibrium
 leaves open, and elasticity does not tell. A check ``open`` of a force is the size of s. A force is

@@ -1,4 +1,4 @@
-"""What elasticity told of a solution."""
+"""Results from elasticity in a solution."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Elasticity:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """The same in lines."""
+        """Results in lines."""
         told = (
             [f"equilibrium leaves {len(self.told)} series open that least strain energy tells"]
             if self.told

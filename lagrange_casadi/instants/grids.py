@@ -60,7 +60,7 @@ LARGEST = Call(
     "lagrange_casadi_largest_call",
     {"designs": "long long", "n": "long long", "k": "long long", **_SUM},
 )
-"""What the functions of ``grids.c`` take; they say of each what it is."""
+"""Arguments of the functions of ``grids.c``, which describes each."""
 
 Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope
@@ -198,7 +198,7 @@ def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
 def _sum(
     columns: int, planes: int, rows: Any, functions: Array, ratios: Array, beyond: Array
 ) -> dict[str, int]:
-    """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads'
+    """Arguments of a call: ``rows`` are the addresses of the columns, so many, and of the loads'
     parts; functions have a row each.
     """
     first = ctypes.addressof(rows)

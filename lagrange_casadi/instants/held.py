@@ -1,4 +1,4 @@
-"""What a drive may need at each instant to hold a mechanism that friction helps to hold."""
+"""Range of a drive's effort at each instant if friction helps to hold the mechanism."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Holding:
         return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Holding:
-        """The same at some of the instants."""
+        """Ranges at some of the instants."""
         return replace(self, least=self.least[instants], largest=self.largest[instants])
 
 

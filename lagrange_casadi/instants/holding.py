@@ -93,13 +93,11 @@ def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
 
 
 _Reasons = list[tuple[Any, str]]
-"""At which instants (t,) a range is not told, and why."""
+"""Instants (t,) at which a range is not available, and the reasons."""
 
 
 def _inputs(graph: Program, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
-    """What the columns of a scene are functions of, some of the
-    instants ``t`` beside each other.
-    """
+    """Arguments of a scene's columns, for some of the instants ``t``."""
     z = (
         np.zeros((0, at.size))
         if graph.newton is None

@@ -33,17 +33,17 @@ class SpreadLoad:
 
     @property
     def powers(self) -> int:
-        """How many powers it has."""
+        """Number of powers."""
         return max(map(len, self.terms.values()))
 
     @property
     def sound(self) -> bool:
-        """Whether it acts on some part of the link."""
+        """True if the load acts on some part of the link."""
         return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
 
     @property
     def marks(self) -> list[Array]:
-        """Where it begins and ends, those places left out that are the ends of the link."""
+        """Begin and end of the load, except those that are ends of the link."""
         return [
             place
             for place in (self.end - self.width, self.end)
@@ -51,7 +51,7 @@ class SpreadLoad:
         ]
 
     def during(self, instants: slice) -> SpreadLoad:
-        """The same at some of the instants."""
+        """Load at some of the instants."""
         terms = {
             member: tuple(values[instants] for values in rows)
             for member, rows in self.terms.items()
@@ -59,7 +59,7 @@ class SpreadLoad:
         return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SpreadLoad:
-        """The same load of a link with other numbers in it, (..., t)."""
+        """Load of a link with other numbers, (..., t)."""
 
         def value(member: str, power: int | None = None) -> Array:
             return outputs[Output("spread", link, member, self.name, power)]
@@ -85,8 +85,8 @@ class SpreadLoad:
     def moved(
         self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool
     ) -> Array:
-        """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose
-        changes are (..., t).
+        """Change of a force or moment at ratios ``u`` (t, n) with width and end, whose changes are
+        (..., t).
         """
         width, end = self.width[..., :1], self.end[..., :1]
         # x, L and a of equations/spreads.py.
@@ -149,7 +149,7 @@ def spread_load(
 
 @dataclass(frozen=True, eq=False)
 class StationLoad:
-    """What acts on a link at a station: force along ``n`` and across ``f`` the axis [N], moment
+    """Action on a link at a load point: force along ``n`` and across ``f`` the axis [N], moment
     ``m`` [N m], each (t,).
 
     ``station`` is the ratio xi/l, (t,): it moves where something slides along the link.
@@ -162,13 +162,13 @@ class StationLoad:
     m: Array
 
     def during(self, instants: slice) -> StationLoad:
-        """The same at some of the instants."""
+        """Load at some of the instants."""
         return _cut(self, instants)
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialStationLoad:
-    """The same in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
+    """Action in space: force ``n`` along the link's axis, ``fy``, ``fz`` across [N], moments
     ``mx``, ``my``, ``mz`` [N m].
     """
 
@@ -182,7 +182,7 @@ class SpatialStationLoad:
     mz: Array
 
     def during(self, instants: slice) -> SpatialStationLoad:
-        """The same at some of the instants."""
+        """Load at some of the instants."""
         return _cut(self, instants)
 
 
@@ -191,7 +191,9 @@ _Load = TypeVar("_Load", StationLoad, SpatialStationLoad)
 
 
 def station_load(name: str, members: Mapping[str, Array]) -> AnyStationLoad:
-    """What acts at a station, by the names of its members: those of the plane or those of space."""
+    """Make the action at a load point by the names of its members: those of the plane or those of
+    space.
+    """
     return StationLoad(name, **members) if "f" in members else SpatialStationLoad(name, **members)
 
 

@@ -68,8 +68,8 @@ def told(solution: Solution) -> Iterator[Output]:
 
 
 def error_of(solution: Solution, name: str | Output) -> float | None:
-    """How far a quantity may be off, in its unit, or None; the size of a force by no more than its
-    components together.
+    """Error bound of a quantity, in its unit, or None; that of a force's size is at most the sum of
+    its components'.
     """
     errors = [
         solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))

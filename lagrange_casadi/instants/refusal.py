@@ -1,5 +1,5 @@
-"""What is no result, and why: the first instant at which a loop does not close, or is where its
-forces are not determined.
+"""Reasons why an evaluation has no result: the first instant at which a loop does not close, or at
+which forces are indeterminate.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _TRIALS, _WIDE = 100, 0.1
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why there is no result: a status, and the same in words that name the joint, the instant and
+    """Reason why there is no result: a status, and a message that names the joint, the instant and
     the driven coordinates.
     """
 
@@ -53,7 +53,7 @@ def refuse(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung)
 
 
 def refusal(graph: Program, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
-    """Why the first instant that has no result has none; None where all have."""
+    """Reason why the first instant without a result has none; None if all have one."""
     precision = evaluated.stages.precision
     shares = zip(graph.bounds, limits(graph, precision, rung.newton, graph.extent(p)), strict=True)
     most = [math.inf if bound.kind.startswith("OPEN") else limit for bound, limit in shares]
@@ -97,8 +97,8 @@ def _first_broken(
 def _beside(
     graph: Program, out: Array, most: Sequence[float], t: Array, p: Array, rung: Rung
 ) -> Array:
-    """What stands beside the checks of each instant (bounds, t), as :class:`.Bound` tells: it is
-    seen of several instants.
+    """Values beside the checks of each instant (bounds, t), for :class:`.Bound`: they depend on
+    several instants.
     """
     found = np.zeros((len(graph.bounds), t.size))
     for k, (bound, limit) in enumerate(zip(graph.bounds, most, strict=True)):
@@ -118,8 +118,8 @@ def _beside(
 
 
 def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
-    """At which instants of the columns ``out`` (columns, t) a joint that rubs is at rest: what
-    depends on its friction is open.
+    """Instants, from the columns ``out`` (columns, t), at which a joint with friction is at rest:
+    forces that depend on its friction are indeterminate.
     """
     found = np.zeros(out.shape[-1], dtype=bool)
     for row in graph.checks("rest").values():
@@ -128,9 +128,7 @@ def resting(graph: Program, out: Array) -> npt.NDArray[np.bool_]:
 
 
 def unfinished(graph: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
-    """At which instants (t,) there is no result; at rest there is one, beside what friction
-    reaches.
-    """
+    """Instants (t,) without a result; at rest there is one, except for what depends on friction."""
     rests = (evaluated.status == Status.NOT_FINITE) & resting(graph, evaluated.out)
     return np.asarray((evaluated.status != Status.OK) & ~rests)
 
@@ -138,7 +136,7 @@ def unfinished(graph: Program, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
 def _dead_between(
     graph: Program, bound: Bound, limit: float, start: Array, stop: Array, p: Array, rung: Rung
 ) -> npt.NDArray[np.bool_]:
-    """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
+    """Return whether a closure is zero between instants, sought where it is lowest, ever closer."""
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
@@ -155,7 +153,7 @@ def _dead_between(
 
 
 def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | None:
-    """What to say where a link's length cannot be squared in a precision."""
+    """Message if the square of a link's length overflows in a precision."""
     numbers = np.finfo(DTYPES[precision])
     low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
     for name, body in graph.data.at(p)["bodies"].items():
@@ -170,8 +168,8 @@ def _beyond(graph: Program, p: Array, precision: Precision, at: str) -> str | No
 
 
 def _left_open(graph: Program, start: Array, t: float, p: Array) -> str:
-    """What closes the loops that iteration leaves open at an instant: those with the widest gaps,
-    or all where these do not tell.
+    """Describe the loops that iteration does not close at an instant: those with the largest
+    residuals, or all if these are not known.
 
     What it was begun from says nothing of that: it goes on from there, each coordinate by steps of
     its own, so that loops that can be closed are.
@@ -207,7 +205,7 @@ class _Broken:
     at: str
 
     def words(self, still_open: Callable[[], str]) -> str:
-        """What is wrong, in words; ``still_open`` names what iteration left open."""
+        """Message of a refusal; ``still_open`` names the loops that iteration did not close."""
         newton, at, k = self.graph.newton, self.at, self.rule.bound
         if k is None:
             assert newton is not None
@@ -261,7 +259,7 @@ class _Broken:
         return f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
 
     def _loop(self, bound: Bound) -> str:
-        """What is wrong with a loop, with three turns, or with what drives hold."""
+        """Message on a loop, on three turns, or on constraints of drives."""
         status, at, part = self.rule.status, self.at, bound.part
         closed = self.graph.data.closing(str(part))
         if status == Status.JUMPED:

@@ -21,21 +21,21 @@ from ..equations.status import Bound
 from ..equations.turns import REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far equations that are too many may miss, of the links' length, and a row, of the size of its
-terms.
+"""Largest residual of redundant equations, relative to the links' length, and of a row, relative to
+its terms.
 """
 
 OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
 _COUNTED = 1e-3
-"""Where iterated loops are closed by so many steps: what is zero where they are closed is as small
-as what is left of them.
+"""Limit for iterated loops that are closed by a fixed number of steps: zero is as small as their
+residual.
 """
 
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
 SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
-"""How far the laws of frictions may miss, of their forces."""
+"""Largest relative residual of friction laws."""
 
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""

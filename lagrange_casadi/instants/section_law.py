@@ -56,7 +56,7 @@ class SectionLaw(Brief):
 
     @cached_property
     def table(self) -> Table:
-        """Where its forces are told, and what each is made of."""
+        """Table of the forces, and of the terms of each."""
         return PLANE if PLANE.law[-1] in self.coefficients else SPACE
 
     def _parts(self, force: str) -> tuple[str, ...]:
@@ -89,8 +89,8 @@ class SectionLaw(Brief):
         return out
 
     def largest(self, force: str, basis: Basis) -> Array:
-        """Of n laws, whose members are (n, t), length and density (n, 1): a force, largest in size
-        over the instants, (n, xi).
+        """Largest size of a force over the instants, (n, xi), for n laws whose members are (n, t),
+        length and density (n, 1).
 
         It has its sign, the positive one where both are as large, and is NaN of a law that is not
         finite throughout.
@@ -139,8 +139,8 @@ class SectionLaw(Brief):
         )
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
-        """By how much every force changes with its coefficients, loads and stations, and the sizes
-        of all its terms added up.
+        """Change of every force with its coefficients, loads and load points, and the sum of the
+        sizes of all its terms.
 
         ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at
         at ratios ``xi`` (n,) and at every station, from both sides: (..., t, n + stations, sides).
@@ -296,8 +296,8 @@ class SectionLaw(Brief):
         )
 
     def reached(self, force: str) -> tuple[Array, Array]:
-        """Where along a link a force is smallest, largest, and largest in size as by
-        :meth:`extreme`, and what it is: (3, t).
+        """Places along a link at which a force is smallest, largest, and largest in size as by
+        :meth:`extreme`, and its values: (3, t).
         """
         blocks = [block._reached(force) for block in self._blocks(force)]
         return np.concatenate([place for place, _ in blocks], axis=1), np.concatenate(
@@ -416,7 +416,7 @@ class SectionLaw(Brief):
 
     @property
     def _thick(self) -> bool:
-        """Whether slices have rotary inertia."""
+        """True if slices have rotary inertia."""
         return any(
             couple in spread.terms for spread in self.spreads for couple in self.table.couples
         )
@@ -450,8 +450,9 @@ class SectionLaw(Brief):
     def _turning(
         self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array
     ) -> list[Array]:
-        """Where between two stations the force's derivative along the link is zero, or nearest to
-        it: of a bending moment, first where the shear rises through zero, then where it falls.
+        """Place between two load points at which the force's derivative along the link is zero, or
+        nearest to zero: for a bending moment, first where the shear rises through zero, then where
+        it falls.
         """
         terms, l = self.table.sections[force], self.length
         if len(terms.coefficients) == 1:
@@ -474,7 +475,7 @@ class SectionLaw(Brief):
     def _turns_of_size(
         self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array
     ) -> Turns:
-        """Where a force turns, or the square of a resultant: of a shear force where V .
+        """Extrema of a force, or of the square of a resultant: of a shear force, the zeros of V'.
 
         V' = 0, of a bending one where M . M' = 0.
 
@@ -510,8 +511,8 @@ class SectionLaw(Brief):
         )
 
     def _degree(self, parts: tuple[str, ...], *, bends: bool) -> int:
-        """Of what is zero where forces turn: shear forces are of one degree more than their slope,
-        bending moments of two.
+        """Degree of the polynomial that is zero at extrema: for shear forces one more than their
+        slope, for bending moments two.
         """
         if len(parts) == 1:
             return self._highest + bends

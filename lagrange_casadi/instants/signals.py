@@ -33,8 +33,8 @@ _BLOCK = 4096
 
 
 class Along(Protocol):
-    """What has several curves, or such as are told by a whole link: the columns it is made of, by
-    what these are.
+    """Quantity with several curves, or with those of a whole link: the columns it is made of, by
+    their keys.
     """
 
     @property
@@ -185,7 +185,7 @@ class Signals:
         return Samples(values, places, watched)
 
     def inputs(self, t: Array, z: Array) -> tuple[Any, ...]:
-        """What the graph's columns are made of at times."""
+        """Arguments of the graph's columns at times."""
         return t[None], *self.graph.motion(t[None], self.p), z, self.p
 
     def columns(self, t: Array, z: Array) -> Array:
@@ -195,7 +195,7 @@ class Signals:
         )
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
-        """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns
+        """Curves of each quantity, as ratios and values (curves, t), from the graph's columns
         (columns, t).
         """
         found = []

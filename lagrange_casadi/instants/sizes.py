@@ -24,7 +24,7 @@ def largest(values: Array, axis: int | None = None) -> Array:
 
 
 def growth_of_size(components: Sequence[Array], changes: Sequence[Array]) -> Array:
-    """By how much the size changes with the components; nothing of it cancels."""
+    """Change of the size with the components; nothing of it cancels."""
     before = size_of(components)
     after = size_of(value + change for value, change in zip(components, changes, strict=True))
     product = sum(

@@ -1,6 +1,4 @@
-"""What an evaluation gives: named arrays over time, section forces over time
-and xi/l, and peaks.
-"""
+"""Result of an evaluation: named arrays over time, section forces over time and xi/l, and peaks."""
 
 from __future__ import annotations
 
@@ -47,7 +45,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Provenance:
-    """How the numbers were made.
+    """Origin of the numbers.
 
     Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`.
     """
@@ -117,7 +115,7 @@ class Solution:
 
     @cached_property
     def table(self) -> Table:
-        """What its quantities mean: the table of planar mechanisms, or that of spatial ones."""
+        """Table of quantities: that of planar mechanisms, or that of spatial ones."""
         return table_of_described(self.description)
 
     @cached_property
@@ -144,7 +142,7 @@ class Solution:
 
     @property
     def certified(self) -> bool:
-        """Whether there are residuals, and none of them fails."""
+        """True if there are residuals, and none of them fails."""
         return any(name != "condition" for name in self.certificate) and not self.failed
 
     def __repr__(self) -> str:
@@ -241,12 +239,12 @@ class Solution:
         return found
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:
-        """How long a link that has a beam lasts: see :func:`.strength.life`."""
+        """Fatigue life of a link that has a beam: see :func:`.strength.life`."""
         found: Life = method("Solution.life")(self, link, criterion=criterion)
         return found
 
     def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
-        """How a link that has a beam bends: see :func:`.elastic.deflection.deflection`."""
+        """Deflection of a link that has a beam: see :func:`.elastic.deflection.deflection`."""
         found: Deflection = method("Solution.deflection")(self, link, against)
         return found
 
@@ -257,8 +255,8 @@ class Solution:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is worth a word though all is right: points beyond the end of a link, joints that
-        rub at rest, links that swing.
+        """Remarks on a valid result: points beyond the end of a link, joints with friction at rest,
+        links that vibrate.
         """
         known = {
             output: values
@@ -275,8 +273,8 @@ class Solution:
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
-        """At which instants (t,) a joint that rubs is at rest: what depends on its friction is NaN
-        there.
+        """Instants (t,) at which a joint with friction is at rest: what depends on its friction is
+        NaN there.
         """
         found = np.zeros(self.t.size, dtype=bool)
         if "losses" in self.description or any(
@@ -288,7 +286,7 @@ class Solution:
         return found
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
-        """The same at some of the instants."""
+        """Solution at some of the instants."""
         marked = (
             isinstance(instants, np.ndarray)
             and instants.dtype == bool
@@ -316,7 +314,7 @@ class Solution:
 
     @property
     def by_equilibrium(self) -> Solution:
-        """The same without what elasticity told: it is open, and NaN."""
+        """Solution without the results from elasticity: these are indeterminate, and NaN."""
         told = self.elasticity.told
         nothing = {output: np.full_like(self.t, np.nan) for output in told}
         return replace(
@@ -327,7 +325,7 @@ class Solution:
         )
 
     def determined(self, name: str | Output) -> bool:
-        """Whether equilibrium determines a quantity, at all instants."""
+        """Return whether equilibrium determines a quantity, at all instants."""
         output = self._output(name)
         if output.group == "section":
             return not made_of(self.left_open, output.part, output.member, self.table)
@@ -424,8 +422,8 @@ class Solution:
         return found
 
     def view(self, height: int = 760) -> View:
-        """The same page for a notebook, which shows it in a frame of a height [points] where it is
-        the last value of a cell.
+        """Report page for a notebook, in a frame of a height [points] if it is the last value of a
+        cell.
 
         Raises :class:`.DeclarationError` where ``motion`` was not wanted.
         """
@@ -433,7 +431,7 @@ class Solution:
         return found
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a drawing and the peaks."""
+        """Show a drawing and the peaks in a notebook."""
         found: str = method("Solution._repr_html_")(self)
         return found
 
@@ -473,7 +471,7 @@ class Solution:
         raise UnknownNameError("quantity", str(name), self.names())
 
     def _over_time(self, output: Output) -> bool:
-        """Whether a quantity is a series that the solution has, or the size of such."""
+        """Return whether a quantity is a series of the solution, or the size of series."""
         return all(component in self.outputs for component in self.made_of(output))
 
     def _of_section(self, output: Output) -> Section:

@@ -1,6 +1,4 @@
-"""What a quantity is over the whole time: its mean, its root mean square, and where it is smallest
-and largest.
-"""
+"""Statistics of a quantity over time: its mean, its root mean square, its minimum and maximum."""
 
 from __future__ import annotations
 
@@ -46,7 +44,7 @@ class Statistics:
 
     @classmethod
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
-        """Those of values (t,) at increasing times."""
+        """Make them from values (t,) at increasing times."""
         counts = counted(values)
         weights, there = shares(t, counts), np.where(counts, values, 0.0)
         chosen = (*_ends(values, values), largest(values))
@@ -55,8 +53,8 @@ class Statistics:
 
     @classmethod
     def along(cls, name: str, unit: str, t: Array, places: Array, values: Array) -> Statistics:
-        """Those of a section force, from where along the link it is smallest, largest, and largest
-        in size, and what it is there.
+        """Make them for a section force, from the places along the link at which it is smallest,
+        largest, and largest in size, and its values there.
 
         Places and values are (3, t).
         """
@@ -69,15 +67,15 @@ class Statistics:
 
 
 def _ends(low: Array, high: Array) -> tuple[Any, Any]:
-    """Where values are smallest and largest; what is no number is neither."""
+    """Places of the smallest and largest values; NaN is neither."""
     return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(
         np.where(np.isnan(high), -np.inf, high)
     )
 
 
 def counted(values: Array) -> npt.NDArray[np.bool_]:
-    """At which instants values (..., t) count: not where friction at rest leaves one of them open,
-    which is then no number.
+    """Instants at which values (..., t) count: not those at which friction at rest leaves one of
+    them indeterminate, and NaN.
     """
     return np.asarray(~np.isnan(values).any(axis=tuple(range(values.ndim - 1))))
 

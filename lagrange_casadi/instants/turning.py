@@ -1,4 +1,4 @@
-"""Where along a link a force turns: the zeros of its slope between two stations, or what is nearest
+"""Extrema of a force along a link: the zeros of its slope between two load points, or the nearest
 to them.
 
 All of it is done at many instants at once.
@@ -20,13 +20,13 @@ from ..summits.polynomials import interpolation
 _HALVINGS = 60
 _ROUNDING = 2 * float(np.finfo(float).eps)
 _CLOSE = 512 * float(np.finfo(float).eps)
-"""Where something turns: what a place is off changes a summit by the square of that."""
+"""Tolerance of the place of an extremum: its value changes with the square of that."""
 
 
 def zeros_of_shear(
     shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array
 ) -> list[Array]:
-    """Where a shear force rises through zero, then where it falls.
+    """Place at which a shear force rises through zero, then that at which it falls.
 
     It is monotonic on either side of its turning point ``middle``, whatever the density, so it has
     one zero there or none. Where it has none, that end is taken at which it is nearer to zero.
@@ -74,7 +74,8 @@ def _between(function: Callable[[Array], Array], places: Array, ends: Array) -> 
 
 
 def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: Any) -> list[Array]:
-    """The same of a link of even mass without stations: f0 + b v + a v^2 = 0 with v = 1 - u.
+    """Zeros of the shear force of a link of even mass without load points: f0 + b v + a v^2 = 0
+    with v = 1 - u.
 
     The root that would cancel comes from the other one.
     """
@@ -85,8 +86,7 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
 
 
 class Turns(NamedTuple):
-    """Where something may turn, (t, parts, n): its ``places``, and whether it has a ``summit``
-    there.
+    """Candidates of extrema, (t, parts, n): their ``places``, and whether each is a ``summit``.
 
     All zeros of its slope are among the places. The last two are where it rests in a part that has
     no summit: the larger of them.
@@ -125,7 +125,7 @@ def turns_between(
     *,
     signed: bool = False,
 ) -> Turns:
-    """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a
+    """Extrema between ``low`` and ``high`` of a function whose ``slope`` is a polynomial of a
     ``degree`` between two ``breaks``.
 
     ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any

@@ -1,5 +1,5 @@
-"""What a solution says of one part: the motion and reaction of a joint, the pose of a body, the
-forces inside a link.
+"""Results of one part: the motion and reaction of a joint, the pose of a body, the forces inside a
+link.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Whether a result is right, and to how many digits."""
+"""Verification of results, and the number of their valid digits."""

@@ -1,4 +1,4 @@
-"""How far a result may be from what its formulas mean: an estimate of the error of every output.
+"""Error estimates: the distance of a result from its formulas' exact value, for every output.
 
 The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with
 a random error as large as its rounding, several times over (Monte Carlo arithmetic: D. S. Parker,
@@ -52,8 +52,7 @@ ALONG = np.linspace(0.0, 1.0, 5)
 def estimate(
     graph: Program, evaluated: Evaluated, solution: Solution, p: Array
 ) -> dict[Output, float]:
-    """How far each quantity of a solution may be off, in its unit: the largest error over the
-    instants.
+    """Largest error over the instants of each quantity of a solution, in its unit.
 
     ``evaluated`` has the columns that the solution was made of. Section forces are looked at from
     base to tip, either side of a station by itself, and so is either side of a jump. Empty where
@@ -143,8 +142,8 @@ def explained(
 
 
 def _of_cycle(graph: Program, cycle: CycleTable, solution: Solution) -> dict[Output, float]:
-    """What the splines of a table were found to miss, and the rounding of their sums; of a section
-    force, all parts' together.
+    """Measured interpolation error of a table's splines, and the rounding of their sums; for a
+    section force, the sum over its parts.
     """
     # A table of singles was itself looked at for what it rounds, over its period; angles go on
     # counting.

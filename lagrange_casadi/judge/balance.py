@@ -55,7 +55,7 @@ class Action:
 
 @dataclass(eq=False)
 class _Sums:
-    """What acts, added up: forces on each body and their moments about its centre, and the power of
+    """Sums of actions: forces on each body and their moments about its centre, and the power of
     all.
 
     Beside it sizes, none against another: ``largest`` of one action, ``pushes`` and ``twists`` of
@@ -77,7 +77,7 @@ class _Sums:
 
 
 def forces_reported(placed: Placed) -> bool:
-    """Whether every force that acts on the bodies is reported, and the equations along which
+    """Return whether every force that acts on the bodies is reported, and the equations along which
     multipliers act are known.
     """
     declared, outputs = placed.declared, placed.reported.outputs
@@ -170,8 +170,8 @@ def _acting(placed: Placed) -> Iterator[Action]:
 
 
 def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
-    """What the multiplier of an equation does: along whatever stands in it, or where the parts of a
-    transmission touch.
+    """Action of the multiplier of an equation: along its variables, or at the contact of a
+    transmission's parts.
     """
     declared, reported = placed.declared, placed.reported
     multiplier = reported.outputs[Output("multiplier", equation.name)]
@@ -209,7 +209,7 @@ def _held(placed: Placed, equation: Equation) -> Iterator[Action]:
 
 
 def _sums(placed: Placed, acting: Sequence[Action], centres: Mapping[str, Motion]) -> _Sums:
-    """What acts on the bodies, added up."""
+    """Sums of the actions on the bodies."""
     found, size = _Sums(), placed.declared.size
     for act in acting:
         push, twist = act.sizes
@@ -240,8 +240,8 @@ def _weight(placed: Placed, body: str, reach: float) -> Scalar:
 
 
 def _unlike(placed: Placed) -> Scalar:
-    """By how much reactions on the joints' own axes are other than those in ground axes: forces,
-    and moments over the size.
+    """Difference between reactions on the joints' own axes and those in ground axes: forces, and
+    moments over the size.
     """
     reported, worst = placed.reported, 0.0
     for name, joint in placed.declared.joints.items():

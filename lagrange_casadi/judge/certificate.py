@@ -37,7 +37,7 @@ _BLOCK = 1 << 14
 _TURNED = 100.0
 
 _EDGE = 1e-9
-"""Of a link's length: what is as near to its base is at the base."""
+"""Distance from a link's base, relative to its length, that counts as at the base."""
 
 
 def certify(
@@ -89,7 +89,7 @@ def certify(
 
 
 def tolerance(solution: Solution) -> float:
-    """What residuals are held to."""
+    """Limit of residuals."""
     exact = solution.provenance.precision == "double" and not any(
         word in solution.provenance.rung for word in ("--newton", "--table")
     )
@@ -97,7 +97,7 @@ def tolerance(solution: Solution) -> float:
 
 
 def failure(solution: Solution) -> str:
-    """Which residuals of a solution fail, in words."""
+    """Describe the residuals of a solution that fail."""
     worse = ", ".join(f"{name} {value:.2g}" for name, value in solution.failed.items())
     return f"the certificate fails: {worse}, and no more than {solution.tolerance:.2g} is rounding"
 

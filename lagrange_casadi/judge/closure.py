@@ -36,7 +36,9 @@ def closure(placed: Placed, digits: Digits) -> list[Gaps]:
 
 
 def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far a joint's child is from where, and from how, the joint's reported motion puts it."""
+    """Residual of a joint: the child's position and direction against the joint's reported
+    motion.
+    """
     for name, joint in placed.declared.joints.items():
         (near, far), motion = placed.ends(name), placed.relatives[name]
         there = near.at + near.axes.turn(Vector(*joint.parent.at) + motion.slide[0])
@@ -46,7 +48,9 @@ def _of_joints(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 
 
 def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Gaps]:
-    """What joints and motions leave of velocities, angular velocities, and the changes of both."""
+    """Residuals of velocities, angular velocities, and the changes of both, by joints and
+    motions.
+    """
     size = placed.declared.size
     _, fastest, changes = placed.rates
     gaps = [gaps_of(placed, name, placed.pins[name]) for name in placed.declared.joints]
@@ -60,8 +64,8 @@ def _of_rates(placed: Placed, motions: Sequence[tuple[bool, Array]]) -> list[Gap
 
 
 def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
-    """How far what is driven is from its law, with its rate and acceleration, (3, t); and whether
-    it is an angle.
+    """Residual of driven coordinates against their laws, with rate and acceleration, (3, t); and
+    whether it is an angle.
 
     Where a law jumps, rounding decides on which side of that an instant is.
     """
@@ -90,8 +94,8 @@ def _of_motions(placed: Placed, digits: Digits) -> Iterator[tuple[bool, Array]]:
 
 
 def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far reported angles are from the phases that are known more closely; one of many turns
-    has so many digits only.
+    """Residual of reported angles against phases that are known more closely; an angle of many
+    turns has fewer digits.
     """
     for output, phase in placed.reported.phases.items():
         if output.part not in placed.reported.unmeasured:
@@ -101,7 +105,7 @@ def _of_angles(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 
 
 def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far bodies are from their reported poses, whose axes must be at right angles.
+    """Residual of bodies against their reported poses, whose axes must be at right angles.
 
     The y axis of a bar must be in the plane of the bar and the direction that was declared for it.
     """
@@ -133,9 +137,7 @@ def _of_poses(placed: Placed, digits: Digits) -> Iterator[Scalar]:
 
 
 def _of_equations(placed: Placed, digits: Digits) -> Iterator[Scalar]:
-    """How far the users' equations are from zero, over their slopes; and that transmissions do no
-    work.
-    """
+    """Residuals of users' equations, over their slopes; and of the work of transmissions."""
     for equation in placed.declared.equations:
         yield _missed(placed, equation) * placed.declared.size
         for touch in equation.touches:

@@ -1,4 +1,4 @@
-"""What the digits of a solution leave open, beside which its residuals are large or small."""
+"""Uncertainty of a solution's residuals by its finite number of digits."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ where less was asked for.
 
 
 def blur(solution: Solution) -> float:
-    """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
+    """Uncertainty of a phase by the reported angles: one rounding of the largest of them [rad]."""
     angles = [
         Output("motion", name)
         for name, kind in coordinates_of(solution.description).items()
@@ -38,7 +38,7 @@ def blur(solution: Solution) -> float:
 
 @dataclass(frozen=True)
 class Digits:
-    """What a precision leaves open.
+    """Uncertainty by a precision.
 
     ``rounding`` is the largest relative error of one rounding, ``least`` the force beside which
     what underflows is as small as a rounding, and ``tolerance`` the least residual that fails.
@@ -50,8 +50,8 @@ class Digits:
 
     @property
     def doubted(self) -> float:
-        """What a residual may be by the roundings of a law alone; what is more asks for a closer
-        look.
+        """Limit of a residual by the roundings of a law alone; a larger one is examined more
+        closely.
         """
         return 256.0 * self.rounding
 

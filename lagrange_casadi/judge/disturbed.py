@@ -38,12 +38,12 @@ from .roundings import left
 
 TRIALS = 8
 MAGNIFIED = 8.0
-"""By how much errors are put in too large, so that the trials' own rounding does not hide them:
-what comes of them is divided.
+"""Magnification of the errors, so that the trials' own rounding does not hide them: their effect is
+divided by it.
 """
 
 _BESIDE = 4.0
-"""By how many of the magnified errors a result is off that may be on the other side of a jump."""
+"""Distance, in magnified errors, at which a result may be on the other side of a jump."""
 
 _LEAST = 0.01
 """The least part of half a unit in the last place that a rounding is taken for, of what is not
@@ -51,7 +51,7 @@ exact throughout.
 """
 
 _JUMP = 1e3
-"""By how many errors what a drive hands on jumps."""
+"""Number of errors by which an output of a drive jumps."""
 
 _STEPS, _CLOSED = 20, 1e-9
 _AT_ONCE = 4_000_000
@@ -77,7 +77,7 @@ class Instants:
 
     @property
     def followable(self) -> bool:
-        """Whether what is done there can be followed."""
+        """True if the operations can be followed."""
         return all(
             followable(function)
             for function in (
@@ -107,13 +107,13 @@ class Instants:
 
     @property
     def smooth(self) -> bool:
-        """Whether the drive is followed like the rest."""
+        """True if the drive is followed like the rest."""
         return not self.stages.compensated and followable(self.stages.drive)
 
     @cached_property
     def handed(self) -> list[Array]:
-        """What the drive hands on, in doubles: counted numbers, rates, and accelerations, each
-        (..., n).
+        """Outputs of the drive, in doubles: counted numbers, rates, and accelerations, each (...,
+        n).
         """
         return self._drive(self.t[None], self.p[:, None])
 
@@ -162,8 +162,8 @@ class _Course:
 
 
 def effects(instants: Instants, out: Array, angles: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
-    """What errors do to the columns, a row a trial, (columns, trials, n), and the columns,
-    (columns, n), where loops are closed.
+    """Effects of errors on the columns, a row a trial, (columns, trials, n), and the columns,
+    (columns, n), with closed loops.
 
     The last row is what was done to ``out``, a result, whose ``angles`` among its columns are known
     up to whole turns. It tells on which side of a jump to look.
@@ -187,8 +187,8 @@ def effects(instants: Instants, out: Array, angles: npt.NDArray[np.bool_]) -> tu
 
 
 def openness(instants: Instants) -> Array:
-    """How far iterated loops are open, (n,), in roundings: their next correction, angles in rad,
-    slides over all links' length.
+    """Residual of iterated loops, (n,), in roundings: their next correction, angles in rad, slides
+    over all links' length.
     """
     return _closed(instants, 1)[1] / instants.unit
 
@@ -368,8 +368,8 @@ def _operation(code: int, values: tuple[Any, ...]) -> Any:
 
 
 def _decision(code: int, operands: tuple[Any, ...], result: Any) -> Any:
-    """What a deciding operation decides: a truth, a sign, a whole number; or a number on the side
-    of a jump on which it is.
+    """Decision of an operation: a truth, a sign, a whole number; or a number on the side of a jump
+    on which it is.
     """
     return (
         operands[1]
@@ -394,7 +394,7 @@ def _following(code: int, values: tuple[Any, ...], decision: Any) -> Any:
 
 
 def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
-    """Whether a decision is not the one that was taken."""
+    """Return whether a decision differs from the one that was taken."""
     own = step.decision
     if step.code == _HANDED:
         off = np.abs(decision - own)
@@ -412,8 +412,7 @@ def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
 
 
 def _sizes(course: _Course) -> list[Any]:
-    """By how much the rounding of each operation may be off, (n,); None where it rounds nothing at
-    any instant.
+    """Largest rounding of each operation, (n,); None if it rounds nothing at any instant.
 
     An error may be half a unit in the last place. Where it happened to be next to nothing, it may
     be more at instants that are not looked at, but not where one operation at one instant is all

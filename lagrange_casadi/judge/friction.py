@@ -17,19 +17,19 @@ from .reported import Reported
 from .vectors import Axes, Scalar, Vector
 
 _SLOW = 1e-9
-"""Of a joint's fastest rate, or of one that its accelerations lead to: below, either sign may be
-that of its rate.
+"""Fraction of a joint's fastest rate, or of one that its accelerations lead to, below which the
+rate may have either sign.
 """
 
 _BESIDE = {"slide": "turn", "turn": "slide"}
 
 Pressing = Callable[[Array], Scalar]
-"""What mu is multiplied by, for signs of the rate."""
+"""Factor of mu, for signs of the rate."""
 
 
 def friction_gaps(placed: Placed, digits: Digits) -> Array | None:
-    """How far frictions are from what their laws say, and the power that they take from what they
-    do (t,).
+    """Residuals of frictions against their laws, and between the power they take and that of their
+    forces (t,).
 
     None where there is no friction, or what it takes is not among the outputs. What is open at rest
     is no gap.
@@ -41,8 +41,8 @@ def friction_gaps(placed: Placed, digits: Digits) -> Array | None:
 
 
 def _of_losses(placed: Placed, digits: Digits) -> Iterator[Array]:
-    """How far the power that each friction takes is from its force times its rate, over the largest
-    of that.
+    """Residual of the power of each friction against its force times its rate, relative to the
+    largest.
     """
     outputs, (turned, fastest, _) = placed.reported.outputs, placed.rates
     for name, rate, turns in _rubbing(placed):
@@ -76,8 +76,8 @@ def _largest(values: Array) -> float:
 
 
 def _of_laws(placed: Placed) -> Array | None:
-    """How far frictions of joints are from what their laws say, over what they would be under the
-    largest reaction of the cycle.
+    """Residuals of joints' frictions against their laws, relative to those under the largest
+    reaction of the cycle.
     """
     declared, outputs = placed.declared, placed.reported.outputs
     worst: Array | None = None
@@ -146,7 +146,7 @@ def _of_laws(placed: Placed) -> Array | None:
 
 
 def _aside(reported: Reported, name: str, value: Array, spin: Vector) -> Scalar:
-    """How far the couple of a spherical joint's friction is from one of that size about the axis of
+    """Residual of a spherical joint's friction couple against one of that size about the axis of
     turning.
     """
     if not all(Output("load", name, member) in reported.outputs for member in ("mx", "my", "mz")):
@@ -183,7 +183,7 @@ def _most(outputs: Mapping[Output, Array], numbers: Mapping[str, float]) -> floa
 
 
 def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], turns: bool) -> Pressing:
-    """What presses in a joint, from its reaction on its own axes, the joint's axis first."""
+    """Normal force in a joint, from its reaction on its own axes, the joint's axis first."""
     joint, reported = placed.declared.joints[name], placed.reported
     own = placed.ends(name)[0].axes.carry(Axes.of(joint.triad))
     force, moment = (own.resolve(reported.force("reaction", name, letter)) for letter in "fm")
@@ -204,7 +204,7 @@ def _pressing(placed: Placed, name: str, numbers: Mapping[str, float], turns: bo
 
 
 def _thread(joint: JointNumbers, numbers: Mapping[str, float], force: Array) -> Pressing:
-    """What presses in a screw, by the angles of the thread and of friction.
+    """Normal force in a screw, by the angles of the thread and of friction.
 
     The couple of a force is radius tan(angle + phi) of it, and that without friction radius
     tan(angle).

@@ -25,11 +25,11 @@ Acts = tuple[Vector, Vector]
 """A force and a couple on the first of a load's places, in ground axes."""
 
 _TRIALS, _MOST = 8, 1e9
-"""How often turns are sought, and how many there may be."""
+"""Number of trials for turns, and the largest number of turns."""
 
 
 def off_laws(placed: Placed, digits: Digits, largest: float) -> Array:
-    """How far loads are from what their laws say [N] (t,), couples by the size; ``largest`` is the
+    """Residuals of loads against their laws [N] (t,), couples over the size; ``largest`` is the
     largest force of the cycle.
     """
     worst = np.zeros_like(placed.reported.t)
@@ -78,7 +78,7 @@ def _apart(placed: Placed, one: Acts, other: Acts) -> Array:
 
 
 def _acting(placed: Placed, law: LoadLaw, load: LoadNumbers, numbers: Array) -> Acts:
-    """What a law says, of its numbers (numbers, t)."""
+    """Load by a law of numbers (numbers, t)."""
     kind, turning = law.graph.kind, law.graph.turning
     if kind == "spring":
         stiffness, length, damping = numbers
@@ -94,7 +94,7 @@ def _acting(placed: Placed, law: LoadLaw, load: LoadNumbers, numbers: Array) -> 
 
 
 def _stretched(placed: Placed, load: LoadNumbers) -> tuple[Vector, Vector]:
-    """From the first end of a spring to the second, and its rate."""
+    """Vector from the first end of a spring to the second, and its rate."""
     first, second = (placed.bodies[point.body].point(Vector(*point.at)) for point in load.points)
     return second[0] - first[0], second[1] - first[1]
 
@@ -158,8 +158,8 @@ def _open(
     acts: Acts,
     digits: Digits,
 ) -> Array:
-    """How far a load may be from its law, which ``acts`` so, for the rounding of what it sees: the
-    change with each, added up.
+    """Uncertainty of a load that ``acts`` so by the rounding of its arguments: the sum of its
+    changes with each.
     """
     declared, off = placed.declared, NEARBY * digits.rounding
     t, (turned, fastest, _) = placed.reported.t, placed.rates

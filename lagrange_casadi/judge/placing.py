@@ -1,5 +1,4 @@
-"""Where the bodies of a solution are and how they move, in plain vectors, from the motions that it
-reports.
+"""Position and motion of the bodies of a solution, in plain vectors, from the reported motions.
 
 It shares nothing with the graphs that made the solution. A joint's reported motion places what
 hangs on it, by Rodrigues' formula. What no joint of a known motion holds, as a bar, is taken where
@@ -83,13 +82,13 @@ class Moving:
 
 
 AT_REST = Moving(NIL, NIL, NIL, GROUND, NIL, NIL)
-"""What lies along the ground's axes, at its origin."""
+"""Motion of what lies along the ground's axes, at its origin."""
 
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """How a joint moves its child against its parent, in the parent's axes: its point by a
-    ``slide``, and how it is ``turned``.
+    """Motion of a joint's child against its parent, in the parent's axes: its point by a ``slide``,
+    and its rotation ``turned``.
 
     ``about`` are the directions of its turns at the moment, by coordinate. ``whole`` says whether
     all of its turning is known.
@@ -120,13 +119,13 @@ class Placed:
         return self.bodies[numbers.parent.body], self.bodies[numbers.child.body]
 
     def pin(self, joint: str) -> Motion:
-        """How the point of a joint on its child moves."""
+        """Motion of a joint's point on its child."""
         child = self.declared.joints[joint].child
         return self.bodies[child.body].point(_vector(child.at))
 
     @cached_property
     def pins(self) -> Mapping[str, Motion]:
-        """How the points of all joints on their children move."""
+        """Motions of all joints' points on their children."""
         return {name: self.pin(name) for name in self.declared.joints}
 
     @cached_property
@@ -168,7 +167,7 @@ class Placed:
         return NIL, effort * _reciprocal(turns, [*about].index(axis.coordinate))
 
     def turns(self, entry: Entry) -> bool:
-        """Whether an entry of an equation is an angle."""
+        """Return whether an entry of an equation is an angle."""
         return entry.kind == "direction" or (
             entry.kind == "coordinate" and self.declared.kinds[entry.part] == "angle"
         )
@@ -218,7 +217,7 @@ def place(declared: Declared, reported: Reported) -> Placed:
 
 
 def _relative(declared: Declared, reported: Reported, joint: JointNumbers) -> Relative:
-    """How a joint moves, by its reported motions; of what is not reported, nothing.
+    """Motion of a joint by its reported motions; motions that are not reported are zero.
 
     A screw slides by its turns too.
     """

@@ -1,5 +1,5 @@
-"""What the rounding of an operation left of its result, to the last bit, from operands and result:
-arrays of doubles or singles.
+"""Rounding error of an operation, to the last bit, from operands and result: arrays of doubles or
+singles.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ _LEAST = 1e-280
 
 
 def left(code: int, result: Array, *operands: Array) -> Array:
-    """What the result of an operation, one of CasADi's ``OP_`` codes, lacks; zero where it is
-    exact, NaN where unknown.
+    """Rounding error of an operation, one of CasADi's ``OP_`` codes: exact value less result; zero
+    if it is exact, NaN if unknown.
 
     Of a sum by Knuth's error-free sum; of the others by the product that they undo, without error
     (Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18,

@@ -1,5 +1,5 @@
-"""What transmissions do to bodies, from reported multipliers, and that it does
-no work of its own.
+"""Action of transmissions on bodies, from reported multipliers, and the check that they do no
+work.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .reported import Reported
 from .vectors import Scalar, Vector, most
 
 _REST = 1e-12
-"""Of the fastest motion that is given: a rate below is that of rest, but for rounding."""
+"""Fraction of the fastest given motion below which a rate is that of rest."""
 
 
 def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
@@ -37,7 +37,8 @@ def sense(touch: Touch, declared: Declared, reported: Reported) -> Scalar:
 def actions(
     touch: Touch, carrier: Moving, multiplier: Array, sense: Scalar
 ) -> Iterator[tuple[str, Vector, Vector, Vector]]:
-    """On each of the two bodies: its name, where, the force and the couple, in ground axes.
+    """Action on each of the two bodies: its name, the place, the force and the couple, in ground
+    axes.
 
     ``sense`` is the sign of the first one's rate, or zero without friction.
     """

@@ -20,7 +20,7 @@ from .reported import Reported
 from .vectors import NIL, Scalar, Vector
 
 _LEAST = 1e-12
-"""Of the largest: what is smaller decides nothing."""
+"""Fraction of the largest value below which a value decides nothing."""
 
 
 def place_all(placed: Placed) -> Placed:
@@ -31,8 +31,8 @@ def place_all(placed: Placed) -> Placed:
 
 
 def gaps_of(placed: Placed, joint: str, pin: Motion) -> tuple[Vector, Vector, Vector, Vector]:
-    """What a joint leaves of velocities and angular velocities, and of both their changes: what
-    moves otherwise than is reported.
+    """Residuals of a joint in velocities and angular velocities, and in both their changes, against
+    the reported motion.
 
     All are in ground axes; those of turning are nil where it is not known how the joint turns.
     ``pin`` is how its point moves.
@@ -145,7 +145,9 @@ class _Unplaced:
         return found
 
     def _gaps(self, trial: Mapping[str, Moving], order: Literal[1, 2]) -> Array:
-        """What joints and equations leave of velocities (1), or of accelerations (2), (gaps, t)."""
+        """Residuals of joints and equations in velocities (1), or in accelerations (2), (gaps,
+        t).
+        """
         placed = replace(self.placed, bodies={**self.placed.bodies, **trial})
         found: list[Scalar] = []
         for name, joint in placed.declared.joints.items():

@@ -1,5 +1,5 @@
-"""What an exported program takes and gives: its names, units, signs and ranges, which every
-consumer is written from.
+"""Interface of an exported program: its names, units, signs and ranges, from which every consumer
+is written.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from ..instants.solution import Solution
 from .naming import constants, members, prefix
 
 REST = "rest:"
-"""What the full name of a rest begins with."""
+"""First part of the full name of a rest."""
 
 CORNERS = "Corners of motions, constraints and lifts were looked for with the defaults alone."
-"""What whoever changes parameters must know."""
+"""Note for whoever changes parameters."""
 
 _DIGITS = 3
 FAINT = 1e-9
-"""Of a kind's largest value: what is smaller is written as zero, for its digits are rounding."""
+"""Relative size below which a value is written as zero, for its digits are rounding."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Member:
 
     @property
     def path(self) -> str:
-        """Where a file of results has it."""
+        """Path in a file of results."""
         return self.source.replace(":", "/")
 
 
@@ -106,7 +106,7 @@ class Contract:
 
     @property
     def rests(self) -> bool:
-        """Whether coordinates come in two numbers."""
+        """True if coordinates come in two numbers."""
         return self.precision == "single"
 
     @property
@@ -202,7 +202,7 @@ def contract(
 
 @symbolic
 def _timed(graph: Program) -> bool:
-    """Whether anything but the motion depends on the time."""
+    """Return whether anything but the motion depends on the time."""
     functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]
     called = ((function.sx_in(), function, place) for function, place in functions)
     return any(
@@ -315,8 +315,8 @@ def _brief(meaning: str) -> str:
 
 
 def _range(solution: Solution, output: Output, largest: float) -> str:
-    """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the
-    largest of its unit.
+    """Range of a quantity over the cycle of the scene, in a few digits; ``largest`` is the largest
+    of its unit.
     """
     values = solution.outputs[output]
     faint = max(FAINT * largest, 2.0 * solution.errors.get(str(output), 0.0))

@@ -1,5 +1,5 @@
-"""What an exported program must compute: inputs and outputs at instants of the scene's motion, and
-how far off they may be.
+"""Golden vectors of an exported program: inputs and outputs at instants of the scene's motion, with
+tolerances.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ def golden(
 
 
 def _errors(graph: Program, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
-    """How far outputs and section forces may be off in a precision, by their names: as much further
-    as its roundings are larger.
+    """Errors of outputs and section forces in a precision, by their names: larger in proportion to
+    its roundings.
 
     What is a product of roundings grows with their square; so the graph is followed in that
     precision too.
@@ -128,7 +128,7 @@ def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, s
 
 
 def _saved(member: Member, solution: Solution, exact: Solution) -> float:
-    """What a rung's steps or table miss of a quantity."""
+    """Error of a quantity by a rung's steps or table."""
     gaps = solution.series[member.source] - exact.series[member.source]
     gaps -= math.tau * np.round(gaps / math.tau) if member.wrapped else 0.0
     return float(np.abs(gaps).max())

@@ -88,7 +88,7 @@ _ZERO = (
 
 
 def _begin(source: Source) -> str:
-    """What the header's example does before it asks."""
+    """First lines of the header's example."""
     c, start = source.contract, source.program.graph.data.span[0]
     if source.iterated:
         return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"

@@ -319,8 +319,8 @@ _FILES = frozenset(
         "lpt9",
     ]
 )
-"""What CMake, linkers, the C library, Windows or the folder itself call a target, a library, a
-header, a device or a file.
+"""Names that CMake, linkers, the C library, Windows or the folder itself give to a target, a
+library, a header, a device or a file.
 """
 
 _CMAKE = frozenset(
@@ -421,13 +421,13 @@ def _macros() -> frozenset[str]:
 
 
 def reserved(word: str) -> bool:
-    """Whether a name is taken in C, C++ or the headers of their libraries."""
+    """Return whether a name is taken in C, C++ or the headers of their libraries."""
     return word in _KEYWORDS or word in _macros()
 
 
 def prefix(name: str) -> str:
-    """What all files, symbols and targets of a mechanism begin with: its name, with underscores for
-    what C does not allow.
+    """First part of the names of all files, symbols and targets of a mechanism: its name, with
+    underscores for what C does not allow.
     """
     word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "mechanism"
     word = word if word[0].isalpha() else f"mechanism_{word}"

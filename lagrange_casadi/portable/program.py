@@ -29,7 +29,7 @@ from ..instants.tabulate import still
 
 @dataclass(frozen=True, eq=False)
 class ExportedProgram:
-    """What is emitted.
+    """Source of an exported program.
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all
     vectors. ``cycle`` is a table to be read instead of an instant, and ``still`` are stations that
@@ -54,7 +54,7 @@ class ExportedProgram:
 
     @property
     def rule(self) -> dict[str, float]:
-        """When iterated loops are done, and lost."""
+        """Limits of the iteration of loops."""
         return newton_rule(self.precision, self.newton)
 
 

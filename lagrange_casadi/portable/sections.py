@@ -1,5 +1,5 @@
-"""What an exported program says of the forces inside links: the functions that give them, and the
-members of their struct.
+"""Section forces in an exported program: the functions that give them, and the members of their
+struct.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ THICK = """
 
 
 def law_in_words(c: Contract) -> str:
-    """What the members of a section law mean; nothing where there is none."""
+    """Meaning of the members of a section law; empty if there is none."""
     if not c.links:
         return ""
     law = LAW if c.table is PLANE else LAW_IN_SPACE
@@ -81,7 +81,7 @@ def functions(c: Contract, program: ExportedProgram) -> str:
 
 
 def _acts(c: Contract, members: tuple[str, ...]) -> bool:
-    """Whether something along some link has one of these members."""
+    """Return whether a distributed load of some link has one of these members."""
     outputs = (Output.of(m.source) for m in c.outputs)
     return any(output.group == "spread" and output.member in members for output in outputs)
 
@@ -101,7 +101,7 @@ def about(table: Table, force: str) -> str:
 
 
 def comparisons(table: Table) -> str:
-    """Of the self-test: what compares each force."""
+    """Comparisons of each force in the self-test."""
     many = len(table.forces)
     places = [f"{many}*i" if k == 0 else f"{many}*i + {k}" for k in range(many)]
     return "\n".join(

@@ -23,12 +23,12 @@ from .contract import Contract, Setting
 from .text import comment, indented, template
 
 FUNCTION = "slopes_of"
-"""What CasADi's function is called in C."""
+"""Name of CasADi's function in C."""
 
 _ROUNDING, _FAINT = 1e-9, 1e-11
-"""How far a derivative may be off, of its largest over the cycle, and of what is large of its unit:
-the derivatives by the same parameter, and the outputs over it. Of the latter are the terms of a
-derivative that is nothing."""
+"""Relative error of a derivative, of its largest value over the cycle, and of the largest
+derivative of its unit by the same parameter.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +48,8 @@ class ExportedSlopes:
 def exported_slopes(
     graph: Program, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array
 ) -> ExportedSlopes:
-    """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among
-    those of the cycle ``t``.
+    """Derivatives of a graph by parameters of these names; the self-test's instants are ``chosen``
+    among those of the cycle ``t``.
     """
     rows = [Output.of(member.source) for member in contract.outputs]
     numbers = [list(graph.data.parameters).index(name) for name in by]
@@ -131,7 +131,7 @@ def _given(c: Contract) -> Iterator[str]:
 
 
 def selftest_numbers(slopes: ExportedSlopes, row: Any) -> str:
-    """What the self-test expects; ``row`` writes numbers."""
+    """Expected values of the self-test; ``row`` writes numbers."""
     rows = ",\n".join(f"  {{{row(x.ravel())}}}" for x in slopes.expected)
     many = slopes.off.size
     return (
@@ -142,7 +142,7 @@ def selftest_numbers(slopes: ExportedSlopes, row: Any) -> str:
 
 
 def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
-    """How the self-test compares them."""
+    """Comparison in the self-test."""
     pairs = itertools.product(c.outputs, slopes.by)
     compared = (
         f'compare("{m.name} by {s.name}", slopes_at[k][{i}], (double) found.{m.name}.{s.name},'
@@ -160,7 +160,7 @@ def selftest_function(c: Contract, slopes: ExportedSlopes) -> str:
 
 
 def in_readme(c: Contract, slopes: ExportedSlopes) -> str:
-    """What the folder's README says of them."""
+    """Part of the folder's README on derivatives."""
     by = ", ".join(f"`{s.name}`" for s in slopes.by)
     return (
         f"\n## Sensitivities\n\n`{c.prefix}_sensitivity` gives the outputs of an instant and their"

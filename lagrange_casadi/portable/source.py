@@ -28,7 +28,7 @@ from .text import comment, indented, printed, template
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What header and source are written from.
+    """Data from which header and source are written.
 
     ``identity`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the
     options by which it is evaluated, ``values`` are the parameters, of which a table leaves none
@@ -82,7 +82,7 @@ class Source:
 
     @property
     def words(self) -> dict[str, str]:
-        """What every template is filled with."""
+        """Values of every template."""
         return {
             "name": comment(self.contract.name),
             "called": printed(self.contract.name),
@@ -100,7 +100,7 @@ class Source:
 
     @property
     def story(self) -> str:
-        """How it is evaluated, how exactly, and for which fixed numbers."""
+        """Description of the evaluation, its accuracy, and its fixed numbers."""
         error, output = self.golden.worst
         told = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
         told += (
@@ -117,7 +117,7 @@ class Source:
 
     @property
     def iterated(self) -> bool:
-        """Whether it follows loops from one instant to the next."""
+        """True if it follows loops from one instant to the next."""
         return bool(self.program.sizes["loops"]) and self.program.cycle is None
 
     @property
@@ -188,7 +188,7 @@ class Source:
         return found + table_text(self.program)
 
     def _answers(self) -> Iterator[str]:
-        """What is answered for each rule that may be broken, by its number."""
+        """Answer for each rule that may be broken, by its number."""
         graph = self.program.graph
         yield "OK"
         for rule in graph.rules:
@@ -300,7 +300,7 @@ class Source:
         yield "}"
 
     def _untimely(self) -> str:
-        """Whether a time is none that the motion has."""
+        """Test that a time is outside the motion."""
         moment = "time + time_rest" if self.contract.rests else "time"
         low, high = self.span
         bad = [f"!is_finite({moment})"]
@@ -383,7 +383,7 @@ class Source:
             yield f"if (closed == {P}_SLOW) iterated = {number(float(Status.SLOW))};"
 
     def _verdict(self) -> Iterable[str]:
-        """What a broken rule of the scene's status says, and a value that is not finite."""
+        """Answer for a broken rule of the scene's status, and for a value that is not finite."""
         P, sizes = self._upper, self.program.sizes
         if "status" in self.program.functions:
             yield "arg[0] = y;"

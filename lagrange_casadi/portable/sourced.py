@@ -1,5 +1,5 @@
-"""From a scene to the source of an exported program: derived, evaluated once, and held to what that
-gives.
+"""Source of an exported program from a scene: derived, evaluated once, and compared with that
+result.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""How much stack straight C of this package's own style takes at most: what its functions declare,
-along the deepest calls.
+"""Upper bound of the stack of straight C of this package's style: the declarations of its
+functions, along the deepest calls.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _DECLARATION = re.compile(
 _CALL = re.compile(r"\b(\w+)\(")
 _SLOT = 8
 _FRAME = 192
-"""What a call and saved registers take besides, with a margin."""
+"""Bytes of a call and saved registers, with a margin."""
 
 _LARGE, _PART = 128, 3
-"""From so many variables on a compiler that runs out of registers keeps other values too: up to one
-in so many more.
+"""Number of variables from which a compiler that runs out of registers keeps other values too, and
+the fraction of these.
 """
 
 
@@ -51,12 +51,12 @@ def deepest(source: str) -> int:
 
 
 def _kept(slots: int) -> int:
-    """How many slots a function takes that declares so many."""
+    """Number of slots of a function that declares so many."""
     return slots if slots < _LARGE else slots + slots // _PART
 
 
 def _slots(declarators: str) -> int:
-    """How many slots the variables of a declaration take."""
+    """Number of slots of a declaration's variables."""
     found = 0
     for word in re.split(r",(?![^\[{(]*[\]})])", declarators):
         count = 1

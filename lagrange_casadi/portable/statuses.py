@@ -1,5 +1,5 @@
-"""What an exported function may answer, in the order of the enumeration in C, and which statuses of
-an instant that stands for.
+"""Answers of an exported function, in the order of the enumeration in C, and the statuses of an
+instant that each stands for.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ SHARED = {
     "JAMS": (Status.JAMS,),
     "AT_REST": (Status.AT_REST,),
 }
-"""What is said in the words of :class:`.Status`."""
+"""Answers in the words of :class:`.Status`."""
 
 ANSWERS = {status: name for name, statuses in SHARED.items() for status in statuses}
-"""What is answered for a status of an instant; the neighbours of an instant are not seen, so some
-never are.
+"""Answer for a status of an instant; an exported function has no neighbours of an instant, so some
+never occur.
 """
 
 _OWN = {

@@ -36,7 +36,7 @@ def quoted(text: str) -> str:
 
 
 def printed(text: str) -> str:
-    """The same where the string is a format of printf's."""
+    """Text for a format of printf's."""
     return quoted(text).replace("%", "%%")
 
 
@@ -46,7 +46,7 @@ def octave(text: str) -> str:
 
 
 def octave_printed(text: str) -> str:
-    """The same where the string is a format of fprintf's."""
+    """Text for a format of fprintf's."""
     return octave(text).replace("\\", "\\\\").replace("%", "%%")
 
 

@@ -99,8 +99,8 @@ def engine() -> str:
 
 
 def layout(source: Source) -> dict[str, Any]:
-    """What the wrapper must know of the C's structs: how many numbers each holds, and how many
-    bytes a model takes.
+    """Layout of the C's structs for the wrapper: the number of numbers in each, and the bytes of a
+    model.
     """
     c = source.contract
     counts = {"parameters": len(c.settings), "inputs": len(c.inputs), "outputs": len(c.outputs)}
@@ -112,7 +112,7 @@ def layout(source: Source) -> dict[str, Any]:
 
 
 def places(source: Source) -> dict[str, int]:
-    """Where in a model its members are [bytes], and at ``end`` how many it takes."""
+    """Places of a model's members [bytes], and at ``end`` their sum."""
     sizes = {"real": 8 if source.contract.precision == "double" else 4, "int": 4, "unsigned": 4}
     found, at = {}, 0
     for name, kind, count in source.model:
@@ -136,7 +136,7 @@ def wasm(source: Source) -> dict[str, bytes]:
 
 
 def _words(source: Source) -> dict[str, str]:
-    """What stands in a line of a comment."""
+    """Words of a comment's line."""
     return source.words | {"name": " ".join(comment(source.contract.name).split())}
 
 

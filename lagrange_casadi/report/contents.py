@@ -1,4 +1,4 @@
-"""What a page holds, as plain numbers and texts: the one place that says what the viewer in the
+"""Contents of a page, as plain numbers and texts: the one place that defines what the viewer in the
 page reads.
 """
 
@@ -34,7 +34,7 @@ from .sections import section_entries
 from .words import GROUPS, what
 
 VERSION = 1
-"""Of what a page holds."""
+"""Version of a page's contents."""
 
 _LOADED = ("effort", "reaction", "stress", "utilisation", "deflection")
 _CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pose")
@@ -241,8 +241,8 @@ def _rows(solution: Solution) -> Iterator[Row]:
 
 
 def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
-    """How far links and joints are used against each way to fail, and whether that governs; factors
-    beyond all numbers are none.
+    """Utilisation of links and joints for each mode of failure, and whether that governs; infinite
+    factors are none.
 
     What is ``open`` has its reason.
     """

@@ -1,6 +1,4 @@
-"""Which instants a page shows: all, or where there are too many evenly spread ones, and those at
-which something peaks.
-"""
+"""Instants of a page: all, or, if these are too many, evenly spread ones and those of peaks."""
 
 from __future__ import annotations
 

@@ -58,8 +58,8 @@ def run_of(case: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Live:
-    """What a page comes alive with: the ``source`` of its solution's program, and how its instants
-    were asked for.
+    """Program of a live page: the ``source`` of its solution's program, and the definition of its
+    instants.
 
     ``command`` is how a command line begins that evaluates the same.
     """
@@ -98,15 +98,14 @@ class Live:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What whoever changes parameters in the page must know."""
+        """Notes for whoever changes parameters in the page."""
         corners = self.source.program.graph.data.corners
         return (_CORNERS,) if corners.laws or corners.constraints else ()
 
     def entry(
         self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays
     ) -> dict[str, Any]:
-        """What a page needs beside its solution: the module, and what its inputs, outputs and
-        numbers are.
+        """Data of a page beside its solution: the module, and its inputs, outputs and numbers.
 
         ``chosen`` are the instants that are shown, by number.
         """
@@ -165,7 +164,7 @@ def _entry(
 
 
 def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
-    """Where the numbers of a body's pose are, -1 for those that it has not; in the plane three, in
+    """Places of the numbers of a body's pose, -1 for those that it lacks; in the plane three, in
     space twelve.
     """
     members = ["x", "y", "angle"]
@@ -175,8 +174,8 @@ def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
 
 
 def _link(link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
-    """Where a link's functions along it are polynomials: the breaks of its density, loads along it,
-    and the highest degree.
+    """Pieces of a link's functions along it: the breaks of its density, distributed loads, and the
+    highest degree.
     """
     law = solution.section(link).law
     density = law.density

@@ -31,7 +31,7 @@ _BESIDE = 0.98
 
 @dataclass(frozen=True)
 class Map:
-    """What is told of a link over time and along it.
+    """Values of a link over time and along it.
 
     ``t``, ``xi`` and ``values`` are numbers of arrays: times (t,), ratios (xi,), and values (t,
     xi), all of an instant together; ``over`` that of the drive's coordinate (t,) where instants are

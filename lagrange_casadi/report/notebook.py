@@ -1,4 +1,4 @@
-"""What notebooks show of a scene or a solution: a drawing and the peaks at once, and the page of a
+"""Views of a scene or a solution in notebooks: a drawing and the peaks at once, and the page of a
 report inside them.
 """
 

@@ -30,5 +30,5 @@ def scene_report(
 
 
 def with_motion(wanted: Sequence[str]) -> list[str]:
-    """What is wanted, and motion, without which nothing can be shown."""
+    """Wanted outputs with motion, without which nothing can be shown."""
     return list(wanted) if {"all", "motion"} & set(wanted) else [*wanted, "motion"]

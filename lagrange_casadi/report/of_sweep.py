@@ -57,8 +57,8 @@ def write_sweep_report(
 
 
 def is_of(sweep: Sweep, scene: Scene) -> bool:
-    """Whether a sweep is of a scene: its parts are those that were swept, and where the same code
-    says so its expressions too.
+    """Return whether a sweep is of a scene: its parts are those that were swept, and, if the same
+    code wrote them, its expressions too.
     """
     swept = sweep.identity["mechanism"]
     values = values_of(swept)

@@ -47,7 +47,7 @@ SCRIPTS = (
 """The viewer's sources, in the order in which they stand in a page."""
 
 LIVE_SCRIPTS = ("chebyshev", "along", "shapes", "alive")
-"""Those that a live page has before them, after the engine's own wrapper."""
+"""Scripts of a live page before the others, after the engine's own wrapper."""
 
 SWEEP_SCRIPTS = (
     "data",
@@ -60,7 +60,7 @@ SWEEP_SCRIPTS = (
     "designs_plots",
     "designs_page",
 )
-"""Those of the page of a sweep."""
+"""Scripts of the page of a sweep."""
 
 ENDINGS = (".html", ".htm")
 

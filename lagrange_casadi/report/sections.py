@@ -102,7 +102,7 @@ def _made(
     spread: Sequence[Mapping[str, Sequence[int]]],
     rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
-    """What a force is made of."""
+    """Terms of a force."""
     terms = table.sections.get(name)
     if terms is None:
         return {"parts": table.parts("section", name)}

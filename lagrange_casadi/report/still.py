@@ -17,7 +17,7 @@ from ..shapes.views import AZIMUTH, ELEVATION, upright, view
 
 _WIDE, _HIGH, _MARGIN = 460.0, 300.0, 34.0
 _TRACED = 120
-"""At how many instants the ways of declared points are drawn at most."""
+"""Largest number of instants at which paths of declared points are drawn."""
 
 _STAND = "M0 0L8 12H-8ZM-12 12H12" + "".join(f"M{x} 12l-4 5" for x in (-6, -1, 4, 9))
 """The mark of what stands still, under its place."""

@@ -1,5 +1,5 @@
-"""What notebooks show of a sweep: what was swept, what became of its designs, and what its columns
-are at their ends.
+"""View of a sweep in notebooks: its axes, the outcome of its designs, and the range of its
+columns.
 """
 
 from __future__ import annotations

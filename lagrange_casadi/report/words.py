@@ -1,4 +1,4 @@
-"""What quantities are called in a page: the table's words, as short as a chart's legend."""
+"""Names of quantities in a page: the table's words, as short as a chart's legend."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ GROUPS = {
 
 
 def what(output: Output, table: Table) -> str:
-    """What a quantity is of its part."""
+    """Name of a quantity within its part."""
     if output.group == "output":
         return ""
     words = output.meant(table).long_name

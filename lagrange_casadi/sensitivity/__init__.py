@@ -1,3 +1,3 @@
-"""How outputs change with parameters: exact derivatives of series, section
-forces, peaks and means.
+"""Derivatives of outputs by parameters: exact derivatives of series, section forces, peaks and
+means.
 """

@@ -1,4 +1,4 @@
-"""How the first and the last instant move with the parameters, where they do."""
+"""Derivatives of the first and the last instant by the parameters."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Ends:
 
     @symbolic_property
     def slopes(self) -> Array:
-        """Their derivatives by all parameters, (2, parameters) [s]."""
+        """Derivatives of the ends by all parameters, (2, parameters) [s]."""
         if self._still:
             return np.zeros((2, self.p.size))
         gradients = self._gaps(lambda gap, by: ca.gradient(gap, by).T)[:, 0]
@@ -38,7 +38,7 @@ class Ends:
 
     @symbolic_property
     def bends(self) -> Array:
-        """Their second derivatives by all parameters, (2, parameters, parameters) [s]."""
+        """Second derivatives by all parameters, (2, parameters, parameters) [s]."""
         if self._still:
             return np.zeros((2, self.p.size, self.p.size))
         gaps = self._gaps(
@@ -51,8 +51,8 @@ class Ends:
         return self.timing is None or self.timing.shared or not self.p.size
 
     def _gaps(self, derivatives: Callable[[Any, Any], Any]) -> Array:
-        """Of each end the derivatives, (2, rows, 1 + parameters), by time and by all parameters, of
-        how far it is from where it should be.
+        """Derivatives, (2, rows, 1 + parameters), by time and by all parameters, of how far each
+        end is from where it should be.
         """
         assert self.timing is not None
         t, values, joint = ca.SX.sym("t"), ca.SX.sym("p", self.p.size), self.timing.joint

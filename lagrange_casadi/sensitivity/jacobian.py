@@ -29,7 +29,7 @@ from ..equations.section_function import Place, Section
 from ..summits.sharpness import Kind, Sharpness, Watch
 
 SAME_PLACE = 1e-9
-"""How near to a station a peak along a link is that is at it, as a ratio to the length."""
+"""Distance from a station within which a peak along a link is at it, as a ratio to the length."""
 
 _SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
 
@@ -58,8 +58,8 @@ class PointFunction(Graphs):
     def of(
         cls, graph: Program, quantities: Sequence[Output], sharpness: Sharpness | None = None
     ) -> PointFunction:
-        """That of some quantities: columns of a graph, resultants of such, section forces; and what
-        makes kinks and jumps.
+        """Derive the function of quantities: columns of a graph, resultants of such, section
+        forces; and of what makes kinks and jumps.
 
         Without a ``sharpness`` there is nothing of the latter.
         """
@@ -185,9 +185,7 @@ def resultant(parts: Sequence[Any]) -> Any:
 
 
 def _weights(parts: Sequence[Any]) -> list[Any]:
-    """What a resultant's change takes of those of its components: it goes along with what goes
-    along it.
-    """
+    """Weights of the changes of components in the change of their resultant."""
     if len(parts) == 1:
         return [1.0]
     size = resultant(parts)
@@ -211,12 +209,12 @@ def _backwards(graph: Program, inputs: Sequence[Any], adjoint: Any) -> tuple[Any
 
 
 def _seeds(count: int, by: Sequence[int]) -> Any:
-    """How all parameters change with some of them."""
+    """Unit directions of some of the parameters, a column each."""
     return ca.SX.eye(count)[:, list(by)]
 
 
 def _ends(parts: Sequence[Any]) -> list[int]:
-    """Where each of some parts that stand below each other begins, and where the last one ends."""
+    """Offsets of parts that stand below each other, and the end of the last one."""
     ends = [0]
     for part in parts:
         ends.append(ends[-1] + part.numel())

@@ -1,4 +1,4 @@
-"""How peaks and means change with parameters, to first and second order.
+"""Derivatives of peaks and means by parameters, first and second.
 
 A smooth peak of F(s, p) is where F_s = 0, in time and along the link. To first order its value
 changes as F does there: the envelope theorem. It moves by s' = -F_ss^-1 F_sp, and its value has the
@@ -28,10 +28,10 @@ from .jacobian import SAME_PLACE
 from .slopes import Bends, Numbers, Slopes, unit_ways
 
 AS_LARGE: dict[Precision, float] = {"double": 1e-9, "single": 1e-5}
-"""What a peak may be below another that it ties with, of itself."""
+"""Share by which a peak may be below another that it ties with."""
 
 _STEEP = 1e-5
-"""Of its value: how much a quantity changes in a step of time where its peak is not smooth."""
+"""Relative change of a quantity in a step of time if its peak is not smooth."""
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -41,18 +41,18 @@ length.
 """
 
 _NEAR_T, _NEAR_XI, _NEARER_XI = 1e-2, 1e-4, 1e-5
-"""How far a smooth peak is from where it was found at most: of a step between instants, and as a
-ratio to the length; nearer by differences, which may be across a kink.
+"""Largest distance of a smooth peak from where it was found: as a share of a step between instants,
+and as a ratio to the length; less by differences, which may be across a kink.
 """
 
 _FLAT, _STILL = 1e-9, 1e-6
-"""Of the peak: what it bends by over the whole span, or length, where it is level; and what a level
-peak's slope may change by.
+"""Shares of a peak: what a level one bends by over the whole span, or length; and what its
+slope may change by.
 """
 
 _ASIDE, _NEARER = 1e-9, 0.5
-"""Of the peak: what is off by more may be of the other side of a jump; and what of that is left on
-its own side at most.
+"""Shares: of the peak, by which a value of the other side of a jump is off; and of that, what is
+left on its own side at most.
 """
 
 _REACHES = (1.0, 8.0, 64.0, 512.0)
@@ -62,16 +62,16 @@ _OTHERWISE = 1e-4
 """By what of a slope two slopes differ."""
 
 _NOISE, _FAINT = 1e-9, 1e-12
-"""What of the largest slope by a parameter, and of the peak, is no slope."""
+"""Shares of the largest slope by a parameter, and of the peak, that are no slope."""
 
 Peaks = tuple[Array, Array, Array]
-"""Of q peaks the value, the time and the ratio xi/l, (q,) each."""
+"""Values, times and ratios xi/l of q peaks, (q,) each."""
 
 Flags = npt.NDArray[np.bool_]
 
 
 class PeakKind(enum.IntEnum):
-    """What a peak is at."""
+    """Kind of a peak's place."""
 
     SMOOTH = 0
     """The quantity is stationary in time there."""
@@ -89,7 +89,7 @@ _SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 
 
 class PeakSlopes(NamedTuple):
-    """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,).
+    """Derivatives of q peaks by all parameters, (q, parameters), and what each is at, (q,).
 
     ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch,
     ``switch`` (q,) is the number of that switch, or -1. ``t`` (q,) are the times at which they were
@@ -143,7 +143,7 @@ class MovingPeaks:
 
     @property
     def near(self) -> float:
-        """How far from a kink, a jump or an end a peak is told that is at it [s]."""
+        """Distance within which a peak is at a kink, a jump or an end [s]."""
         return SIDE * self.step + 2 * SPACING * max(abs(float(self.instants[k])) for k in (0, -1))
 
     def gradient(self, chosen: Numbers, peaks: Peaks, nothing: Flags) -> PeakSlopes:
@@ -387,7 +387,7 @@ class MovingPeaks:
         return found
 
     def ties(self, chosen: Numbers, value: Array, own: PeakSlopes, others: Array) -> Flags:
-        """Which of the peaks (q,), whose gradient is ``own``, tie with another one of their
+        """Return which of the peaks (q,), whose gradient is ``own``, tie with another one of their
         quantity, which is as large and changes otherwise with the parameters.
 
         The largest of both then has a kink at these parameters, and no derivative. What is as large
@@ -453,12 +453,12 @@ def mean_slopes(t: Array, value: Array, changes: Array) -> MeanSlopes:
 
 
 def faint(value: Array, largest: Array) -> Flags:
-    """Which peaks are zero but for rounding, beside the ``largest`` of the unit of each."""
+    """Return which peaks are zero but for rounding, beside the ``largest`` of the unit of each."""
     return np.asarray(np.abs(value) <= NOTHING * largest)
 
 
 def _gap(watch: Watch, values: Array) -> Array:
-    """How far what is watched is from the nearest number at which it makes a kink or a jump."""
+    """Distance of a watched function from the nearest number at which it makes a kink or a jump."""
     if watch.kind is Kind.STEP:
         return np.asarray(values - np.round(values))
     gaps = values[:, None] - np.array(watch.at or (0.0,))

@@ -86,7 +86,7 @@ def _along(
     by: Sequence[int],
     rung: Rung,
 ) -> Iterator[tuple[Output, Array]]:
-    """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
+    """Derivatives of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
     function = section_slopes(graph.data, link, columns, by)

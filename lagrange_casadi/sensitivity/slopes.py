@@ -45,8 +45,8 @@ class Batch:
         return cls(function, None if found is None else found[1])
 
     def at(self, n: int, given: Mapping[str, tuple[npt.NDArray[Any], int]]) -> Array:
-        """What it is at n points, (n, result): of each argument its rows, and how many points one
-        is for, 0 for all. Of what is ``chosen`` the numbers are given.
+        """Evaluate it at n points, (n, result): of each argument the rows are given, and how many
+        points one is for, 0 for all; of what is ``chosen`` the numbers.
         """
         into = np.full((n, self.function.numel_out(0)), np.nan)
         if self.library is not None:
@@ -86,8 +86,8 @@ class Loops:
         return cls(graph, None if found is None else found[1])
 
     def at(self, t: Array, p: Array, places: Array) -> Array:
-        """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are
-        followed.
+        """Evaluate the coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from
+        which they are followed.
         """
         if self.graph.newton is None:
             return np.zeros((places.size, 0))
@@ -103,7 +103,7 @@ class Loops:
 
 
 class AtPoints(NamedTuple):
-    """Of n points the value (n,), and its derivatives by time, xi/l and all parameters, (n, 2 +
+    """Values (n,) at n points, and derivatives by time, xi/l and all parameters, (n, 2 +
     parameters).
     """
 
@@ -122,7 +122,7 @@ class AtPoints(NamedTuple):
 
 
 class Bends(NamedTuple):
-    """Of n points the gradient by time, xi/l and all parameters, (n, 2 + parameters), and how it
+    """Gradients at n points by time, xi/l and all parameters, (n, 2 + parameters), and their
     changes along w ways, (n, w, 2 + parameters)."""
 
     gradient: Array
@@ -150,7 +150,7 @@ class Slopes:
 
     @property
     def graph(self) -> Program:
-        """What they are quantities of."""
+        """The compiled scene of the quantities."""
         return self.points.graph
 
     @cached_property
@@ -161,8 +161,8 @@ class Slopes:
     def at(
         self, t: Array, z: Array, p: Array, chosen: Numbers, xi: Array, value: Array | None = None
     ) -> AtPoints:
-        """What is ``chosen`` at times ``t`` and ratios ``xi``, (n,) each, with iterated coordinates
-        ``z`` (n, z) there.
+        """Evaluate the ``chosen`` quantities at times ``t`` and ratios ``xi``, (n,) each, with
+        iterated coordinates ``z`` (n, z) there.
 
         With ``value`` (n,) a place along a link moves with the station that is there, on the side
         on which the force is nearer to that, unless it is NaN; else it stands still. A ratio of
@@ -192,7 +192,7 @@ class Slopes:
         value: Array | None,
         ways: Array,
     ) -> Bends:
-        """How the derivatives of :meth:`at` change along each of ``ways`` (w, 2 + parameters) in
+        """Changes of the derivatives of :meth:`at` along each of ``ways`` (w, 2 + parameters) in
         time, in xi/l and in the parameters. The iterated coordinates must close the loops.
 
         They are derived and compiled when they are first asked for.
@@ -223,7 +223,7 @@ class Slopes:
 
     @symbolic_property
     def _single(self) -> dict[int, Batch]:
-        """Those that were asked for, by number."""
+        """Functions that were asked for, by number."""
         return {}
 
 

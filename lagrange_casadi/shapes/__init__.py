@@ -1,1 +1,1 @@
-"""What is drawn of a mechanism, as places and shapes; and what all pictures share."""
+"""Places and shapes of a mechanism's picture; and the parts that all pictures share."""

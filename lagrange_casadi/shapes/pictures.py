@@ -1,4 +1,4 @@
-"""How all pictures become files: their kinds, one at a time, with the same bytes each time."""
+"""Files of pictures: their kinds, one at a time, with the same bytes each time."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ PICTURES: dict[str, dict[str, None]] = {
     ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
     ".svg": {"Creator": None, "Date": None},
 }
-"""What names of pictures end in, and what these must not hold, so that a figure always gives the
-same bytes: programs, clocks.
+"""Endings of pictures' names, and the metadata that each must not hold, so that a figure always
+gives the same bytes: programs, clocks.
 """
 
 

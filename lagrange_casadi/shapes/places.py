@@ -1,6 +1,4 @@
-"""Where the places of a picture are, over the instants of a solution,
-which must have its motion.
-"""
+"""Places of a picture's parts, over the instants of a solution, which must have its motion."""
 
 from __future__ import annotations
 

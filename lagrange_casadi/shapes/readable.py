@@ -21,7 +21,7 @@ PREFIXED = ("N", "N m", "Pa", "W", "J", "N/m", "N s/m")
 
 @dataclass(frozen=True)
 class Scale:
-    """What values in SI are multiplied by, to be read in ``unit``."""
+    """Factor of values in SI to be read in ``unit``."""
 
     factor: float
     unit: str
@@ -43,9 +43,7 @@ class Scale:
 
 
 def scale_for(unit: str, size: float, si: bool = False) -> Scale:
-    """How values of a unit are read, of which the largest has a ``size``; as they are where ``si``
-    is asked for.
-    """
+    """Scale of values of a unit, of which the largest has a ``size``; SI if ``si`` is asked for."""
     if si or not size > 0.0:
         return Scale(1.0, unit)
     if unit == "m":

@@ -1,5 +1,5 @@
-"""What of a mechanism is drawn, from its description: bodies with their axes, arms and plates,
-joints, springs, points.
+"""Shapes of a mechanism, from its description: bodies with their axes, arms and plates, joints,
+springs, points.
 
 Places and directions are three numbers, in a body's axes [m]; in the plane z is 0. How bodies move
 is not said here.
@@ -32,7 +32,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Shape:
-    """How a body is drawn: lines between places, and plates, each a polygon.
+    """Shape of a body: lines between places, and plates, each a polygon.
 
     ``kind`` is "link" where it has an axis that is drawn, "rigid" where only its centre is known,
     "point" for a point mass. Of a rigid body that is held at its centre alone, as a gear or a
@@ -59,7 +59,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class JointShape:
-    """How a joint is drawn: its kind, the places that it joins, and its axes as directions that its
+    """Shape of a joint: its kind, the places that it joins, and its axes as directions that its
     parent carries.
 
     ``second`` is the second axis of a universal joint, which its child carries. ``coordinates`` are
@@ -79,7 +79,7 @@ class JointShape:
 
 @dataclass(frozen=True)
 class LoadShape:
-    """Where a load acts: first the place that it is for, then what it acts from."""
+    """Places of a load: first the place that it is for, then those from which it acts."""
 
     name: str
     kind: str

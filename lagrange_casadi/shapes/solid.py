@@ -1,5 +1,5 @@
-"""What of a mechanism in space is drawn at an instant: lines and marks, from a solution's poses and
-its description.
+"""Picture of a mechanism in space at an instant: lines and marks, from a solution's poses and its
+description.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Mark:
 
 
 def place_of(solution: Solution, point: Any) -> Array:
-    """Where a described point of a body is, (t, 3) in ground axes [m]."""
+    """Place of a described point of a body, (t, 3) in ground axes [m]."""
     local = [point["x"], point["y"], point["z"]]
     if point["body"] == "ground":
         return np.tile(np.array(local, float), (solution.t.size, 1))

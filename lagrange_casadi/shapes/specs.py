@@ -1,4 +1,4 @@
-"""What is drawn of a solution, declared as frozen specs, which a case may give and a file keeps.
+"""Figures of a solution, declared as frozen specs, which a case may give and a file keeps.
 
 Specs are known wherever cases are. How each is drawn is known in :mod:`.figures.figures`, imported
 when something is drawn.
@@ -134,8 +134,8 @@ class StrengthPlot(_Drawn):
 @public
 @dataclass(frozen=True)
 class UtilisationPlot(_Drawn):
-    """How far links that have a beam are used, and joints that have pins or bearings, against each
-    way to fail.
+    """Utilisation of links that have a beam, and of joints that have pins or bearings, for each
+    mode of failure.
     """
 
     kind: ClassVar[str] = "utilisation"
@@ -193,4 +193,4 @@ KINDS: dict[str, type[Spec]] = {
         DeflectionPlot,
     )
 }
-"""By the word for it in files."""
+"""Kinds of figures by their words in files."""

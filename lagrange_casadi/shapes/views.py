@@ -1,5 +1,5 @@
-"""From where a mechanism in space is looked at: orthographic views by azimuth and elevation, and
-how four of them share a page.
+"""Views of a mechanism in space: orthographic ones by azimuth and elevation, and four of them on a
+page.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def view(axes: Array, azimuth: float, elevation: float, title: str = "") -> View
 def views(
     gravity: Sequence[float], azimuth: float, elevation: float
 ) -> tuple[View, View, View, View]:
-    """From above, a view of one's own, from the front, from the right: as rows of a page in
-    third-angle projection.
+    """Views from above, from a chosen direction, from the front, from the right: as rows of a page
+    in third-angle projection.
     """
     axes = upright(gravity)
     right, away, up = (_named(axis) for axis in axes)
@@ -135,7 +135,9 @@ def page(
 
 
 def _cosine_and_sine(degrees: float) -> tuple[float, float]:
-    """Those of whole right angles to the last digit, so that what lies along an axis does."""
+    """Cosine and sine of an angle, exact for whole right angles, so that what lies along an axis
+    does.
+    """
     quarter = round(degrees / 90.0)
     if degrees == 90.0 * quarter:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarter % 4]

@@ -65,8 +65,8 @@ _BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
-"""Of the largest coordinate: how far a motion's may be from that by which its instants were asked
-for.
+"""Largest distance of a coordinate from that by which the instants were defined, relative to the
+largest.
 """
 
 _KIND = "the file of a run"
@@ -171,7 +171,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
-    """How the case wants to be drawn, as it was given to :func:`save`.
+    """Figures of the case, as they were given to :func:`save`.
 
     Raises what :func:`load` does.
     """
@@ -181,7 +181,7 @@ def figure_specs(path: str | os.PathLike[str]) -> str:
 
 @public
 def check(path: str | os.PathLike[str]) -> list[str]:
-    """What is wrong with a file, one line each; nothing where it is whole and consistent.
+    """Faults of a file, one line each; none if it is whole and consistent.
 
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have
     its scale, every unit and sign be the schema's; and the section grids must be what the laws
@@ -281,7 +281,7 @@ def _check_drive_axis(solution: Solution) -> Iterator[str]:
 
 
 def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:
-    """How far a grid is from its law, and whether all values are finite, block by block."""
+    """Distance of a grid from its law, and whether all values are finite, block by block."""
     gap, finite = 0.0, True
     height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
     law = solution.section(output.part).law if output.group == "section" else None

@@ -18,7 +18,7 @@ _LIST = h5py.vlen_dtype(h5py.ref_dtype)
 _BELONGING = np.dtype([("dataset", h5py.ref_dtype), ("dimension", np.uint32)])
 
 LARGE = {"track_order": True}
-"""How a dataset is created that becomes a scale: its attributes may be as large as they have to."""
+"""Options with which a dataset is created that becomes a scale: its attributes may be large."""
 
 
 class Scales:

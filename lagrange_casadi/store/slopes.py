@@ -36,7 +36,7 @@ def add_slopes(
 def slopes_of(
     file: h5py.File, solution: Solution, numbers: Callable[[h5py.Dataset, tuple[int, ...]], Array]
 ) -> Derivatives:
-    """What is there; ``numbers`` reads a dataset of a shape.
+    """Read the sensitivities of a file; ``numbers`` reads a dataset of a shape.
 
     Raises ``ValueError`` where it is not whole.
     """
@@ -63,8 +63,8 @@ def slopes_of(
 
 
 def check_slopes(file: h5py.File, solution: Solution) -> Iterator[str]:
-    """What is wrong with them: they are finite where what they are of is, in their units, on their
-    axes.
+    """Faults of a file's sensitivities: they must be finite where their quantities are, in their
+    units, on their axes.
     """
     for found in derivatives(solution):
         place, rests = (

@@ -1,5 +1,5 @@
-"""What a file says is looked at before it is believed: the shape of its JSON, where its links lead,
-and what its datasets are.
+"""Checks of a file before it is believed: the shape of its JSON, the targets of its links, and the
+kinds of its datasets.
 
 HDF5 allows far more than this package writes, and JSON too. What is otherwise is told as damage, in
 one line that names the file.

@@ -1,6 +1,4 @@
-"""What files say of their datasets and of themselves, beside numbers: units, meanings, signs and
-conventions.
-"""
+"""Descriptions of datasets and files, beside numbers: units, meanings, signs and conventions."""
 
 from __future__ import annotations
 
@@ -11,7 +9,7 @@ from ..base.tables import CF, Table
 
 
 def conventions(table: Table) -> dict[str, str]:
-    """What a file says of all that it holds, by attribute."""
+    """Attributes of a file as a whole."""
     return {"Conventions": CF, "conventions": table.conventions}
 
 

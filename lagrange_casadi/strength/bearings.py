@@ -218,6 +218,6 @@ def _rolling(
 
 
 def _weights(t: Array) -> Array:
-    """How long each instant counts, by trapezia [s]; a single one counts as a second."""
+    """Weight of each instant, by trapezia [s]; a single one has the weight of a second."""
     steps = np.diff(t) / 2
     return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

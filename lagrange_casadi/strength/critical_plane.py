@@ -33,11 +33,11 @@ DUCTILE = 0.3
 
 _FLAT = (90,)
 _SPACE = (9, 24, 12)
-"""How many angles are looked at first: where there is one shear stress, and where there are two."""
+"""Numbers of angles that are tried first: with one shear stress, and with two."""
 
 _ROUNDS, _BESIDE, _NEARER = 8, 2, 2.5
-"""How often the worst plane is looked at again, how many planes on each side, and how much nearer
-they come.
+"""Number of refinements of the worst plane, of planes on each side, and the factor by which they
+come nearer.
 """
 
 
@@ -80,7 +80,7 @@ def critical_plane(values: Array, share: NotNegative = DUCTILE) -> Plane:
 
 @public
 def plane_factor(plane: Plane, material: Material, share: NotNegative = DUCTILE) -> float:
-    """By how much all loads may grow until a part no longer lasts for ever.
+    """Factor by which all loads may grow until a part no longer lasts for ever.
 
     Raises :class:`.DeclarationError` where the material has no endurance limit.
     """
@@ -111,8 +111,8 @@ def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, s
 
 
 def _bounds(values: Array, share: float) -> Array:
-    """What is not exceeded on any plane, of fibres with histories (3, fibres, t): by the largest
-    shear and principal stresses.
+    """Upper bounds on any plane, for fibres with histories (3, fibres, t): from the largest shear
+    and principal stresses.
     """
     wide = np.ptp(values, axis=2)
     shear = np.sum(values[1:] ** 2, axis=0)
@@ -167,7 +167,7 @@ def _around(angles: Array) -> tuple[Array, Array]:
 
 
 def _told(n: Array, m: Array) -> Array:
-    """What the stress on planes ``n`` in directions ``m`` takes of the three stresses in a beam:
+    """Weights of the three stresses in a beam for the stress on planes ``n`` in directions ``m``:
     (planes, 3).
     """
     shears = [n[:, 0] * m[:, k] + n[:, k] * m[:, 0] for k in (1, 2)]

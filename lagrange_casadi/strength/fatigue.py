@@ -31,13 +31,13 @@ _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
 
 _ROUNDED = 1.0 + 1e-12
-"""By how much more than a bound a value may be by rounding."""
+"""Factor of rounding by which a value may exceed a bound."""
 
 
 @dataclass(frozen=True)
 class Criterion:
-    """How a mean stress counts: ``strength`` is the material's number that bears it alone;
-    ``square`` where it counts squared.
+    """Treatment of a mean stress: ``strength`` is the material's number for a mean stress alone;
+    ``square`` if it counts squared.
     """
 
     strength: str
@@ -83,8 +83,8 @@ def _needed(material: Material, criterion: str) -> tuple[str, str]:
 def factor(
     amplitude: Numeric, mean: Numeric, material: Material, criterion: str = "goodman"
 ) -> Any:
-    """By how much amplitude and mean may grow together until the part no longer lasts for ever; of
-    numbers or arrays.
+    """Factor by which amplitude and mean may grow together until the part no longer lasts for ever;
+    of numbers or arrays.
 
     Goodman, Soderberg and Morrow: a/S_e + m/S = 1/n; Gerber: n a/S_e + (n m/S)^2 = 1 (Shigley, eq.
     6-45 to 6-48; Dowling for Morrow). A mean in compression counts as none.
@@ -94,7 +94,7 @@ def factor(
 
 
 def used(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
-    """How far a material is used by amplitude and mean, one over :func:`factor`; of numbers, arrays
+    """Utilisation of a material by amplitude and mean, one over :func:`factor`; of numbers, arrays
     or expressions.
     """
     endurance, strength = strengths(material, criterion)
@@ -143,7 +143,7 @@ def line(material: Material) -> tuple[float, float, float]:
 
 @public
 def cycles(amplitude: Numeric, material: Material) -> Any:
-    """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly
+    """Number of cycles of a fully reversed amplitude: by the material's S-N line, and infinite
     below its endurance limit.
 
     Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of
@@ -254,7 +254,9 @@ class Histories:
 
     @classmethod
     def of(cls, values: Array) -> Histories:
-        """Those of one design: stresses (3, places, t), normal, and shear along y and along z."""
+        """Make them for one design: stresses (3, places, t), normal, and shear along y and along
+        z.
+        """
         sheared = np.flatnonzero(values[1:].any(axis=(0, 2)))
         return cls(values[None, 0], values[None, 1:][:, :, sheared], sheared, (0, 1))
 
@@ -320,8 +322,8 @@ class Histories:
     def worst(
         self, score: Score, least: tuple[float, ...] | None = None
     ) -> tuple[tuple[float, ...], int, Loaded] | None:
-        """Where a score of the first design is smallest: its value, the place, and the swings
-        there; of equals the first place.
+        """Place at which a score of the first design is smallest: its value, the place, and the
+        stress cycles there; of equals the first place.
 
         None where it is nowhere below ``least``. What cannot be below what was found is not
         counted.
@@ -343,8 +345,8 @@ class Histories:
         return found
 
     def _sheared(self) -> tuple[Array, Array]:
-        """Of sheared places three times the squares of how far shear stress goes, and of how large
-        it is, each (n, sheared).
+        """Three times the squares of the ranges of shear stress, and of its sizes, at places with
+        shear, each (n, sheared).
         """
         return 3.0 * np.sum(np.ptp(self.shears, axis=3) ** 2, axis=1), 3.0 * np.max(
             np.sum(self.shears**2, axis=1), axis=2
@@ -353,7 +355,8 @@ class Histories:
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """What is smallest where a link is worst, ``of`` swings; of equals the second number tells.
+    """Measure that is smallest where a link is worst, ``of`` stress cycles; between equals the
+    second number decides.
 
     ``bound`` has for every place of a design numbers that it is not below, (places, numbers).
     """
@@ -405,7 +408,7 @@ def damage_score(material: Material, criterion: str) -> Score:
 
 
 def felt(notch: Notch) -> Notch:
-    """What fatigue feels of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
+    """Fatigue stress concentration factor of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
     q = notch.sensitivity
     return Notch(
         notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear))

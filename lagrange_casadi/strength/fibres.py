@@ -47,7 +47,7 @@ class FibreStresses:
 
     @classmethod
     def of(cls, data: ModelData, name: str, members: Sequence[Output]) -> FibreStresses:
-        """That of a link whose law is made of ``members``."""
+        """Make it for a link whose law is made of ``members``."""
         symbols = ca.SX.sym("members", len(members))
         columns: dict[Column, Any] = dict(zip(members, ca.vertsplit(symbols), strict=True))
         p = data.symbols
@@ -80,8 +80,8 @@ class FibreStresses:
         )
 
     def stands(self, members: Array) -> npt.NDArray[np.bool_]:
-        """Of which designs, whose members are (n, members, t), the matrix is the same at all
-        instants.
+        """Return the designs, whose members are (n, members, t), for which the matrix is the same
+        at all instants.
         """
         return np.asarray((np.ptp(members[:, self.still], axis=2) <= _NEAR).all(axis=1))
 
@@ -96,7 +96,7 @@ class FibreStresses:
 
     @property
     def places(self) -> int:
-        """How many places and fibres there are."""
+        """Number of places and fibres."""
         return int(self.rows.numel_out(0) // len(self.members) - len(self.axes) * self.sheared.size)
 
     def _matrices(self, members: Array, p: Array) -> Array:
@@ -120,7 +120,7 @@ class FibreStresses:
 
 
 def _is_place(member: Output) -> bool:
-    """Whether it is where something acts on a link, not how much."""
+    """Return whether a member is the place of a load on a link, not its size."""
     return member.member == "station" or (member.group == "spread" and member.power is None)
 
 

@@ -22,7 +22,7 @@ from ..instants.statistics import counted
 from ..summits.polynomials import interpolation
 
 _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
-"""How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a
+"""Tolerance of a polynomial for the factors of forces, its degrees, and the length of a part of a
 link too short to cut.
 """
 
@@ -48,7 +48,7 @@ class Cell:
         return self.member.cross.fibres(self.index).names
 
     def factors(self, u: Array) -> Array:
-        """What stresses, normal and along y and along z, take of each force at ratios ``u``: (3,
+        """Factors of stresses, normal and along y and along z, by each force at ratios ``u``: (3,
         fibres, forces, u...).
         """
         return self.member.cross.factors(self.index, u)
@@ -99,7 +99,7 @@ class Member:
 
     @cached_property
     def counted(self) -> Member:
-        """The same at the instants that count: see :func:`.counted`.
+        """Member at the instants that count: see :func:`.counted`.
 
         Raises :class:`.DeclarationError` where none does.
         """
@@ -114,7 +114,7 @@ class Member:
 
     @cached_property
     def cross(self) -> CrossSections:
-        """Its cross-sections."""
+        """Cross-sections."""
         return CrossSections(self.beam, self.space)
 
     @property
@@ -128,14 +128,14 @@ class Member:
         return values if scale is None else values * scale[:, None, None]
 
     def during(self, instants: Any) -> Member:
-        """The same at some of the instants, a slice or their numbers."""
+        """Member at some of the instants, a slice or their numbers."""
         return Member(
             self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space
         )
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
-        """Its parts, in order along the link."""
+        """Parts of the link, in order along it."""
         breaks = self.beam.course.breaks
         return tuple(
             c for k, (a, b) in enumerate(itertools.pairwise(breaks)) for c in self._cells(k, a, b)

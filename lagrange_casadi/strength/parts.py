@@ -99,7 +99,7 @@ def bending_of(solution: Solution) -> tuple[str, ...]:
 
 
 def _reason(asked: Callable[[str], object], part: str) -> str:
-    """Why what is asked of a part is not told; nothing where it is."""
+    """Reason why a result of a part is not available; empty if it is."""
     try:
         asked(part)
     except DeclarationError as error:

@@ -72,7 +72,7 @@ class Safety:
 
 @dataclass(frozen=True)
 class Life:
-    """How long a link lasts, its span of time repeated: ``damage`` by Miner's sum of one span,
+    """Fatigue life of a link, its span of time repeated: ``damage`` by Miner's sum of one span,
     ``cycles`` and ``hours`` until it is 1, infinite where no swing is above the endurance limit;
     and where, by ratio xi/l and fibre.
 
@@ -124,9 +124,7 @@ def judged(
     yielding: str = "von_mises",
     enough: float = 0.0,
 ) -> Safety:
-    """The same of a link in numbers; what comes after a factor that is
-    not ``enough`` is left out.
-    """
+    """Safety of a link in numbers; results after a factor that is not ``enough`` are left out."""
     if criterion not in (known := (*CRITERIA, FINDLEY)):
         raise UnknownNameError("fatigue criterion", criterion, known)
     member, link = member.counted, member.link
@@ -211,7 +209,7 @@ def buckling(member: Member, of: Column) -> Verdict:
 
 @public
 def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
-    """How long a link lasts, its span of time repeated for ever: rainflow counting, the mean by a
+    """Fatigue life of a link, its span of time repeated for ever: rainflow counting, the mean by a
     criterion, Miner's sum.
 
     Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no

@@ -33,7 +33,8 @@ from .member import Cell, Member
 
 _LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
 _BESIDE, _STEPS = 0.9, 40
-"""Of what is largest: what may be beside the summit.
+"""Fraction of the largest value for which a local maximum may be the largest, and the number of
+steps to it.
 
 And steps of the golden section: where a summit is to 1e-9, it is to 1e-18.
 """
@@ -290,14 +291,14 @@ class _Part:
 
     @cached_property
     def coefficients(self) -> Array:
-        """Of Chebyshev's polynomials: (3, fibres, t, degree + 1)."""
+        """Coefficients of Chebyshev's polynomials: (3, fibres, t, degree + 1)."""
         nodes, weights = interpolation(self.degree)
         u = self.low[:, None] + (self.high - self.low)[:, None] * (nodes + 1.0) / 2
         return np.asarray(np.sum(self._factors(u) * self.member.at(u), axis=2) @ weights)
 
     def _factors(self, u: Array) -> Array:
-        """Of a cell of one cross-section, the same everywhere; between marks that stand still, at
-        all instants.
+        """Factors of a cell of one cross-section, the same everywhere; between marks that do not
+        move, at all instants.
         """
         if not self.cell.degree:
             return self.cell.factors(np.full((1, 1), self.cell.low))
@@ -322,7 +323,7 @@ class _Part:
 
 
 def _places(degree: int, looks: int) -> Array:
-    """Where squares, of twice the degree, are looked at: so many nodes of Chebyshev's for each
+    """Places at which squares, of twice the degree, are sampled: so many Chebyshev nodes for each
     degree, and both ends.
     """
     return np.concatenate([[-1.0], chebyshev.chebpts1(max(looks * degree, 8)), [1.0]])
@@ -364,7 +365,7 @@ def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array
 
 
 def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Where a function is largest between two places, between which it has one summit: by the
+    """Place of the maximum of a function between two places, between which it has one: by the
     golden section.
     """
     golden = (math.sqrt(5.0) - 1.0) / 2

@@ -1,4 +1,4 @@
-"""Where along a link of a solution, and at which fibre, fatigue is worst."""
+"""Worst place along a link of a solution, and its fibre, for fatigue."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FEW = 65
 """Ratios that are looked at first."""
 
 _ROUNDS, _ZOOM = 3, 9
-"""How often and how finely the place that is worst is looked at again."""
+"""Number of refinements of the worst place, and their fineness."""
 
 _NUMBERS = 1 << 20
 """Stresses that are at hand at once."""
@@ -27,9 +27,7 @@ _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
 class Place(NamedTuple):
-    """Where a link is looked at: a ratio xi/l, the side of it, and
-    the notch whose factors count.
-    """
+    """Place on a link: a ratio xi/l, its side, and the notch whose factors count."""
 
     xi: float
     side: Side
@@ -37,8 +35,8 @@ class Place(NamedTuple):
 
 
 def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
-    """Where along a link and at which fibre a score is smallest: its value, the place, the fibre,
-    and the swings there.
+    """Place along a link, and fibre, at which a score is smallest: its value, the place, the fibre,
+    and the stress cycles there.
 
     Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is
     worst, finer and finer.
@@ -73,8 +71,8 @@ def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
 
 
 def places(stress: Stress) -> Iterator[Place]:
-    """Where along a link fatigue is looked at first: evenly, at both sides of stations and steps,
-    and at notches.
+    """Places along a link at which fatigue is evaluated first: evenly, at both sides of load points
+    and steps, and at notches.
     """
     member = stress.member
     still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]

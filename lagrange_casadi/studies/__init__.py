@@ -1,1 +1,1 @@
-"""What is asked of results: peaks between instants, and what speed costs in accuracy."""
+"""Studies of results: peaks between instants, and the accuracy of faster evaluations."""

@@ -40,14 +40,14 @@ from ..summits.sharpness import Sharpness
 from .evaluate import evaluate
 
 _SAME = 1e-6
-"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+"""Largest difference of a graph from a solution, relative to the largest value of the same unit."""
 
 _NOTHING = 1e-12
-"""What is zero but for rounding, over what is largest."""
+"""Relative size that is zero within rounding."""
 
 _NEAR, _LESS = 1e-4, 1e-13
-"""How near to where it was found a smooth peak is, in steps between instants, and how much lower
-rounding may put it, of itself.
+"""Distance of a smooth peak from the place where it was found, in steps between instants, and the
+relative amount by which rounding may lower it.
 """
 
 _TRIALS = 5
@@ -78,7 +78,7 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
 @dataclass(frozen=True)
 class Shortfall:
-    """How far the peaks over ``count`` instants fall short of the true ones, over the true ones:
+    """Shortfall of the peaks over ``count`` instants from the true ones, relative to the true ones:
     the worst and the median force.
 
     ``sampled`` is at the instants, ``refined`` between them by :func:`refine`.
@@ -101,7 +101,7 @@ def shortfall(
     t: Times | None = None,
     over: Over | None = None,
 ) -> list[Shortfall]:
-    """How far peaks fall short where a span of time is cut into so many instants, a row for each of
+    """Shortfall of peaks if a span of time is cut into so many instants, a row for each of
     ``counts``.
 
     The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`. ``names``
@@ -215,7 +215,7 @@ class ContinuousSolution:
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution, backend: str = "") -> ContinuousSolution:
-        """That of a solution, searched as its backend does, or another one.
+        """Make it from a solution, searched as its backend does, or another one.
 
         Raises :class:`.DeclarationError` where it is not one of this scene.
         """
@@ -247,8 +247,8 @@ class ContinuousSolution:
         return found
 
     def agrees(self) -> bool:
-        """Whether the graph gives what the solution has: at one of three instants, for at a jump
-        rounding decides.
+        """Return whether the graph agrees with the solution: at one of three instants, for at a
+        jump rounding decides.
         """
         solution = self.solution
         outputs = [output for output in solution.outputs if output not in solution.left_open]
@@ -367,7 +367,7 @@ class ContinuousSolution:
         return replace(signals, rounding=sharpness.rounding(*signals.inputs(signals.t, signals.z)))
 
     def quantity(self, output: Output) -> Quantity:
-        """Where a quantity is among the columns."""
+        """Number of a quantity's column."""
         if output.group != "section":
             return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
@@ -432,8 +432,7 @@ class ContinuousSolution:
     def slopes(
         self, signals: Signals, names: Sequence[Output], t: Array
     ) -> tuple[Array, Array, Array]:
-        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its
-        size.
+        """Value, ratio, and time derivative of the size of each quantity, at a time of its own.
 
         Where along a link a force is largest moves, but for the rate of its size only at a station
         does that count.
@@ -483,7 +482,7 @@ def _columns(quantity: Quantity) -> set[int]:
 
 
 def wanted_for(output: Output) -> str:
-    """What is to be wanted for an output."""
+    """Outputs to be wanted for an output."""
     kinds = {
         "effort": "effort",
         "motion": "motion",

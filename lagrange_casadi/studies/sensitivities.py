@@ -1,5 +1,5 @@
-"""How the outputs of a solution change with the parameters: series over time, section forces over
-time and xi/l, means, peaks.
+"""Derivatives of a solution's outputs by the parameters: series over time, section forces over time
+and xi/l, means, peaks.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _BLOCK = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Changes:
-    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the
+    """Derivatives of one number by each parameter: ``value`` in its unit, ``slopes`` by the
     parameter's name.
 
     ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the
@@ -90,19 +90,19 @@ class Sensitivities:
         return self._made(name, second, ())
 
     def mean(self, name: str) -> Changes:
-        """How the mean of a quantity over the instants changes; it is no section force."""
+        """Derivatives of the mean of a quantity over the instants; it is no section force."""
         values, changes = self._over_time(name)
         slopes = mean_slopes(self.solution.t, values, changes).mean
         return Changes(float(values @ shares(self.solution.t)), self._named(slopes))
 
     def rms(self, name: str) -> Changes:
-        """How the root of its mean square changes; NaN where that is zero."""
+        """Derivatives of the root mean square; NaN if that is zero."""
         values, changes = self._over_time(name)
         slopes = mean_slopes(self.solution.t, values, changes).rms
         return Changes(float(np.sqrt(values**2 @ shares(self.solution.t))), self._named(slopes))
 
     def peak(self, name: str) -> Changes:
-        """How the peak of a quantity over all times of the solution's span changes, between the
+        """Derivatives of the peak of a quantity over all times of the solution's span, between the
         instants too: see :func:`.refine`.
 
         Its slopes are NaN where it has no derivative.
@@ -110,7 +110,7 @@ class Sensitivities:
         return self.peaks([name])[0]
 
     def peaks(self, names: Sequence[str]) -> list[Changes]:
-        """How the peaks of several quantities change."""
+        """Derivatives of the peaks of several quantities."""
         outputs = [self._known(name) for name in names]
         sampled = [self.solution.peak(name) for name in names]
         found, others = self.continuous.refined(sampled, Listed(1.0 - AS_LARGE["double"]))
@@ -177,7 +177,9 @@ class Sensitivities:
     def _made(
         self, name: str, at: Callable[[Array, Array, Numbers, Array], Array], size: tuple[int, ...]
     ) -> Array:
-        """What is of a ``size`` at points, over the instants, of a section force over (t, xi)."""
+        """Derivatives of a ``size`` at points, over the instants, of a section force over (t,
+        xi).
+        """
         output, solution = self._known(name), self.solution
         along = solution.xi if output.group == "section" else np.full(1, np.nan)
         rows, xi = (
@@ -203,7 +205,7 @@ class Sensitivities:
 
 @public
 def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
-    """How a solution of a scene changes with its parameters.
+    """Derivatives of a scene's solution by its parameters.
 
         changes = sensitivities(scene, solution)
         changes.array("effort:O", "l")  # (t,) [N m/m]

@@ -31,7 +31,7 @@ from ..strength.safety import Safety, Verdict, as_column, judged
 from .evaluate import evaluate
 
 _TURNS = 100
-"""How often loads are evaluated at most before what is found is taken for not to be found."""
+"""Largest number of evaluations of loads before a search is given up."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class StiffSafety(Safety):
 
     @property
     def suffices(self) -> bool:
-        """Whether all are enough."""
+        """True if all links are safe and stiff enough."""
         return self._share(self.governs) >= 1.0
 
     def _share(self, verdict: Verdict) -> float:
@@ -75,8 +75,8 @@ class Sized:
 
 @dataclass(frozen=True)
 class Sizing:
-    """What was chosen: a :class:`Sized` for each link, the parameters that they come to, and how
-    often loads were evaluated.
+    """Result of a choice: a :class:`Sized` for each link, the parameters, and the number of
+    evaluations of loads.
 
     ``left`` are links with a beam that the profiles do not fit, with why. ``solution`` is that of
     what was chosen.
@@ -142,15 +142,15 @@ def size(
 
 @dataclass(frozen=True)
 class _Slot:
-    """What profiles may set of a link: the parameter of each dimension, and the profiles, lightest
-    first.
+    """Parameters that profiles may set of a link: one for each dimension, and the profiles,
+    lightest first.
     """
 
     parameters: Mapping[str, str]
     profiles: tuple[Profile, ...]
 
     def values(self, profile: Profile) -> dict[str, float]:
-        """What a profile makes of the parameters."""
+        """Values of the parameters for a profile."""
         return {self.parameters[name]: value for name, value in profile.dimensions.items()}
 
 
@@ -246,8 +246,8 @@ class _Search:
         return found
 
     def judge(self, solution: Solution, name: str, k: int, *, whole: bool = False) -> Safety:
-        """How safe a link is with a profile, under the loads of a solution; ``whole`` against all,
-        else until it is not safe.
+        """Safety of a link with a profile, under the loads of a solution; ``whole`` for all
+        criteria, else until one fails.
         """
         member = Member.of(solution, name)
         slot, values = self.slots[name], values_of(solution.description)
@@ -268,7 +268,7 @@ class _Search:
         return StiffSafety(found.link, (*found.verdicts, verdict), found.is_open, self.wanted)
 
     def suffices(self, found: Safety) -> bool:
-        """Whether a link is safe, and stiff where that is asked for."""
+        """Return whether a link is safe, and stiff if that is asked for."""
         return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.wanted
 
     def safe(self) -> dict[str, int]:
@@ -320,7 +320,7 @@ class _Search:
         return choice
 
     def told(self, choice: Mapping[str, int]) -> Sizing:
-        """What was chosen, evaluated anew with its certificate."""
+        """Result of a choice, evaluated anew with its certificate."""
         solution = self.evaluated(
             parameters=self.values(choice), wanted=[*self.outputs, *self.sections]
         )

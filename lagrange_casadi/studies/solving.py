@@ -209,8 +209,8 @@ def outputs_of(graph: Program, out: Array) -> dict[Output, Array]:
 def residuals_of(
     solution: Solution, graph: Program, out: Array, p: Array, within: Mapping[Output, Array]
 ) -> dict[str, Array]:
-    """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t)
-    of a graph, for parameters ``p``.
+    """Residuals of :func:`.certify` for a solution that was made of the columns ``out`` (columns,
+    t) of a graph, for parameters ``p``.
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before
     the solution was made of it.
@@ -233,15 +233,15 @@ def _hidden(graph: Program, out: Array, left_open: Sequence[Output]) -> dict[Out
 
 
 def _closed(graph: Program, out: Array, p: Array) -> dict[str, Array]:
-    """What is left of the loops' equations, over the mechanism's extent."""
+    """Residual of the loops' equations, relative to the mechanism's extent."""
     gaps = [np.abs(out[k]) / graph.extent(p) for k in graph.checks("gap").values()]
     gaps += [np.abs(out[k]) for k in graph.checks("misfit").values()]
     return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
 def _condition(graph: Program, found: Evaluated) -> dict[str, Array]:
-    """How much an error in a loop's lengths or drives grows in its solution: the worst
-    1/sin(transmission angle) of all loops.
+    """Condition number of the loops, from errors of lengths or drives to those of the solution: the
+    worst 1/sin(transmission angle).
 
     For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.
 

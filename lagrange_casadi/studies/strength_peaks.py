@@ -86,14 +86,14 @@ def refine_safety(
 
 
 _BESIDE = 1e-4
-"""Of itself: how far a factor may be from that of the link at the time that is told; where it is
-further, it jumps there.
+"""Relative difference between a factor and that of the link at the reported time; if it is larger,
+the factor jumps there.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class _Along:
-    """What a link in numbers has at every instant (t,), as a curve over time."""
+    """Link in numbers at every instant (t,), as a curve over time."""
 
     member: Member
     columns: Mapping[Output, int]
@@ -126,8 +126,8 @@ class _Searched:
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution, link: str) -> _Searched | None:
-        """That of a link; None where nothing is between the instants, or equilibrium alone does not
-        tell its forces.
+        """Make it for a link; None if nothing is between the instants, or equilibrium alone does
+        not determine its forces.
         """
         told = solution.by_equilibrium
         member = Member.of(solution, link)

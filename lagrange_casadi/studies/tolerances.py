@@ -1,4 +1,4 @@
-"""What tolerances of parameters do to peaks: to first order by exact derivatives, and by designs
+"""Effect of parameters' tolerances on peaks: to first order by exact derivatives, and by designs
 drawn at random.
 """
 
@@ -27,7 +27,7 @@ _LARGEST = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """How far the peak of a quantity spreads.
+    """Spread of the peak of a quantity.
 
     ``nominal`` is the peak without tolerances, with its sign. To first order ``worst`` is how far
     it may be off, if every parameter is at the worse end of its tolerance, and ``sigma`` its
@@ -50,8 +50,8 @@ class Spread:
 
 @dataclass(frozen=True, eq=False)
 class Spreads:
-    """What tolerances [units of the parameters] do to a scene's peaks, by full name, the one that
-    spreads most for its size first.
+    """Effect of tolerances [units of the parameters] on a scene's peaks, by full name, the one with
+    the largest relative spread first.
 
     ``drawn`` designs were evaluated, of which ``failed`` have no result.
     """
@@ -109,8 +109,8 @@ def tolerances(
     samples: Annotated[int, Within(2, _LARGEST)] = SAMPLES,
     backend: Backend = "auto",
 ) -> Spreads:
-    """How far peaks spread where parameters are ``within`` tolerances: by name plus or minus so
-    much, as ``{"l": "0.1mm"}``.
+    """Spread of peaks if parameters are ``within`` tolerances: by name plus or minus so much, as
+    ``{"l": "0.1mm"}``.
 
     To first order by exact derivatives; and by ``samples`` designs, whose parameters are drawn
     evenly from their tolerances and independently, the same ones in every run. A standard deviation

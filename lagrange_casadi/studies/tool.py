@@ -1,4 +1,4 @@
-"""How far a point moves because links bend, by the unit-load method.
+"""Displacement of a point by elastic links, by the unit-load method.
 
 The displacement of a point along a direction is the sum over all links of section forces, times
 compliance, times the section forces of a unit force there (Castigliano; Timoshenko, *Strength of
@@ -31,7 +31,7 @@ from .evaluate import evaluate
 
 @dataclass(frozen=True, eq=False)
 class ToolDeflection:
-    """How far a point moves because links bend, stretch and twist, at instants ``t`` [s].
+    """Displacement of a point by bending, stretch and twist of links, at instants ``t`` [s].
 
     ``by_link`` is the part of every link that has a beam, in ground axes [m], (t, 2), in space (t,
     3); other links are rigid.
@@ -47,7 +47,7 @@ class ToolDeflection:
 
     @property
     def size(self) -> Array:
-        """How far it is, (t,)."""
+        """Size of the displacement, (t,)."""
         return np.asarray(np.linalg.norm(self.moved, axis=1))
 
     @property
@@ -65,8 +65,7 @@ def tool_deflection(
     t: Times | None = None,
     over: Over | None = None,
 ) -> ToolDeflection:
-    """How far a point of a scene moves because links bend, quasi-statically, the drives held where
-    they are.
+    """Quasi-static displacement of a point of a scene by elastic links, with the drives held.
 
     Links that have a beam give way, others are rigid. Where equilibrium leaves forces open, least
     strain energy tells them. Parameters are those of :func:`.evaluate`.

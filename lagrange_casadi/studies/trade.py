@@ -61,7 +61,7 @@ RUNGS = (*COMPILED, Rung("vm"))
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a rung costs and gives: seconds an instant, and errors relative to each quantity's peak.
+    """Cost and accuracy of a rung: seconds an instant, and errors relative to each quantity's peak.
 
     ``largest`` is over all quantities and instants, ``median`` over the quantities' largest;
     ``worst`` names the quantity that errs most. ``note`` says what else there is to know, such as
@@ -102,8 +102,8 @@ class Trade:
 
     @property
     def exported(self) -> Trade:
-        """The same of what exported C can be: one instant at a time,
-        by a compiler's usual flags.
+        """Measurements of what exported C can be: one instant at a time, by a compiler's usual
+        flags.
         """
         return replace(
             self,
@@ -241,7 +241,7 @@ class _Truth:
 
 
 def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
-    """What motions of each unit are beside: those of a point as far away as the mechanism is large,
+    """Reference motions of each unit: those of a point as far away as the mechanism is large,
     turned by the fastest drive.
     """
     extent, (_, rates, _) = (
@@ -264,7 +264,7 @@ def _motions(program: Program, t: Array, p: Array) -> dict[str, float]:
 
 
 def _work(program: Program, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
-    """What is timed, made ready, and its instants."""
+    """Timed work, ready to run, and its instants."""
     count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
     evaluated, _ = columns(program, dense, p, rung, 1)

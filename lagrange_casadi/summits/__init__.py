@@ -1,1 +1,1 @@
-"""What is largest between instants: bounds of curves, what may be sharp, and the search."""
+"""Maxima between instants: bounds of curves, sharp points, and the search."""

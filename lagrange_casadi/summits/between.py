@@ -1,5 +1,5 @@
-"""What curves may do between equal steps of time, told by their values at them: how far they go,
-and where they may do anything.
+"""Behaviour of curves between equal steps of time, from their values at these: their range, and
+where they may do anything.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ RATE = 0.3
 """An angle [rad] that a step may turn: less than a twentieth of a turn, so that harmonics show."""
 
 CHANGE = 0.75
-"""What a step may add to an argument near which a function is steep."""
+"""Largest change of an argument near which a function is steep, in a step."""
 
 DIP = 0.5
-"""Of itself: how near to zero between two steps a divisor may seem to come."""
+"""Relative distance from zero to which a divisor may seem to come between two steps."""
 
 RISE = 0.5
-"""By how much an exponent may seem to rise above both ends of a step."""
+"""Rise of an exponent above both ends of a step."""
 
 STRAIGHT = 4.0
-"""How many times further than it may seem to go beyond its ends an argument goes in a step through
+"""Factor by which an argument goes further beyond its ends than it may seem to, in a step through
 which it goes straight on.
 """
 
 NEGLIGIBLE = 40.0
-"""By how much an exponent is below the largest where the power is nothing beside that."""
+"""Distance of an exponent below the largest from which the power is negligible."""
 
 
 _NUMBERED = (Kind.SWITCH, Kind.KNOT)
@@ -80,8 +80,8 @@ def unresolved(
     kinks: npt.NDArray[np.intp] | None = None,
     finest: bool = False,
 ) -> tuple[Flags, Flags]:
-    """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched
-    (watches, n), and which have kinks.
+    """Steps of time in which something may rise and fall unseen, (n - 1,), from the watched
+    functions (watches, n), and those with kinks.
 
     ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one
     in each of two steps may not. In the ``finest`` steps they do: there rounding makes as many,
@@ -106,7 +106,7 @@ def unresolved(
 def passed(
     rows: Array, watches: Sequence[Watch], step: int, length: float
 ) -> Iterator[tuple[int, float]]:
-    """What is watched, by number, that has a kink or a jump in a step as it passes a number, and
+    """Watched functions, by number, that have a kink or a jump in a step as they pass a number, and
     that number.
 
     Nothing where something else may hide there. Whole numbers come first, for where they are passed
@@ -135,15 +135,15 @@ def passed(
 
 
 def beyond(kind: Kind, value: float, at: float) -> bool:
-    """Whether an argument has passed a number."""
+    """Return whether an argument has passed a number."""
     return value >= at if kind is Kind.STEP else value > at
 
 
 def _unresolved(
     row: Array, watch: Watch, step: float, bent: Flags
 ) -> tuple[Flags, npt.NDArray[np.intp]]:
-    """Where one of the watched is unresolved, and how many kinks it makes in each step; it may have
-    one itself in ``bent`` ones.
+    """Steps in which one of the watched functions is unresolved, and the number of its kinks in
+    each step; it may have one itself in ``bent`` ones.
     """
     kind, none = watch.kind, np.zeros(row.size - 1, np.intp)
     if kind is Kind.RATE:
@@ -188,8 +188,8 @@ def _unresolved(
 def passed_or_touched(
     at: Array, a: Array, b: Array, low: Array, high: Array
 ) -> tuple[Numbers, Numbers]:
-    """How many of the numbers ``at``, which rise, an argument passes from ``a`` to ``b``, and how
-    many others it may touch.
+    """Number of the rising numbers ``at`` that an argument passes from ``a`` to ``b``, and of
+    others that it may touch.
 
     It stays between ``low`` and ``high``. What is not a number passes as what is below all.
     """

@@ -12,10 +12,10 @@ SEVEN = 7
 """Values through which a polynomial is laid."""
 
 INSIDE = 1e-5
-"""How far, in steps, a summit is sought from an end of all values."""
+"""Distance, in steps, from an end of all values at which a maximum is sought."""
 
 ASIDE = 1e-2
-"""How far from a kink, in steps, both its sides are looked at."""
+"""Distance from a kink, in steps, at which both its sides are sampled."""
 
 _TRIALS = 4
 
@@ -28,8 +28,8 @@ _SLOPES = (
 
 
 class Fit(NamedTuple):
-    """What polynomials say of a summit each: where it is, in steps from the middle value, its size,
-    slope and curve there.
+    """Polynomials' maximum: its place, in steps from the middle value, its size, slope and
+    curvature.
 
     What a polynomial misses there bends its slope by ``steep`` times that. ``rough`` is its sixth
     difference.
@@ -49,7 +49,7 @@ def window(at: int, count: int) -> int:
 
 
 def bounds(at: int, count: int) -> tuple[float, float, float]:
-    """Where to begin to seek a summit near a value, and between where, in steps from the middle of
+    """Start of the search for a maximum near a value, and its bounds, in steps from the middle of
     its window.
     """
     start = float(at - window(at, count) - SEVEN // 2)
@@ -97,8 +97,8 @@ def summit(y: Array, start: Array, low: Array, high: Array) -> Fit:
 
 
 def stretch(y: Array) -> tuple[Array, Array]:
-    """What polynomials through seven values each, (7, m), of which the first are those at an end,
-    say of the step there.
+    """Results of polynomials through seven values each, (7, m), of which the first are those at an
+    end, for the step there.
 
     Their values in its middle, and the least size of their slopes, by steps, at its ends and there:
     zero where they turn.
@@ -111,8 +111,8 @@ def stretch(y: Array) -> tuple[Array, Array]:
 
 
 def where(y: Array, at: int, level: float) -> float:
-    """Where between value ``at`` and the next of a row, in steps from it, it passes a number: by a
-    polynomial in the values.
+    """Place between value ``at`` and the next of a row, in steps from it, at which it passes a
+    number: by a polynomial in the values.
     """
     first = window(at, y.size)
     values, places = (
@@ -126,8 +126,8 @@ def where(y: Array, at: int, level: float) -> float:
 
 
 def kink(y: Array) -> list[tuple[float, float]]:
-    """Where parabolas through three values on either side of the middle one of seven meet, in steps
-    from it, and their size there.
+    """Intersection of parabolas through three values on either side of the middle one of seven, in
+    steps from it, and their size there.
 
     And a little before it and after it, for only there does each show what it is worth. Nothing
     where they do not meet in a tip.

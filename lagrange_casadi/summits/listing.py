@@ -12,9 +12,7 @@ from .panels import TOPS, CurveSource, Samples
 
 
 def base_of(quantity: Numbers, values: Array, count: int) -> Array:
-    """Of each quantity what its values are counted from: as far below the least as the largest is
-    above it.
-    """
+    """Base of each quantity's values: as far below the least as the largest is above it."""
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.fmin.at(low, quantity, np.fmin.reduce(values, axis=1))
     np.fmax.at(high, quantity, np.fmax.reduce(values, axis=1))
@@ -28,11 +26,11 @@ class Counted:
         self.source, self.way, self.base = source, way, base
 
     def at(self, t: Array) -> Samples:
-        """At times of the span."""
+        """Sample times of the span."""
         return self.counted(self.source.at(t))
 
     def counted(self, samples: Samples) -> Samples:
-        """The same samples, counted so."""
+        """Samples relative to the base."""
         return samples._replace(values=self.way * samples.values - self.base)
 
 
@@ -59,8 +57,8 @@ class Tops:
     def listing(
         self, t: Array, given: Samples, least: Array, limit: Array, rounding: Array
     ) -> Array:
-        """Those that are the largest of their step and far from larger ones, (q, :data:`.TOPS`, 4):
-        see :class:`.Peaks`.
+        """Local peaks that are the largest of their step and far from larger ones, (q,
+        :data:`.TOPS`, 4): see :class:`.Peaks`.
 
         At instants too, where these reach the ``least`` of their curve; of what is level some, and
         one where it has no limit.

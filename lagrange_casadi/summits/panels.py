@@ -1,5 +1,5 @@
-"""What is searched, and a panel of it: equal steps of time with the values at their ends, and what
-gives more of these.
+"""Curves of a search, and a panel of them: equal steps of time with the values at their ends, and
+the source of more of these.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from .between import Flags, beyond, passed
 from .sharpness import Watch
 
 SIDE = 2e-13
-"""Of a step between instants: how near to a kink or a jump its sides are."""
+"""Distance of the sides of a kink or a jump, in steps between instants."""
 
 SPACING = 4 * float(np.finfo(float).eps)
-"""Of the time: the shortest step."""
+"""Shortest step, relative to the time."""
 
 TOPS = 24
 """Local peaks of a quantity that are listed at most: the largest."""
@@ -32,7 +32,7 @@ _TRIALS, _WATCHED = 3, 2
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Of which quantity each curve is, which unit each quantity has, and what is watched.
+    """Quantity of each curve, unit of each quantity, and watched functions.
 
     The peak of a quantity is that of the curve of its own that goes furthest: those of a section
     force are the force at the link's ends and stations, and where it turns along the link.
@@ -48,8 +48,8 @@ class Curves:
 
 @dataclass(frozen=True, eq=False)
 class Peaks:
-    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where
-    it is, and whether it is told.
+    """Value of each quantity that is largest in size, with its sign, its time and ratio xi/l, and
+    whether it is reported.
 
     A peak that is not told is at least this, which was found. ``tops``, where they are asked for,
     (q, :data:`TOPS`, 4), are local peaks in no order: the number of the curve among its quantity's
@@ -64,7 +64,7 @@ class Peaks:
 
 
 class Listed(NamedTuple):
-    """Which local peaks are listed: those down to a ``share`` of the largest.
+    """Local peaks that are listed: those down to a ``share`` of the largest.
 
     Where ``way`` is 1 or -1, peaks are those of values times that, not of sizes. These are counted
     from so far below the least at the instants that a share of little more than a half takes all
@@ -76,8 +76,8 @@ class Listed(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """At n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and what is
-    watched (w, n).
+    """Samples at n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and
+    watched functions (w, n).
     """
 
     values: Array
@@ -85,20 +85,20 @@ class Samples(NamedTuple):
     watched: Array
 
     def some(self, which: slice) -> Samples:
-        """At some of the times."""
+        """Samples at some of the times."""
         return Samples(*(rows[:, which] for rows in self))
 
 
 def joined(*parts: Samples) -> Samples:
-    """What is at some times and at others, one after another."""
+    """Join samples at some times and at others, one after another."""
     return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
 
 
 class CurveSource(Protocol):
-    """What gives curves at any times; where they have no value, NaN."""
+    """Source of curves at any times; NaN where they have no value."""
 
     def at(self, t: Array) -> Samples:
-        """At times of the span."""
+        """Sample times of the span."""
 
 
 @dataclass(frozen=True, eq=False)

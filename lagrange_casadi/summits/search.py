@@ -57,44 +57,43 @@ PANELS = 2048
 """Panels of a search, and four more for each instant."""
 
 ROUNDING = 1e-13
-"""By how much of itself a peak may be off: less is not worth another look."""
+"""Relative error of a peak that is worth no further refinement."""
 
 BESIDE = 1e-2
-"""What of a unit's largest size counts as a quantity's own where its rounding is told."""
+"""Fraction of a unit's largest size that counts as a quantity's own size for its rounding."""
 
 NOTHING = 1e-12
-"""What is zero but for rounding, over the largest of its unit."""
+"""Relative size, of the largest of a unit, that is zero within rounding."""
 
 NOISE = 1e-6
-"""Of itself: how far rounding may throw a quantity, as near a dead centre, and be no more than
-that.
-"""
+"""Largest relative error of a quantity by rounding, as near a dead centre."""
 
 TRUST, TRUST_ASIDE = 1e-5, 1e-6
-"""What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more,
-its slope may be off by other things as well."""
+"""Largest relative error of a polynomial, in its middle and near its ends: if it is larger, the
+slope may have other errors as well.
+"""
 
 CLOSE = 8 * float(np.finfo(float).eps)
-"""Of its largest size: by how much a value may be off by its own rounding."""
+"""Rounding of a value, relative to its largest size."""
 
 STRETCH = 1e-4
-"""What a polynomial may miss in the middle of an end step, of its least slope there, which is then
-off by nine times that.
+"""Largest error of a polynomial in the middle of an end step, relative to its least slope there,
+which is then off by nine times that.
 """
 
 ENDLESS, LAST = 0.1, 1e-11
-"""By how much of itself a quantity grows over the last step towards a pole, and where it has come
-to its end.
+"""Relative growth of a quantity over the last step towards a pole, and the growth at which it has
+come to its end.
 """
 
 QUIET = 10
 """Values from whose differences rounding is told."""
 
 RAGGED = 0.3
-"""Of the values around: the second differences of what is nothing but rounding."""
+"""Relative second differences of values that are nothing but rounding."""
 
 ROUGH = 0.1
-"""Of its curve: how large the sixth difference of a polynomial may be that is believed."""
+"""Largest relative sixth difference of a polynomial that is believed."""
 
 
 def peaks(
@@ -137,8 +136,8 @@ def peaks(
 
 
 class _Search:
-    """What is known so far of each quantity: its largest size, and where one as large was found
-    first.
+    """State of a search for each quantity: its largest size, and the place where one as large was
+    found first.
     """
 
     def __init__(
@@ -171,20 +170,20 @@ class _Search:
 
     @property
     def rounding(self) -> Array:
-        """What is no more than rounding, of each quantity."""
+        """Size of rounding of each quantity."""
         return ROUNDING * (self.best + BESIDE * self.scale)
 
     @property
     def least(self) -> Array:
-        """What a summit of each quantity must reach to matter."""
+        """Least size of a maximum of each quantity that matters."""
         return np.asarray(
             self.best - self.rounding if self.share is None else self.share * self.best
         )
 
     @property
     def limit(self) -> Array:
-        """What each curve must rise above to matter; one of what is nothing beside others of its
-        unit never does.
+        """Limit above which each curve matters; none for a curve that is nothing beside others of
+        its unit.
         """
         limit = np.where(
             self.best > NOTHING * self.scale,
@@ -194,7 +193,7 @@ class _Search:
         return np.asarray(limit[self.quantity])
 
     def ends(self, values: Array) -> Array:
-        """What each curve must rise above in each step: both its ends."""
+        """Limit of each curve in each step: both its ends."""
         sizes = np.abs(values)
         return np.asarray(
             np.maximum(sizes[:, :-1], sizes[:, 1:]) + self.rounding[self.quantity, None]
@@ -223,8 +222,8 @@ class _Search:
             )
 
     def lacks(self, t: float) -> Flags:
-        """Which curves are not sought at a time: in steps beside rest those that are open there are
-        left out.
+        """Curves that are not sought at a time: in steps beside rest those that are indeterminate
+        there are left out.
         """
         return np.asarray(
             self.lacking[
@@ -333,8 +332,8 @@ class _Search:
         self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
 
     def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
-        """What is left in a step that is as short as can be: a kink, a jump, or what grows on
-        without an end.
+        """End the search in a step of the shortest length: at a kink, a jump, or growth without an
+        end.
         """
         for curve in np.flatnonzero(risen):
             q, row, endless = self.quantity[curve], panel.samples.values[curve], -1
@@ -472,8 +471,8 @@ class _Search:
             yield summit
 
     def told_before(self, values: Array, curve: int) -> Flags:
-        """In which steps a curve is, all around, what others of its quantity are: as one that turns
-        only beyond its link's end.
+        """Steps in which a curve equals others of its quantity all around: as one that turns only
+        beyond its link's end.
         """
         others = np.flatnonzero(self.quantity[:curve] == self.quantity[curve])
         same = np.ones(values.shape[1] + 2, bool)
@@ -483,7 +482,7 @@ class _Search:
         return np.asarray(same[:-3] & same[1:-2] & same[2:-1] & same[3:])
 
     def noise(self, curve: int, row: Array, step: int) -> float:
-        """What a curve's values beside a step are off by rounding.
+        """Rounding error of a curve's values beside a step.
 
         That is where third differences are no smaller than second ones, and change their sign to
         and fro: those of a steep flank do not.
@@ -501,8 +500,8 @@ class _Search:
         return 3 * third if noisy else 0.0
 
     def rounded(self, curve: int) -> bool:
-        """Whether a curve is nothing but rounding: it zigzags at the instants, though between most
-        of them nothing hides.
+        """Return whether a curve is nothing but rounding: it zigzags at the instants, though
+        between most of them nothing hides.
         """
         row = self.samples[curve]
         if row.size < 2 * QUIET or 2 * self.hidden > row.size:
@@ -522,8 +521,8 @@ class _Search:
             yield summit.sign * values[summit.curve, k]
 
     def closed(self, panel: Panel, summit: Summit, found: float) -> bool:
-        """Whether what was found closes both steps beside a summit; else, if it is worth another
-        look, the summit says where.
+        """Return whether a result closes both steps beside a maximum; else, if it is worth another
+        sample, its place.
         """
         rounding, missed = float(self.rounding[self.quantity[summit.curve]]), found - summit.size
         if not (summit.bend < 0.0 and summit.rough <= rounding - ROUGH * summit.bend):

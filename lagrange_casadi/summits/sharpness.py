@@ -1,5 +1,5 @@
-"""Where a scene may be sharper than its instants: what its graph divides by, compares, turns by and
-raises, to be watched.
+"""Places at which a scene may be sharper than its instants: arguments of divisions, comparisons,
+rotations and powers of its graph, to be watched.
 
 Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what
 does is a divisor that nearly vanishes, a comparison that changes, an angle that turns far between
@@ -30,20 +30,20 @@ from ..equations.program import Program
 
 
 class Kind(enum.IntEnum):
-    """What a watched argument does to what is made of it."""
+    """Effect of a watched argument on what is made of it."""
 
     RATE = 0
-    """It is the rate [rad/s] of an angle under a sine or cosine."""
+    """Rate [rad/s] of an angle under a sine or cosine."""
     TURN = 1
-    """It is such an angle itself, known up to whole turns."""
+    """Angle under a sine or cosine, known up to whole turns."""
     POLE = 2
-    """What it divides is without bound where it is zero."""
+    """Divisor: the quotient is without bound where it is zero."""
     ROOT = 3
     """A kink, at most, where it is zero."""
     SWITCH = 4
     """A jump or a kink where it passes one of some numbers."""
     STEP = 5
-    """The same at every whole number."""
+    """Jump at every whole number."""
     SOFT = 6
     """A steep change within some number of zero, and nothing beyond."""
     POWER = 7
@@ -64,7 +64,7 @@ class Watch:
 
 @dataclass(frozen=True, eq=False)
 class Sharpness:
-    """What is to be watched of a scene.
+    """Watched functions of a scene.
 
     ``watched(t, d, d_rate, d_acceleration, z, p) -> out`` has a row for each of ``watches``.
     ``knots`` are the times at which the second derivative of a motion by samples has a kink.
@@ -77,7 +77,7 @@ class Sharpness:
     @classmethod
     @symbolic
     def of(cls, graph: Program, columns: Sequence[int]) -> Sharpness:
-        """Of what some columns of a scene's graph are made of.
+        """Make it for some columns of a scene's graph.
 
         What is largest along a link is compared with much, and not looked into: it is as sharp as
         the link's law, and no sharper.
@@ -103,7 +103,7 @@ class Sharpness:
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(sorted(knots)))
 
     def rounding(self, *inputs: Any) -> Array:
-        """How far from zero rounding takes each of the watched that is nothing else at any of n
+        """Distance from zero by rounding of each watched function that is nothing else at any of n
         places; zero for others (rows, 1).
 
         Such a one changes its sign by chance, and would seem to have kinks everywhere. ``inputs``
@@ -160,8 +160,8 @@ def bent(graph: Program, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArra
 
 _ROUNDING = 1e-12
 _ROUNDINGS = 4.0
-"""How many times more than its own rounding may take what is watched from zero, for iterated
-coordinates are off too.
+"""Factor of its own rounding by which a watched function may be off zero, for iterated coordinates
+are off too.
 """
 
 _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
@@ -169,7 +169,7 @@ _FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
 
 
 class _Found:
-    """What has been found to be watched, by kind and argument, and the symbols that it is of.
+    """Watched functions that have been found, by kind and argument, and their symbols.
 
     The time's own ``knots`` are known beforehand, and are not watched.
     """
@@ -253,7 +253,7 @@ _ALIKE = {
 def _watched(
     operation: int, operands: Sequence[Any]
 ) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
-    """What is to be watched of an operation."""
+    """Watched functions of an operation."""
     x, y = operands[0], operands[-1]
     if operation in (ca.OP_DIV, ca.OP_INV):
         yield Kind.POLE, y, ()

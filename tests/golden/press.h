@@ -85,9 +85,10 @@ typedef struct {
 } press_inputs;
 
 /* What follows from it. Those of a section law are for _section, which is all you need.
-   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 -
-   xi mu1) at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
-   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi. */
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi)
+   + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1) at xi from the base, where mu0 is the mass from there to
+   the tip, mu1 and mu2 its first and second moment about the base; and then what acts on the link
+   at stations, where something joins or loads it between its ends, beyond xi. */
 typedef struct {
   press_real effort_O; /* joint O: effort [N m]; positive along the joint's coordinate; from -8.12 to 8.28 over the scene's motion */
   press_real section_rod_n0; /* link rod: axial force at the tip [N]; from -53.3 to 92.5 over the scene's motion */

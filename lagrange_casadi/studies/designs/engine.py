@@ -48,10 +48,10 @@ from .watch import Watch
 from .witness import failures
 
 _PIECE = 1 << 22
-"""How many instants of designs that have their own are held at once."""
+"""Number of instants of designs with instants of their own that are kept at once."""
 
 _LOOKS = 32
-"""At about so many more instants is the peak of a quantity sought."""
+"""Number of instants at which the peak of a quantity is sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,7 @@ class DesignEngine:
 
     @property
     def units(self) -> tuple[str, ...]:
-        """Their units."""
+        """Units of the quantities."""
         return self.kept.units
 
     @cached_property
@@ -191,7 +191,7 @@ class DesignEngine:
 
     @property
     def count(self) -> int:
-        """How many instants a design has."""
+        """Number of instants of a design."""
         return self.times.timing.count
 
     @property
@@ -298,17 +298,17 @@ class DesignEngine:
 
     @property
     def plain(self) -> bool:
-        """Whether :meth:`told` changes nothing of the columns."""
+        """True if :meth:`told` changes nothing of the columns."""
         return not self.graph.loop_angles and not self.graph.doubtful
 
     @cached_property
     def watch(self) -> Watch:
-        """What designs must hold to between their instants, if there is anything."""
+        """Conditions on designs between their instants, if there are any."""
         return Watch(self.graph)
 
     @property
     def shared(self) -> bool:
-        """Whether all designs have the same instants, asked for by times."""
+        """True if all designs have the same instants, defined by times."""
         return self.times.timing.shared
 
     def _room(self, n: int, columns: Array | None) -> Results:
@@ -374,8 +374,8 @@ class DesignEngine:
                 found["iterated"][i] = np.nan if table is None else table.iterated
 
     def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
-        """In which steps between the instants of each design its motion bends more than they show;
-        one row where none has knots.
+        """Steps between the instants of each design in which its motion bends more than they show;
+        one row if none has knots.
         """
         if len(t) == 1 or not self.kept.sharpness.knots:
             # Of the defaults: a row of what is found must not depend on the designs beside it.
@@ -403,13 +403,13 @@ class DesignEngine:
         return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
 
     def moving(self, p: Array) -> MovingPeaks:
-        """How peaks and means of a design (parameters,) change with all parameters."""
+        """Make the peaks and means of a design (parameters,) as they move with all parameters."""
         instants = self.times.of(p[None], asked=False)[0][0]
         return MovingPeaks(self.slopes, Ends(self.graph.laws, self.times.timing, instants, p))
 
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
-        """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``,
-        change with all parameters.
+        """Gradient by all parameters of the peaks (q,) of a design (parameters,), which are at
+        times ``t`` and ratios ``xi``.
         """
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).gradient(chosen, (value, t, xi), self._faint(value))
@@ -422,28 +422,28 @@ class DesignEngine:
         return self.moving(p).curvature(chosen, (value, t, xi), own, self._faint(value))
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
-        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see
-        :meth:`.MovingPeaks.ties`.
+        """Return which of the peaks (q,) of a design, whose gradient is ``own``, tie with another
+        one: see :meth:`.MovingPeaks.ties`.
         """
         others = self.history(p, Listed(1.0 - AS_LARGE[self.rung.precision])).tops
         chosen = np.arange(value.size, dtype=np.intc)
         return self.moving(p).ties(chosen, value, own, others) & ~self._faint(value)
 
     def _faint(self, value: Array) -> npt.NDArray[np.bool_]:
-        """Which peaks are zero but for rounding: what is nothing beside the largest of its unit."""
+        """Return which peaks are zero but for rounding, beside the largest of their unit."""
         largest = np.zeros(value.size)
         np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(value), np.abs(value), 0.0))
         return faint(value, largest[self._unit_numbers])
 
     def mean_slopes(self, p: Array) -> MeanSlopes:
-        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with
-        all parameters.
+        """Derivatives by all parameters of the means of :attr:`efforts` over time, and of their
+        root mean squares.
         """
         chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
         return self.moving(p).means(chosen)
 
     def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
-        """The same of designs, (n, 2, e, parameters), the means first; NaN without a result."""
+        """Derivatives for designs, (n, 2, e, parameters), the means first; NaN without a result."""
         slopes = np.full((len(p), 2, len(self.efforts), len(self.parameters)), np.nan)
         for k in np.flatnonzero(found.status == Status.OK):
             slopes[k] = np.where(np.isnan(found.mean[k])[:, None], np.nan, self.mean_slopes(p[k]))
@@ -459,7 +459,7 @@ class DesignEngine:
         return slopes
 
     def failures(self, p: Array, whole: Program) -> dict[str, float]:
-        """What fails of one design that has a result, (parameters,), by a graph of all outputs: see
+        """Failures of one design that has a result, (parameters,), by a graph of all outputs: see
         :mod:`.witness`.
         """
         series = self.evaluate(p[None], threads=1, histories=True).series

@@ -1,5 +1,5 @@
-"""What is kept of a design where there is no compiler: the same as the emitted C keeps, by CasADi's
-virtual machine and NumPy.
+"""Results of a design without a compiler: those of the emitted C, by CasADi's virtual machine and
+NumPy.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def outcome(
     newton: int | None,
     listed: Listed | None = None,
 ) -> tuple[Status, dict[str, Array] | None]:
-    """What is kept of a design, by its names in C, or why it has no result."""
+    """Results of a design, by their names in C, or the reason why it has none."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
     if evaluated is None:
         return status, None

@@ -1,4 +1,4 @@
-"""What is kept of designs, and the arrays that it is filled into."""
+"""Results of designs, and the arrays for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ...base.arrays import Array
 
 KEPT = ("value", "peak_t", "xi", "mean", "rms")
-"""What is kept of each design, by its name in C."""
+"""Results of each design, by name in C."""
 
 Results: TypeAlias = dict[str, Any]
 """Arrays to be filled, a row a design, by their names in C; None for what is not asked for."""
@@ -19,7 +19,7 @@ Results: TypeAlias = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
+    """Results of n designs, a row each; rows of designs without a result hold NaN.
 
     ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each
     quantity with its sign, its time [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``,
@@ -68,6 +68,6 @@ def rows_of(found: Results, some: slice) -> Results:
 
 
 def outcome_of(found: Results, times: Array | None = None) -> Outcome:
-    """What was kept, without histories."""
+    """Make it from results, without histories."""
     value, t, xi, mean, rms = (found[name] for name in KEPT)
     return Outcome(found["status"], value, t, xi, mean, rms, None, times=times)

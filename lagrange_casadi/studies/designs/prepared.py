@@ -36,7 +36,7 @@ _Values: TypeAlias = Mapping[str, Any] | None
 
 @dataclass(frozen=True, eq=False)
 class Peaks:
-    """What the instants of one evaluation come to, with all between them.
+    """Summary of the instants of one evaluation, and of all times between them.
 
     ``value``, ``t`` and ``xi``, (q,), are the peak of each quantity with its sign, its time [s] and
     its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (e,), those of each effort over time.
@@ -74,8 +74,8 @@ class Gradient:
 
     @symbolic_property
     def tied(self) -> npt.NDArray[np.bool_]:
-        """Which peaks (q,) tie with another of the same quantity that changes otherwise: the
-        largest of both has no derivative.
+        """Return which peaks (q,) tie with another of the same quantity that changes differently:
+        the larger of both has no derivative.
 
         It is looked for when it is first asked for, which takes longer than the gradient.
         """
@@ -90,7 +90,7 @@ class Gradient:
 
     @cached_property
     def rms(self) -> dict[str, dict[str, float]]:
-        """Those of their roots of mean squares; NaN where that is 0."""
+        """Derivatives of the root mean squares; NaN if that is 0."""
         return self._named(self._means.rms)
 
     @symbolic_property
@@ -129,7 +129,7 @@ class Curvature:
     bends: Array
 
     def __getitem__(self, quantity: str) -> dict[str, dict[str, float]]:
-        """Those of the peak of a quantity, by the names of both parameters.
+        """Second derivatives of the peak of a quantity, by the names of both parameters.
 
         Raises :class:`UnknownNameError`.
         """
@@ -215,7 +215,7 @@ class Prepared:
 
     @property
     def units(self) -> tuple[str, ...]:
-        """Their units."""
+        """Units of the quantities."""
         return self._engine.units
 
     @property

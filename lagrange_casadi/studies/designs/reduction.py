@@ -1,5 +1,5 @@
-"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its
-instants to.
+"""Reduction of a design of a scene, as numbers of columns: the results that the emitted C keeps of
+its instants.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from ...summits.sharpness import Sharpness
 
 @symbolic
 def stages_of(graph: Program, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
-    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or
-    may, as parameters set them.
+    """Stages that evaluate all designs: in pairs if angles count many turns, or may for some
+    parameters.
 
     ``alike`` tells that all designs have the instants ``t``.
     """
@@ -66,7 +66,7 @@ class KeptOutputs:
 
     @classmethod
     def of(cls, graph: Program, rung: Rung) -> KeptOutputs:
-        """What is kept of a scene's designs on a rung."""
+        """Make the reduction of a scene's designs on a rung."""
         data, at = graph.data, graph.outputs
         table = table_of(data.space)
         chosen: dict[Output, tuple[int, ...]] = {}
@@ -165,9 +165,7 @@ def _made_of(graph: Program, quantity: Output, table: Table) -> list[Output]:
 
 
 def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
-    """What a graph's columns must keep to, as the emitted C takes it; last are the sizes of the
-    terms of rows.
-    """
+    """Limits of a graph's columns for the emitted C; last are the sizes of the terms of rows."""
     found = [
         (bound.column, bound.kind, limit(graph, bound, rung.precision, rung.newton))
         for bound in graph.bounds
@@ -182,7 +180,7 @@ def _checks(graph: Program, rung: Rung) -> list[tuple[int, str, float]]:
 def _matter(
     data: ModelData, links: list[str], along: tuple[Along, ...], precision: Precision
 ) -> tuple[ca.Function, int, int]:
-    """What the reduction takes of the parts, and how many numbers must be positive, and not
+    """Numbers of the parts for the reduction, and how many of them must be positive, and not
     negative.
     """
     symbols = data.symbols

@@ -15,13 +15,13 @@ from ...declare.reaching import Reaching
 from ...declare.times import Timing, instants_of
 
 _LOOKS = 65
-"""At so many times at least is a motion looked at, whether it turns back."""
+"""Least number of times at which a motion is checked for reversal."""
 
 
 @dataclass(frozen=True, eq=False)
 class DesignTimes:
-    """How the instants of designs are asked for, whose motions are ``laws`` and whose default
-    parameters are ``values``.
+    """Instants of designs, whose motions are ``laws`` and whose default parameters are
+    ``values``.
     """
 
     laws: Laws
@@ -36,14 +36,14 @@ class DesignTimes:
 
     @property
     def common(self) -> bool:
-        """Whether all designs have the same."""
+        """True if all designs have the same instants."""
         if self.law is None or not self.timing.fixed:
             return self.timing.fixed
         return not self.law.varies and (self.law.steady or not isinstance(self.timing.around, str))
 
     @symbolic_property
     def default(self) -> tuple[Array, Array]:
-        """Those of the parameters' defaults as they are asked for, and as many in equal steps of
+        """Instants of the default parameters as they are defined, and as many in equal steps of
         time, each (t,).
 
         Raises :class:`.DeclarationError` where there are none.

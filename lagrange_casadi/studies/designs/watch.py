@@ -22,9 +22,7 @@ _OK = int(Status.OK)
 
 @dataclass(frozen=True, eq=False)
 class Watch:
-    """What motions and constraints of a graph must hold to for the values that parameters have in
-    each design.
-    """
+    """Conditions on motions and constraints of a graph, for the parameters of each design."""
 
     graph: Program
 
@@ -42,12 +40,12 @@ class Watch:
         return {name: self.graph.seen_columns(name) for name in self._corners.constraints}
 
     def __bool__(self) -> bool:
-        """Whether there is anything to watch."""
+        """Return whether there are any conditions."""
         return self._ends is not None or bool(self._corners.laws) or self.columns
 
     @property
     def columns(self) -> bool:
-        """Whether the columns of every design are needed, for what constraints see."""
+        """True if the columns of every design are needed, as arguments of constraints."""
         return bool(self._corners.constraints)
 
     def statuses(

@@ -28,12 +28,12 @@ from ..solving import outputs_of, residuals_of
 
 INSTANTS = 5
 _WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
-"""What is to be wanted for what ``all`` does not have."""
+"""Outputs to be wanted that ``all`` does not include."""
 
 _ROUNDINGS = 10.0
 _AGREES = 1e-6
-"""Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single
-precision more.
+"""Relative difference, of the largest value of a unit, up to which two evaluations of the same
+graph agree; in single precision more.
 """
 
 
@@ -49,8 +49,8 @@ def wanted_whole(names: Iterable[str]) -> list[str]:
 def failures(
     graph: Program, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array
 ) -> dict[str, float]:
-    """What fails of a design, and by how much: residuals of its certificate, and under
-    ``agreement`` how far ``out`` is off.
+    """Failures of a design, and their size: residuals of its certificate, and under ``agreement``
+    the distance of ``out``.
 
     ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``; ``graph``
     has all outputs.
@@ -91,8 +91,8 @@ def failures(
 def _agreement(
     whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]
 ) -> float:
-    """How far outputs are from those of a solution, beyond what is ``rounded``, over the largest of
-    their unit.
+    """Distance of outputs from those of a solution, beyond what is ``rounded``, relative to the
+    largest of their unit.
     """
     largest: dict[str, float] = {}
     for name, values in whole.outputs.items():

@@ -15,22 +15,22 @@ import numpy as np
 from ...base.arrays import Array
 
 _ACTIVE, _COUNTS = 1e-7, 1e-6
-"""How near to zero a row is that is active; and of the largest term, or the objective, a multiplier
-that counts.
+"""Distance from zero within which a row is active; and the least relative multiplier, of the
+largest term or of the objective, that counts.
 """
 
 _STEP = 1e-5
-"""Of the bounds: the step of differences of slopes."""
+"""Step of differences of slopes, relative to the bounds."""
 
 DOWN = -1e-6
-"""Of the objective, over the square of the bounds: a curvature that is negative, and not for
+"""Curvature, of the objective over the square of the bounds, from which it is negative beyond
 rounding.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """How good a solution is.
+    """Optimality of a solution.
 
     ``residual`` is what is left of the first-order conditions, over the largest of their terms, or
     the objective. ``curvature`` is the least second derivative of the Lagrangian along what limits
@@ -46,7 +46,7 @@ class Conditions:
 
     @property
     def turns_down(self) -> bool:
-        """Whether the objective falls from here to the second order, within all limits: at a
+        """True if the objective falls from here to the second order, within all limits: at a
         saddle, or a maximum.
         """
         return self.least < DOWN
@@ -63,8 +63,8 @@ def conditions(
     *,
     formed: bool,
 ) -> Conditions:
-    """Those of a program's solution ``at``, with the multipliers of its rows, and of bounds, of
-    which ``chosen`` has some.
+    """Optimality conditions of a program's solution ``at``, with the multipliers of its rows, and
+    of bounds, of which ``chosen`` has some.
 
     Where nothing is active all terms of the first-order conditions are nearly zero: then the
     ``objective`` is what is large.

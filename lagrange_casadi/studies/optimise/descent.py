@@ -25,22 +25,26 @@ close.
 """
 
 _CONDITIONS = 1e-6
-"""What may be left of the first-order conditions of an optimum."""
+"""Largest residual of the first-order conditions of an optimum."""
 
 _NEAR = 1e-3
-"""Of its scale: how near to its limit a local peak is that later programs know too."""
+"""Distance from its limit, relative to its scale, within which later programs include a local
+peak.
+"""
 
 _CLOSED = 12
 """Instants at which a program watches how its loops close, from the beginning."""
 
 _STEPS = (0.1, 0.03, 0.01, 0.003)
-"""Of the bounds: how far from what seems to be no minimum a better design is looked for."""
+"""Distances, relative to the bounds, at which a better design is sought beside a point that seems
+to be no minimum.
+"""
 
 _SAME = 1e-6
-"""Of a step between instants: how near two points are that are one."""
+"""Distance of two points, in steps between instants, that are one."""
 
 _SOLVED = "Solve_Succeeded"
-"""What IPOPT says of a program that it solved."""
+"""Answer of IPOPT for a program that it solved."""
 
 Told = Callable[[float, float], None]
 """Hears the objective and the worst excess of each design on the way."""
@@ -216,7 +220,9 @@ class Descent:
         return None
 
     def _settled(self, found: Found, judged: Judged) -> bool:
-        """Whether a program's solution is what it says, with all peaks that it did not know."""
+        """Return whether a program's solution holds with all peaks, also those that the program did
+        not include.
+        """
         value = judged.value(self.problem.objective)
         gap = abs(value - found.objective) / (abs(value) or 1.0)
         return (
@@ -269,7 +275,7 @@ class Descent:
 
 
 def _unsettled(found: Found) -> str:
-    """Why a program's solution is none of the problem."""
+    """Reason why a program's solution is none of the problem."""
     return (
         "the peaks of its last design are not those of the program"
         if found.status == _SOLVED

@@ -46,12 +46,12 @@ class Tired:
 
     @property
     def material(self) -> Material:
-        """What the link is made of."""
+        """Material of the link."""
         return self.graph.data.materials[self.link]
 
     @cached_property
     def fatigue(self) -> FibreStresses:
-        """Its stresses by what its law is made of."""
+        """Stresses of the link by the members of its law."""
         members = [
             output for output in self.graph.outputs if output.along and output.part == self.link
         ]

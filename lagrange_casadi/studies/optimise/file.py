@@ -20,7 +20,7 @@ from .trail import CONVERGED
 
 SCHEMA, VERSION = "lagrange-casadi-optimum", 1
 _COLUMNS = ("start", "objective", "excess", "result")
-"""Those of a history, before the parameters that were chosen."""
+"""Columns of a history, before the parameters that were chosen."""
 
 
 def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
@@ -42,13 +42,13 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
 
 
 def is_optimum(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is that of a search's file, whole or not."""
+    """Return whether a path is that of a search's file, whole or not."""
     return kind_of(path) == SCHEMA
 
 
 def check_optimum(path: str | os.PathLike[str]) -> list[str]:
-    """What is wrong with a search's file, one line each; nothing where it is whole, and what it
-    holds is known to be an optimum.
+    """Faults of a search's file, one line each; none if it is whole, and its contents are known to
+    be an optimum.
 
     Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for
     none.
@@ -84,8 +84,7 @@ def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
 
 
 def _contradictions(group: h5py.Group) -> Iterator[str]:
-    """What of an optimum is told twice, and not alike: starts, ends and optima are rows of the
-    history.
+    """Contradictions between an optimum's parts: starts, ends and optima are rows of the history.
 
     Raises ``KeyError``, ``ValueError`` and others where it is not what a search writes.
     """

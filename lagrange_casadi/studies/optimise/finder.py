@@ -1,4 +1,4 @@
-"""What answers a question: an engine, and programs made when they are first needed.
+"""Solver of a search: an engine, and programs made when they are first needed.
 
 Ways from starts are gone here.
 """
@@ -62,7 +62,7 @@ class Finder:
         return finder
 
     def _matters(self, name: str) -> bool:
-        """Whether a term depends on a parameter."""
+        """Return whether a term depends on a parameter."""
         place = self.engine.parameters.index(name)
         for term in self.question.terms:
             if term.output is None:
@@ -78,7 +78,7 @@ class Finder:
         return False
 
     def program(self, problem: Problem) -> NonlinearProgram:
-        """That of a problem, whatever its limits are."""
+        """Program of a problem, for any limits."""
         known = (problem.objective, *((c.term, c.least) for c in problem.constraints))
         if known not in self.programs:
             judge, box, count = self.judge, self.question.box, self.engine.count

@@ -26,13 +26,15 @@ from .searching import Search
 from .terms import Constraint, Term
 
 _END = 1e-4
-"""Of the range of an objective: by how much the ends of a front are from its least."""
+"""Distance of the ends of a front from the least of an objective, relative to its range."""
 
 _JUMP = 0.05
-"""Of a stretch of limits: how far below its limit an objective is where the front jumps."""
+"""Distance of an objective below its limit at which the front jumps, relative to a stretch of
+limits.
+"""
 
 _BETTER = 1e-6
-"""Of its range: by how much an objective is better that is not so for rounding."""
+"""Relative improvement of an objective beyond rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +75,12 @@ class Front:
 
     @property
     def feasible(self) -> bool:
-        """Whether all points are within all limits."""
+        """True if all points are within all limits."""
         return bool(self.points) and all(point.optimum.feasible for point in self.points)
 
     @property
     def converged(self) -> bool:
-        """Whether the conditions for an optimum hold at all points."""
+        """True if the optimality conditions hold at all points."""
         return bool(self.points) and all(point.optimum.converged for point in self.points)
 
 
@@ -260,7 +262,7 @@ class _Fronts:
 
 
 def _efficient(found: Sequence[_Found]) -> list[_Found]:
-    """Those than which no other one is better in all objectives, from the least of the first one
+    """Points than which no other one is better in all objectives, from the least of the first one
     on; of equal ones the first.
     """
     if not found:

@@ -1,4 +1,4 @@
-"""Who goes the ways of a search: this process, or whoever else has the same finder."""
+"""Executors of a search's runs: this process, or others with the same finder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Told = Callable[[int, float, float], None]
 
 
 class Hands(Protocol):
-    """Whoever goes ways."""
+    """Executor of runs."""
 
     def go(
         self, finder: Finder, errands: Sequence[Errand], told: Told

@@ -1,5 +1,5 @@
-"""What a search has done so far: a file beside its result, a line for every way that was gone, each
-whole or not there.
+"""Journal of a search: a file beside its result, a line for every finished run, each whole or
+absent.
 
 The first line tells what they are of. Every line begins with the CRC-32 of the rest.
 """
@@ -29,11 +29,11 @@ except ImportError:  # where there is none, nothing keeps two searches apart
 
 
 _FIRST = b' {"identity": '
-"""How the first line goes on after its checksum."""
+"""Beginning of the first line after its checksum."""
 
 
 def journal_of(target: Path) -> Path:
-    """Where the journal of a search into ``target`` is."""
+    """Path of the journal of a search into ``target``."""
     place = settled(target)
     return place.with_name(f"{place.name}.journal")
 
@@ -147,8 +147,8 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
 
 
 def _holds_nothing(content: bytes) -> bool:
-    """Whether a journal is empty, or has the beginning of its first line alone, which a kill cut
-    short.
+    """Return whether a journal is empty, or has the beginning of its first line alone, which a kill
+    cut short.
     """
     checksum, said = content[:8], content[8:]
     cut = said.startswith(_FIRST) or _FIRST.startswith(said)
@@ -161,7 +161,7 @@ def _line(words: Mapping[str, Any]) -> bytes:
 
 
 def _words(line: bytes) -> Any:
-    """What a line says; None where it is not whole."""
+    """Contents of a line; None if it is not whole."""
     checksum, _, text = line.partition(b" ")
     if checksum != f"{zlib.crc32(text):08x}".encode():
         return None

@@ -22,14 +22,14 @@ from .terms import Term
 from .values import PointValues
 
 _BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8
-"""Of the bounds: how far designs are beside one; and of the time, how far a peak goes there at
-most, and what is no way at all.
+"""Distances of neighbouring designs, relative to the bounds; the largest relative change of a
+peak's time there, and the least.
 """
 
 
 @dataclass(eq=False)
 class Judge:
-    """What judges designs by ``terms``, with an engine that keeps their quantities, and counts
+    """Evaluation of designs by ``terms``, with an engine that keeps their quantities, and counts
     them.
     """
 

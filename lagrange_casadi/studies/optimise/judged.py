@@ -31,10 +31,10 @@ class Judged:
     points: Mapping[Term, tuple[Signed, ...]] = field(default_factory=dict)
 
     def value(self, term: Term) -> float:
-        """That of a term."""
+        """Value of a term."""
         return self.values[term]
 
     @property
     def has_result(self) -> bool:
-        """Whether there is a result."""
+        """True if there is a result."""
         return all(math.isfinite(value) for value in self.values.values())

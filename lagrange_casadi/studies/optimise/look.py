@@ -15,10 +15,10 @@ from ..designs.engine import DesignEngine
 from ..designs.outcome import History
 
 KEEP = 0.7
-"""Of the largest: local peaks that are looked at."""
+"""Fraction of the largest peak from which local peaks are examined."""
 
 _ALL = 0.51
-"""The same of values that are largest or smallest: all that there are."""
+"""Fraction for values that are largest or smallest: all of them."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Point:
     second: tuple[float, ...] = ()
 
     def where(self, size: int) -> Array:
-        """Its place as the ``size`` numbers that :meth:`.PointValues.of` takes."""
+        """Place as the ``size`` numbers that :meth:`.PointValues.of` takes."""
         found = np.zeros(size)
         found[min(self.place, size - 1)] = 1.0
         found[size - len(self.second) :] = self.second
@@ -67,9 +67,7 @@ class Look:
         return cls(engine, p, engine.history(p, Listed(KEEP)))
 
     def as_asked(self) -> Look:
-        """The same over the instants that are asked for, where these are not in equal steps of
-        time.
-        """
+        """Point over the instants as defined, if these are not in equal steps of time."""
         asked = self.engine.times.of(self.p[None])[1][0]
         return (
             self
@@ -88,7 +86,7 @@ class Look:
         return 1.0 / max(self.t.size - 1, 1)
 
     def share(self, t: float) -> float:
-        """What share of the time from the first instant to the last a time is at."""
+        """Fraction of the time from the first instant to the last."""
         span = float(self.t[-1] - self.t[0])
         return min(max((t - float(self.t[0])) / span, 0.0), 1.0) if span else 0.0
 
@@ -142,8 +140,8 @@ class Look:
         )
 
     def _place(self, output: Output, curve: int) -> int:
-        """Which place of :meth:`.PointValues.of` a curve of :meth:`.SectionLaw.curves` is at: after
-        the ends come the stations.
+        """Place of :meth:`.PointValues.of` for a curve of :meth:`.SectionLaw.curves`: after the
+        ends come the load points.
         """
         outputs = self.engine.graph.outputs
         stations = sum(

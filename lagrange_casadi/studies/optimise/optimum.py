@@ -1,4 +1,4 @@
-"""What a search for a design gives."""
+"""Result of a search for a design."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .terms import Constraint, Term
 from .trail import CONVERGED, HOLDS, Trail
 
 _NEAR = 1e-5
-"""Of its scale: how near to its limit a term is that is active."""
+"""Distance from its limit, relative to its scale, within which a term is active."""
 
 _SAME = 1e-3
-"""Of the bounds: how near to each other designs are that are one optimum."""
+"""Distance of designs, relative to the bounds, that are one optimum."""
 
 _STEEP = 1e-4
-"""Of its value: how much a quantity changes in a step of time where its peak is not smooth."""
+"""Relative change of a quantity in a step of time if its peak is not smooth."""
 
 
 @dataclass(frozen=True)
@@ -116,9 +116,7 @@ def optimum_of(
     *,
     stopped: bool,
 ) -> Optimum:
-    """What ways from starts come to; ``judged`` is the end of the best
-    of them, looked at closely.
-    """
+    """Result of runs from starts; ``judged`` is the end of the best of them, evaluated closely."""
     best = min(trails, key=lambda trail: trail.merit)
     box, engine = finder.question.box, finder.engine
     limits = []
@@ -171,7 +169,7 @@ def _start(finder: Finder, trail: Trail) -> Start:
 
 
 def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]:
-    """Where ways have converged."""
+    """Designs to which runs have converged."""
     box = finder.question.box
     found: list[list[Trail]] = []
     for trail in sorted(
@@ -191,7 +189,7 @@ def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]
 
 
 def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
-    """Which active peaks are at a kink or a jump, whose way the program has by differences."""
+    """Notes on active peaks at a kink or a jump, whose change the program has by differences."""
     look = judged.look
     assert look is not None
     values = [

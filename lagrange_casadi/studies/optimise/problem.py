@@ -1,6 +1,4 @@
-"""What is asked of a search: terms, limits, the parameters to choose, and how designs are
-evaluated.
-"""
+"""Problem of a search: terms, limits, the parameters to choose, and the evaluation of designs."""
 
 from __future__ import annotations
 
@@ -92,7 +90,7 @@ class Box:
         return p
 
     def holds(self, name: str, value: float) -> bool:
-        """Whether a value of a parameter that is chosen is within its bounds."""
+        """Return whether a value of a parameter that is chosen is within its bounds."""
         k = self.names.index(name)
         return bool(self.low[k] <= value <= self.high[k])
 
@@ -114,7 +112,7 @@ class Problem:
         return (self.objective, *(c.term for c in self.constraints))
 
     def excess(self, judged: Judged) -> float:
-        """By how much the worst limit is exceeded, over its scale; NaN without a result."""
+        """Excess of the worst limit, over its scale; NaN without a result."""
         excess = judged.closing
         for constraint in self.constraints:
             value = judged.value(constraint.term)
@@ -122,14 +120,14 @@ class Problem:
         return excess if judged.has_result else math.nan
 
     def merit(self, judged: Judged) -> tuple[float, float]:
-        """What a better design has less of."""
+        """Key by which designs are compared: the better one has less."""
         if not judged.has_result:
             return math.inf, math.inf
         excess = self.excess(judged)
         return (excess if excess > HOLDS else 0.0), judged.value(self.objective)
 
     def scales(self, judged: Judged) -> tuple[float, ...]:
-        """How large the terms are about, objective first."""
+        """Scales of the terms, objective first."""
         objective = abs(judged.value(self.objective)) or 1.0
         return (objective, *(c.scale(judged.value(c.term)) for c in self.constraints))
 
@@ -207,7 +205,9 @@ class Question:
         return list(dict.fromkeys(wants)) or ["motion"]
 
     def engine(self, scene: Scene) -> DesignEngine:
-        """What evaluates designs. Raises :class:`UnknownNameError` for a term of what has none."""
+        """Make the engine that evaluates designs. Raises :class:`UnknownNameError` for a term
+        without values.
+        """
         engine = DesignEngine.of(scene, self.wanted, rung=self.rung, timing=self.timing)
         for term in self.terms:
             if term.output is None:
@@ -221,9 +221,7 @@ class Question:
         return engine
 
     def words(self, engine: DesignEngine) -> dict[str, Any]:
-        """What every number of a search follows from beside its starts, for JSON: no clock, no
-        path.
-        """
+        """Inputs of every number of a search beside its starts, for JSON: no clock, no path."""
         made, graph, box = engine.provenance, engine.graph, self.box
         told = {
             "case": graph.data.name,

@@ -25,7 +25,7 @@ from .terms import Term
 from .values import PointValues
 
 _NUMBERS = 8
-"""Of a point, beside its place and its guess."""
+"""Number of entries of a point, beside its place and its guess."""
 
 _FEW, _LARGE = 8, 4000
 """Points of a term for which there is room at first; and instructions beyond which second
@@ -49,7 +49,7 @@ class Held:
 
     @property
     def bound(self) -> float:
-        """What the term, times -1 where the limit is the least, is held below."""
+        """Upper bound of the term, times -1 if the limit is the least."""
         assert self.limit is not None
         return -self.limit if self.least else self.limit
 
@@ -176,7 +176,7 @@ class NonlinearProgram:
 
     @property
     def levelled(self) -> bool:
-        """Whether the objective is the largest of several values, which a variable of its own is
+        """True if the objective is the largest of several values, which a variable of its own is
         above.
         """
         return self.objective.kind in ("peak", "max")
@@ -186,12 +186,12 @@ class NonlinearProgram:
 
     @property
     def closed(self) -> bool:
-        """Whether there are loops."""
+        """True if there are loops."""
         return self.closures is not None
 
     @property
     def averaged(self) -> bool:
-        """Whether some term is an average."""
+        """True if some term is an average."""
         return any(term.averaged for term in self.terms)
 
     def _packed(self, held: Held, room: int, places: int | None = None) -> Array:

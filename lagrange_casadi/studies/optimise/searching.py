@@ -77,7 +77,7 @@ class Search:
         )
 
     def whole(self, action: Callable[[], _T]) -> _T:
-        """What an action gives, which no interrupt ends.
+        """Run an action to its end, whatever interrupts come.
 
         One that came meanwhile ends what follows.
         """

@@ -48,8 +48,8 @@ _DIRECTIONS = (
     (41, (1, 3, 5, 13, 23, 1, 55)),
     (42, (1, 3, 7, 3, 13, 59, 17)),
 )
-"""Of each dimension but the first: the inner coefficients of its primitive polynomial as bits, and
-its first direction numbers.
+"""Inner coefficients of the primitive polynomial of each dimension but the first, as bits, and its
+first direction numbers.
 """
 
 MOST_DIMENSIONS = len(_DIRECTIONS) + 1

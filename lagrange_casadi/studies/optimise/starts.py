@@ -16,13 +16,13 @@ from .problem import Problem
 from .sobol import sobol
 
 _APART = 0.15
-"""Of the bounds: how far starts are from each other."""
+"""Distance of starts from each other, relative to the bounds."""
 
 MOST = 1 << 24
 """Designs that are screened, or started from, at most."""
 
 Starts: TypeAlias = Annotated[int, Within(1, MOST)] | Sequence[Mapping[str, float]]
-"""How many designs to start from, or the values of parameters for each."""
+"""Number of designs to start from, or the values of parameters for each."""
 
 
 def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:

@@ -1,5 +1,5 @@
-"""What is made small, and what is held within limits: a peak, a largest or smallest value, a mean,
-or a parameter.
+"""Terms of a search, to be minimised or limited: a peak, a largest or smallest value, a mean, or a
+parameter.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ KINDS: Mapping[Kind, str] = {
     "mean": "the mean of an effort or an output",
     "rms": "the root of its mean square",
 }
-"""What a term may begin with."""
+"""First words of a term."""
 
 MASS: Literal["mass"] = "mass"
 """The mass of a part, or of ``all``."""
@@ -81,7 +81,7 @@ class Term:
 
     @property
     def averaged(self) -> bool:
-        """Whether it is made of all instants."""
+        """True if it is made of all instants."""
         return self.kind in _AVERAGES
 
     @property
@@ -102,7 +102,7 @@ class Term:
         return ca.Function("of_parameters", [data.symbols], [found])
 
     def unit(self, data: ModelData) -> str:
-        """Its unit."""
+        """Unit of the term."""
         if self.kind == MASS:
             return "kg"
         if tired_link(self.output):
@@ -153,11 +153,11 @@ class Constraint:
         return cls(term, limit, least)
 
     def excess(self, value: float) -> float:
-        """By how much a value is beyond the limit; below zero where it is within."""
+        """Excess of a value over the limit; below zero if it is within."""
         return self.limit - value if self.least else value - self.limit
 
     def scale(self, value: float) -> float:
-        """How large the term is about, beside which its excess is large or small."""
+        """Size of the term, relative to which its excess is large or small."""
         return abs(self.limit) or abs(value) or 1.0
 
     @property

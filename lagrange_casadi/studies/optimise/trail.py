@@ -24,15 +24,15 @@ WORDS = {
 """The shape of a trail in JSON."""
 
 HOLDS = 1e-7
-"""Of its limit: by how much a constraint may be violated that holds."""
+"""Violation of a constraint, relative to its limit, that is allowed."""
 
 CONVERGED, STOPPED = "converged", "stopped"
-"""How a way may end; other endings say what went wrong."""
+"""Endings of a run; other endings describe a failure."""
 
 
 @dataclass(frozen=True)
 class Trail:
-    """From a ``start`` to its ``end``, values of all parameters each.
+    """Run from a ``start`` to its ``end``, values of all parameters each.
 
     ``objective`` and ``excess`` are those of the end, ``scale`` is about how large the objective
     is, ``ending`` says why it ended. ``history`` has a row for every design on the way: objective,
@@ -62,12 +62,12 @@ class Trail:
 
     @property
     def words(self) -> dict[str, Any]:
-        """The same for JSON."""
+        """Form for JSON."""
         return asdict(self)
 
     @property
     def merit(self) -> tuple[float, float]:
-        """What a better one has less of."""
+        """Key by which runs are compared: the better one has less."""
         if math.isnan(self.excess):
             return math.inf, math.inf
         return (self.excess if self.excess > HOLDS else 0.0), rounded(self.objective, self.scale)

@@ -58,7 +58,7 @@ class Followed:
 
     @cached_property
     def depends(self) -> list[bool]:
-        """Whether it depends on each parameter."""
+        """Return whether it depends on each parameter."""
         found = self.value.jac_sparsity(0, 2)
         return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
 
@@ -102,7 +102,7 @@ class Followed:
 
     @classmethod
     def of(cls, value: Any, size: int) -> Followed:
-        """That of a function."""
+        """Make it for a function."""
         smooth = value.is_a("SXFunction")
         kind, names = (ca.SX if smooth else ca.MX), ["share", "guess", "p", "xi", "place"]
         given: list[Any] = [kind.sym(name, value.size1_in(k)) for k, name in enumerate(names)]

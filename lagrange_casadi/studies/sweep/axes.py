@@ -1,5 +1,5 @@
-"""What is swept: axes of parameter values, their product as a grid, or a list of designs; a design
-is a number.
+"""Designs of a sweep: axes of parameter values, their product as a grid, or a list of designs; a
+design is a number.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class Range:
         return np.asarray(np.where(numbers == self.count - 1, float(self.stop), values), float)
 
     def outside(self, low: float, high: float) -> str:
-        """What of it leaves a range, in words; nothing where none does."""
+        """Values outside a range, in words; empty if there are none."""
         return (
             ""
             if low <= self.start and self.stop <= high
@@ -165,7 +165,7 @@ class Values:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of values."""
         return len(self.values)
 
     def at(self, numbers: Numbers) -> Array:
@@ -218,7 +218,7 @@ class Grid:
 
     @property
     def size(self) -> int:
-        """How many designs there are."""
+        """Number of designs."""
         return math.prod(axis.count for axis in self.axes.values())
 
     def block(self, start: int, stop: int) -> Array:
@@ -291,7 +291,7 @@ class Listed:
 
     @property
     def size(self) -> int:
-        """How many designs there are."""
+        """Number of designs."""
         return int(self.rows.shape[0])
 
     def block(self, start: int, stop: int) -> Array:
@@ -385,7 +385,7 @@ def check_known(names: Sequence[str], parameters: Collection[str], head_of: str 
 
 
 def are_described(described: Mapping[str, str], values: Mapping[str, Array]) -> bool:
-    """Whether values of parameters are those that ``describe`` told."""
+    """Return whether values of parameters are those that ``describe`` wrote."""
     if list(described) != list(values):
         return (
             Listed(tuple(values), np.stack(list(values.values()), axis=1)).describe() == described
@@ -394,7 +394,7 @@ def are_described(described: Mapping[str, str], values: Mapping[str, Array]) -> 
 
 
 def _are_along(words: str, values: Array) -> bool:
-    """Whether values are those of an axis in words."""
+    """Return whether values are those of an axis in words."""
     start, *rest = words.split(":")
     if not rest:
         return str(Values(tuple(values.tolist()))) == words
@@ -403,7 +403,7 @@ def _are_along(words: str, values: Array) -> bool:
 
 
 def size_of(described: Mapping[str, str]) -> int:
-    """How many designs there are, from what ``describe`` said of them.
+    """Number of designs, from the words of ``describe``.
 
     Raises ``ValueError`` for other words.
     """

@@ -73,7 +73,7 @@ class Condition:
             ) from None
 
     def holds(self, values: Array) -> npt.NDArray[np.bool_]:
-        """Where it holds; nowhere where there is no number."""
+        """Return where the condition holds; never where there is no number."""
         sized = size(self.name, values)
         return np.asarray(
             _RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized)
@@ -89,7 +89,7 @@ class Design:
 
 
 def size(name: str, values: Array) -> Array:
-    """What a column is compared by: peaks by their size."""
+    """Key by which a column is compared: peaks by their size."""
     return np.abs(values) if name.startswith(("peak:", "peak_at:")) else np.asarray(values, float)
 
 
@@ -190,8 +190,8 @@ def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Co
 def tally(
     sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
 ) -> tuple[int, int]:
-    """How many designs, or rows ``along`` axes, meet all conditions, and how many of these have a
-    result.
+    """Number of designs, or rows ``along`` axes, that meet all conditions, and the number of these
+    that have a result.
     """
     met = with_result = 0
     for numbers, values in chosen(sweep, [STATUS], where, along):
@@ -203,8 +203,8 @@ def tally(
 def missed(
     sweep: Sweep, where: str | Condition | Sequence[str | Condition], along: Sequence[str] = ()
 ) -> str:
-    """Of conditions that nothing meets, which ask a parameter or an axis for a value that it never
-    has, with the nearest it has.
+    """Conditions that nothing meets because a parameter or an axis never has the value, with the
+    nearest that it has.
     """
     asked = [
         c
@@ -229,7 +229,7 @@ def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:
 
 
 def _front(costs: Array) -> npt.NDArray[np.intp]:
-    """Those of pairs that nothing beats, by the first cost."""
+    """Pairs that nothing beats, by the first cost."""
     order = np.lexsort((costs[1], costs[0]))
     second = costs[1, order]
     before = np.concatenate([[np.inf], np.minimum.accumulate(second)[:-1]])

@@ -86,8 +86,8 @@ def _kept(folder: Folder, plan: Plan) -> str:
 
 
 def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
-    """Whether the file is there already; else the folder is ready to be filled, and what is another
-    sweep's was refused.
+    """Return whether the file is there already; else the folder is ready to be filled, and that of
+    another sweep was refused.
     """
     there = folder.target.exists()
     if folder.begun and not (resume or force):
@@ -121,7 +121,7 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
 
 
 def _is_whole(target: Path, plan: Plan) -> bool:
-    """Whether a kill came between the file and the end of its parts."""
+    """Return whether a kill came between the file and the end of its parts."""
     try:
         return difference(identity_of(target), plan.identity) is None
     except StoreError:

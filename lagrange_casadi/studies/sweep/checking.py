@@ -23,7 +23,7 @@ from .reading import Sweep
 
 
 def check_sweep(path: str | Path) -> list[str]:
-    """What is wrong with a file, one line each; nothing where it is whole and consistent.
+    """Faults of a file, one line each; none if it is whole and consistent.
 
     Every dataset is read, so every checksum is verified; every unit, sign and status must be the
     schema's, every axis have its scale and the values that were asked for; where a design has a
@@ -57,8 +57,8 @@ def unfinished(path: Path) -> Folder | None:
 
 
 def progress(folder: Folder) -> str:
-    """How far an unfinished sweep is, and how it goes on; it may be at work meanwhile, for nothing
-    is touched.
+    """Progress of an unfinished sweep, and how to continue it; the sweep may be at work meanwhile,
+    for nothing is touched.
 
     Raises :class:`StoreError` where its plan cannot be read.
     """
@@ -71,7 +71,7 @@ def progress(folder: Folder) -> str:
 
 
 def _check_scales(file: h5py.File, sweep: Sweep) -> list[str]:
-    """What is wrong with axes: each is read, and its numbers are finite."""
+    """Faults of axes: each is read, and its numbers must be finite."""
     found: list[str] = []
 
     def visit(place: str, item: object) -> None:

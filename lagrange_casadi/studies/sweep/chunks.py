@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
-"""What tells HDF5 how such chunks are read."""
+"""Options of HDF5 for such chunks."""
 
 _NEIGHBOURS, _SAMPLE = 1 << 9, 1 << 8
 _ROW, _ROWS = 1 << 8, 1 << 15
@@ -77,7 +77,7 @@ def _folded(total: int) -> int:
 
 
 def _shrink(planes: Any) -> list[bool]:
-    """In which rows neighbours repeat, or some bytes come much more often than others; to ask zlib
+    """Rows in which neighbours repeat, or some bytes come much more often than others; to ask zlib
     takes as long as to deflate.
     """
     some = planes[:, :_NEIGHBOURS]

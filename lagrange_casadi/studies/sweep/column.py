@@ -12,7 +12,7 @@ MISSING = (
     "NaN for designs of which it is open: equilibrium does not determine it, or friction at rest"
     " does not"
 )
-"""What a file says, as ``missing``, of a column that may lack a number where there is a result."""
+"""Attribute ``missing`` of a column that may lack a number for a design with a result."""
 
 
 @dataclass(frozen=True)

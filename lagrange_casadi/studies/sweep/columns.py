@@ -1,5 +1,4 @@
-"""What a sweep keeps of each design: columns, their names, units and axes, and how they are taken
-from an engine's outcome.
+"""Columns of a sweep: their names, units and axes, and how they are taken from an engine's outcome.
 
 A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``,
 ``rms:effort:O``), the quantity named as everywhere; the same with slashes is its place in the file.
@@ -48,7 +47,7 @@ KINDS = (
     LIFE,
     MASS,
 )
-"""What columns are of, in the order in which they are listed."""
+"""Kinds of columns, in the order in which they are listed."""
 
 _MEANS = ("mean", "rms")
 
@@ -148,7 +147,7 @@ class Harvest:
 
     @property
     def meanings(self) -> Meanings:
-        """What columns and axes mean."""
+        """Meanings of columns and axes."""
         units = {name: parameter.unit for name, parameter in self.data.parameters.items()}
         return Meanings(
             self._table,
@@ -161,8 +160,8 @@ class Harvest:
 
     @property
     def block(self) -> int:
-        """How many designs make a block: what a core does in about a second, no more than memory
-        and a reader's chunk allow.
+        """Number of designs of a block: about a second of a core's work, within memory and a
+        reader's chunk.
         """
         grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
@@ -241,12 +240,12 @@ class Harvest:
 
     @property
     def _table(self) -> Table:
-        """What its quantities mean."""
+        """Table of quantities."""
         return table_of(self.data.space)
 
     @cached_property
     def strength(self) -> Kept:
-        """What is kept of the strength of links."""
+        """Strength results of links that are kept."""
         engine = self.engine
         doubtful = {
             output.part for output in map(Output.of, engine.doubtful) if output.group == "section"
@@ -256,13 +255,13 @@ class Harvest:
 
     @property
     def _histories(self) -> bool:
-        """Whether whole histories must be evaluated."""
+        """True if whole histories must be evaluated."""
         return self.keep != "peaks" or bool(self.xi.size) or self.strength.histories
 
     @property
     def _piece(self) -> int:
-        """How many designs are evaluated at once: so few that their outcome is still at hand when
-        it is taken apart.
+        """Number of designs that are evaluated at once: so few that their outcome is still in the
+        processor's cache when it is taken apart.
         """
         series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
         room = _BYTES if self._histories else _AT_HAND
@@ -270,7 +269,7 @@ class Harvest:
 
     @property
     def _own_times(self) -> bool:
-        """Whether the times of each design's instants are kept."""
+        """True if the times of each design's instants are kept."""
         return self.keep != "peaks" and self.axis.name != "t"
 
     @cached_property
@@ -300,7 +299,7 @@ class Harvest:
         return ["peak", "peak_t", *over, *(["peak_xi"] if quantity.group == "section" else [])]
 
     def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
-        """Of each link and force what is largest over the instants, (designs, xi), and, where it is
+        """Largest values over the instants of each link and force, (designs, xi), and, if they are
         kept, all, (designs, t, xi).
         """
         if not self.xi.size:

@@ -1,5 +1,5 @@
-"""What a sweep's file says of itself, looked at before it is believed: what it is of, its axes, its
-columns, its statuses.
+"""Contents of a sweep's file, checked before they are believed: its scene, its axes, its columns,
+its statuses.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ _NAMED = (
 
 @dataclass(frozen=True)
 class KeptColumn:
-    """What a file says of a column: unit, meaning, and its axes beyond those of the designs."""
+    """Description of a column in a file: unit, meaning, and its axes beyond those of the
+    designs.
+    """
 
     name: str
     unit: str

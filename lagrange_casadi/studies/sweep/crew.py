@@ -27,14 +27,14 @@ class Crew:
 
     @classmethod
     def alone(cls, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """What one piece of work will come to, by a thread of its own."""
+        """Future of one piece of work, by a thread of its own."""
         crew = cls(1)
         future = crew.give(work, *arguments)
         crew.dismiss()
         return future
 
     def give(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """What the work will come to."""
+        """Start a piece of work, and return its future."""
         future: Future[Any] = Future()
         self._given.put((future, work, arguments))
         return future

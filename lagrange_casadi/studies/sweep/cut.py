@@ -35,8 +35,8 @@ class Cut:
     def of(
         cls, sweep: Sweep, over: Sequence[str], at: Mapping[str, float], family: str = ""
     ) -> Cut:
-        """Of a grid, where parameters that are neither ``over`` nor the ``family`` stay ``at``
-        values, or in the middle.
+        """Cut of a grid, on which parameters that are neither ``over`` nor the ``family`` have the
+        values ``at``, or those in the middle.
         """
         names = (*over, family) if family else tuple(over)
         sweep = sweep.select(**at)
@@ -59,7 +59,7 @@ class Cut:
 
     @classmethod
     def listed(cls, sweep: Sweep, at: Mapping[str, float]) -> Cut:
-        """Of a list, the designs that have the values ``at``."""
+        """Designs of a list that have the values ``at``."""
         sweep = sweep.select(**at)
         stride = 1 + sweep.size // DOTS
         thinned = (f"1 in {stride} designs drawn",) if stride > 1 else ()
@@ -74,7 +74,7 @@ class Cut:
 
     @property
     def numbers(self) -> npt.NDArray[np.int64]:
-        """Of a list, the designs' numbers."""
+        """Numbers of a list's designs."""
         return self.sweep.chosen[DESIGN]
 
     def __getitem__(self, column: str) -> Any:
@@ -94,7 +94,7 @@ class Cut:
 
 
 def stays(sweep: Sweep, at: Mapping[str, float]) -> tuple[str, ...]:
-    """Where parameters stay, in words."""
+    """Values of fixed parameters, in words."""
     return (
         (f"at {', '.join(value(sweep, name, there) for name, there in at.items())}",) if at else ()
     )

@@ -177,7 +177,7 @@ def usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
 
 
 def _pages(items: Sequence[str], most: int) -> list[tuple[str, ...]]:
-    """As few even parts as hold no more than ``most``."""
+    """Split items into as few even parts as hold no more than ``most``."""
     count = -(-len(items) // most)
     return [tuple(part) for part in np.array_split(np.array(items, object), count)]
 

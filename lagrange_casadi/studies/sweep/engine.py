@@ -1,4 +1,4 @@
-"""What a sweep asks of an engine: many designs in, the peaks of each out."""
+"""Engine of a sweep: many designs in, the peaks of each out."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Engine(Protocol):
 
     @property
     def provenance(self) -> Provenance:
-        """How the numbers are made."""
+        """Origin of the numbers."""
 
     def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """Evaluate designs ``p`` (designs, parameters), every parameter in the order of
@@ -57,11 +57,11 @@ class Engine(Protocol):
         """
 
     def mean_slopes_at(self, p: Array, outcome: Outcome) -> Array:
-        """Those of means over time, and of roots of mean squares, (designs, 2, efforts,
+        """Derivatives of means over time, and of root mean squares, (designs, 2, efforts,
         parameters).
         """
 
     def failures(self, p: Array, whole: Program) -> Mapping[str, float]:
-        """What fails of one design that has a result, (parameters,), by a graph of all outputs;
-        nothing where all is well.
+        """Failures of one design that has a result, (parameters,), by a graph of all outputs; none
+        if all is well.
         """

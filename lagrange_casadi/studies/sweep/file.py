@@ -171,7 +171,7 @@ def _stream(
 
 
 def _nothing(dtype: Any) -> Any:
-    """What is read where nothing was written: no number, or one that means nothing."""
+    """Value of a dataset that was never written: no number, or one without a meaning."""
     return np.nan if np.dtype(dtype).kind == "f" else np.iinfo(dtype).min
 
 

@@ -1,5 +1,5 @@
-"""What a sweep's histories are over: time, a drive's coordinate, or the place in the cycle of each
-design.
+"""Axis of a sweep's histories: time, a drive's coordinate, or the fraction of each design's
+cycle.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class InstantAxis:
 
     @classmethod
     def of(cls, data: ModelData, timing: Timing) -> InstantAxis:
-        """That of a mechanism's designs."""
+        """Axis of a mechanism's designs."""
         if timing.shared:
             return cls("t", instants_of(data.laws, timing, data.values(data.defaults)).t)
         joint = timing.joint

@@ -31,7 +31,7 @@ class Matter:
 
     @classmethod
     def of(cls, data: ModelData, name: str, precision: str) -> Matter:
-        """That of a link."""
+        """Make it for a link."""
         length, density = data.matter(name, data.symbols)
         cells = [c for cell in density.cells for c in cell]
         numbers = ca.Function(

@@ -37,12 +37,12 @@ LEAST, LIFE, MASS = "least", "life", "mass"
 """Kinds of columns that tell of the strength of links."""
 
 WAYS = ("yield", "buckling", "fatigue")
-"""What links are kept safe against."""
+"""Modes of failure of links."""
 
 NO_SLOPE = "NaN for designs of which it has no derivative"
 
 SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
-"""What derivatives are kept of, in words."""
+"""Quantities whose derivatives are kept, in words."""
 
 _OF_OUTPUTS = {
     "peak": "largest in size over time: ",
@@ -67,7 +67,7 @@ Meaning = tuple[str, dict[str, str]]
 
 @dataclass(frozen=True)
 class Meanings:
-    """What columns and axes mean in a mechanism.
+    """Meanings of columns and axes in a mechanism.
 
     Its outputs are those of a ``table``, in units by ``kinds``; ``parameters`` are the units of its
     parameters. Instants are along an ``axis``, asked for by a ``joint``, whose coordinate has the
@@ -83,7 +83,7 @@ class Meanings:
 
     @classmethod
     def of(cls, description: Description, axis: str, joint: str) -> Meanings:
-        """Those of a described mechanism."""
+        """Make them for a described mechanism."""
         units = {
             name: str(parameter["unit"]) for name, parameter in description["parameters"].items()
         }

@@ -1,5 +1,5 @@
-"""What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it
-that dies with its process.
+"""Committed parts of a sweep: a folder of parts, each whole or absent, and a lock on it that ends
+with its process.
 
 A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells
 what is in it, a line that is the SHA-256 of that line, and then the columns one after another, as
@@ -52,7 +52,7 @@ class Part:
     columns: tuple[str, ...] = ()
 
     def read(self) -> list[bytes]:
-        """Its columns.
+        """Columns of the part.
 
         Where one is not what was committed the part is deleted: raises :class:`StoreError`.
         """
@@ -66,7 +66,7 @@ class Part:
         return contents
 
     def flaw(self) -> str | None:
-        """What of it is not what was committed; nothing is deleted."""
+        """Differences from what was committed; nothing is deleted."""
         return self._read()[1]
 
     def _read(self) -> tuple[list[bytes], str | None]:
@@ -95,17 +95,17 @@ class Folder:
 
     @classmethod
     def of(cls, target: Path) -> Folder:
-        """Where a path leads to, so that a symbolic link stays one."""
+        """Resolve a path, so that a symbolic link stays one."""
         return cls(settled(target))
 
     @property
     def path(self) -> Path:
-        """Where it is."""
+        """Path of the folder."""
         return self.target.with_name(f"{self.target.name}.parts")
 
     @property
     def joined(self) -> Path:
-        """Where the file is written before it is in its place."""
+        """Path of the file before it is in its place."""
         return self.path / _JOINED
 
     @contextmanager
@@ -157,7 +157,7 @@ class Folder:
             os.close(number)
 
     def _is_held(self, number: int) -> bool:
-        """Whether the lock that is open is the folder's."""
+        """Return whether the open lock is the folder's."""
         try:
             return os.path.samestat(os.fstat(number), os.stat(self.path / _LOCK))
         except FileNotFoundError:
@@ -165,12 +165,12 @@ class Folder:
 
     @property
     def begun(self) -> bool:
-        """Whether a sweep was begun here."""
+        """True if a sweep was begun here."""
         return os.path.isfile(self.path / _PLAN)  # of a name that is too long too
 
     @property
     def identity(self) -> Any:
-        """What the parts are of. Raises :class:`StoreError` where that cannot be read."""
+        """Identity of the parts. Raises :class:`StoreError` if it cannot be read."""
         try:
             return parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
         except (OSError, ValueError, RecursionError) as error:
@@ -180,7 +180,7 @@ class Folder:
 
     @property
     def forced(self) -> bool:
-        """Whether a file that was there when the sweep began is to be replaced."""
+        """True if a file that was there when the sweep began is to be replaced."""
         return (self.path / _FORCED).is_file()
 
     def begin(self, identity: Mapping[str, Any], *, forced: bool = False) -> None:
@@ -225,13 +225,13 @@ class Folder:
         return found
 
     def done(self) -> int:
-        """How many designs the parts that are whole cover; it only looks, so a sweep may be at work
+        """Number of designs of the whole parts; nothing is changed, so a sweep may be at work
         meanwhile.
         """
         return sum(part.stop - part.start for _, part in self._looked_through() if part)
 
     def flaws(self) -> Iterator[str]:
-        """What is wrong with the parts, a line each; all is read, and nothing touched."""
+        """Faults of the parts, a line each; all is read, and nothing touched."""
         for path, part in self._looked_through():
             try:
                 flaw = (
@@ -311,7 +311,7 @@ def _whole(path: Path) -> Part | None:
 
 
 def _head(file: BinaryIO) -> Any:
-    """What a part tells of itself. Raises ``ValueError`` where that is damaged."""
+    """Head of a part. Raises ``ValueError`` if it is damaged."""
     head, digest = file.readline(), file.readline()
     if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
         raise ValueError("damaged")

@@ -48,7 +48,7 @@ _WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
 READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
 
 _BOUND = (float, str)
-"""Where instants start and stop: a number, or an expression of parameters in words."""
+"""Start and end of instants: a number, or an expression of parameters in words."""
 
 IDENTITY = {
     "schema_version": int,
@@ -79,12 +79,12 @@ _LARGEST = 1 << 31
 """Bytes of a chunk of the file."""
 
 _TIMES = 4
-"""How many times what is kept of a design is in memory before it is written."""
+"""Number of copies of a design's results in memory before they are written."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the
+    """Evaluation of a scene's designs, as it is sent to a worker: nothing in it depends on the
     designs themselves.
 
     ``safety`` and ``life`` are the links of which these are kept, ``by`` the parameters by which
@@ -197,12 +197,12 @@ class Plan:
 
     @property
     def size(self) -> int:
-        """How many designs there are."""
+        """Number of designs."""
         return self.designs.size
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        """What is kept of each."""
+        """Columns of each design."""
         return self.harvest.columns
 
     @property
@@ -216,9 +216,7 @@ class Plan:
         return self.axes_size + self.size * sum(column.width for column in self.columns)
 
     def takes(self, done: int) -> str:
-        """What is still to be done after so many designs, in words;
-        nothing where that is little.
-        """
+        """Remaining work after so many designs, in words; empty if it is little."""
         time = (self.size - done) * self.harvest.engine.cost
         if time < _LONG and self.most < _LARGE:
             return ""
@@ -240,7 +238,7 @@ class Plan:
 
     @property
     def room(self) -> int:
-        """How many designs a chunk has room for."""
+        """Number of designs in a chunk."""
         return math.prod(self.chunk)
 
     def slabs(self) -> Iterator[Slab]:
@@ -267,8 +265,8 @@ class Plan:
 
     @cached_property
     def identity(self) -> dict[str, Any]:
-        """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of
-        how it is run.
+        """Inputs of all numbers of the sweep, in plain words: no clock, no path, nothing of how it
+        is run.
         """
         words = {
             "schema_version": self._version,
@@ -327,7 +325,7 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def signature(graph: Program, task: Task, provenance: Provenance) -> dict[str, Any]:
-    """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
+    """Inputs of a design's numbers beside its parameters, wherever it is evaluated."""
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
         "sources": sources(),

@@ -1,5 +1,5 @@
-"""What a designer looks at: peaks over one parameter or two, section forces over xi/l and a
-parameter, the front of two columns.
+"""Figures for designers: peaks over one parameter or two, section forces over xi/l and a parameter,
+the front of two columns.
 """
 
 from __future__ import annotations
@@ -386,19 +386,19 @@ def _curves(axes: Any, cut: Cut, values: Array, gaps: Gaps, legend: dict[str, An
 
 
 def _flips(values: Array) -> npt.NDArray[np.bool_]:
-    """Where the next value has the other sign, and both are more than rounding."""
+    """Return where the next value has the other sign, and both are more than rounding."""
     small = 1e-6 * np.nanmax(np.abs(values), initial=0.0)
     seen = np.where(np.abs(values) > small, values, 0.0)
     return np.asarray(seen[1:] * seen[:-1] < 0.0)
 
 
 def _alternates(values: Array) -> bool:
-    """Whether the sign changes more than three times along rows or columns, on average."""
+    """Return whether the sign changes more than three times along rows or columns, on average."""
     return any(float(_flips(each).sum(axis=0).mean()) > _OFTEN for each in (values, values.T))
 
 
 def _ties(values: Array) -> str:
-    """How many others are as small as the smallest, in words."""
+    """Number of others that are as small as the smallest, in words."""
     others = int(near(values, np.nanmin(values)).sum()) - 1
     return f" and\N{NO-BREAK SPACE}{others} more" if others else ""
 

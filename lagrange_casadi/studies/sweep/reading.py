@@ -87,8 +87,8 @@ class Sweep:
         )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: what was swept, how many designs have a result, and the smallest
-        and largest of columns.
+        """Show axes, the number of designs with a result, and the range of columns in a
+        notebook.
         """
         found: str = method("Sweep._repr_html_")(self)
         return found
@@ -118,7 +118,7 @@ class Sweep:
 
     @property
     def size(self) -> int:
-        """How many designs are selected."""
+        """Number of selected designs."""
         return int(np.prod(self.shape, dtype=np.int64))
 
     def __getitem__(self, name: str) -> Values:
@@ -146,7 +146,7 @@ class Sweep:
         yield from (*self.parameters, *self._over, *self.columns)
 
     def column(self, name: str) -> KeptColumn:
-        """What a column is. Raises :class:`UnknownNameError`."""
+        """Description of a column. Raises :class:`UnknownNameError`."""
         if name not in self.columns:
             raise self._unknown([name])
         return self.columns[name]
@@ -262,7 +262,7 @@ class Sweep:
         return tuple(int(i) for i in np.unravel_index(number, dims))
 
     def counts(self) -> dict[int, int]:
-        """How many designs have each status, by its number; ``statuses`` has the words."""
+        """Number of designs with each status, by its number; ``statuses`` has the words."""
         found = dict.fromkeys(self.statuses, 0)
         for _, values in self.blocks([STATUS]):
             for status, count in zip(*np.unique(values[STATUS], return_counts=True), strict=True):
@@ -336,7 +336,7 @@ class Sweep:
 
     @cached_property
     def meanings(self) -> Meanings:
-        """What columns and axes mean, by their names."""
+        """Meanings of columns and axes, by their names."""
         axis = next((name for name in (OVER, CYCLE) if name in self._over), "t")
         return Meanings.of(
             self.description, axis, self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
@@ -353,7 +353,7 @@ class Sweep:
         return {axis: kept.name for kept in list(self.columns.values())[::-1] for axis in kept.axes}
 
     def _unknown(self, names: Sequence[str]) -> DeclarationError:
-        """Of names that are no column's."""
+        """Names that are no column's."""
         for name in names:
             if name in self._over:
                 return DeclarationError(
@@ -407,7 +407,7 @@ class Sweep:
                 yield np.repeat(numbers[left], rows), found
 
     def _left(self, numbers: npt.NDArray[np.int64]) -> Any:
-        """Which designs are selected."""
+        """Selected designs."""
         if not self.chosen:
             return slice(None)
         places = dict(
@@ -425,8 +425,8 @@ class Sweep:
         return parameter if parameter in self.dimensions else DESIGN
 
     def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
-        """What is selected of a dataset: where numbers are evenly spaced they are read, else the
-        box around them, cut in memory.
+        """Selected part of a dataset: evenly spaced numbers are read, else the box around them, cut
+        in memory.
         """
         numbers = [self.chosen.get(axis) for axis in axes]
         values = _taken(dataset, tuple(_box(n) for n in numbers))
@@ -436,23 +436,23 @@ class Sweep:
         return values
 
     def opened(self) -> AbstractContextManager[h5py.File]:
-        """Its file, to read. Raises what :meth:`open` does."""
+        """Open its file to read. Raises what :meth:`open` does."""
         return _opened(self.path, self.seen)
 
 
 @public
 def is_sweep(path: str | Path) -> bool:
-    """Whether a path is that of a sweep's file, whole or not."""
+    """Return whether a path is that of a sweep's file, whole or not."""
     return kind_of(path) == SCHEMA
 
 
 def identity_of(path: Path) -> dict[str, Any]:
-    """What a finished sweep says it is of. Raises what :meth:`Sweep.open` does."""
+    """Identity of a finished sweep. Raises what :meth:`Sweep.open` does."""
     return dict(Sweep.open(path).identity)
 
 
 def _taken(dataset: Any, where: Any = ()) -> Values:
-    """What is read of a dataset. Raises :class:`StoreError` that names its column."""
+    """Contents of a dataset. Raises :class:`StoreError` that names its column."""
     try:
         return np.asarray(dataset[where])
     except (OSError, RuntimeError) as error:

@@ -67,7 +67,7 @@ class Scale:
 
     @property
     def extend(self) -> str:
-        """Where a colour bar has arrows."""
+        """Ends of a colour bar with arrows."""
         outside = (self.above and self.sides == 2 if self.sides else self.below, self.above)
         return {
             (False, False): "neither",
@@ -78,7 +78,7 @@ class Scale:
 
     @property
     def note(self) -> str:
-        """How far values go that lie above, in words."""
+        """Range of values above the scale, in words."""
         return (
             f"beyond: up to {number(self.most)}{' in size' if self.sides == 2 else ''}"
             if self.above
@@ -86,7 +86,7 @@ class Scale:
         )
 
     def norm(self) -> Any:
-        """For colours."""
+        """Norm for colours."""
         from matplotlib.colors import AsinhNorm, LogNorm, Normalize
 
         if self.sides:
@@ -144,8 +144,8 @@ class Scale:
 def _limits(
     least: float, near: float, far: float, most: float, log: bool = False
 ) -> tuple[float, float]:
-    """Of values and of their middle: the values', or the middle's and half of its span where some
-    are far from it.
+    """Limits of a colour scale: the values', or the middle's and half of its span if some are far
+    from it.
     """
     turn, back = (np.log, np.exp) if log else (np.positive, np.positive)
     with np.errstate(divide="ignore"):
@@ -203,8 +203,8 @@ def tick(axis: Any, values: Array, inches: float) -> None:
 
 
 def logarithmic(x: Array) -> bool:
-    """Whether values are even in ratios rather than in steps: they span ten times, their median
-    nearer to the geometric mean.
+    """Return whether values are even in ratios rather than in steps: they span ten times, their
+    median nearer to the geometric mean.
     """
     low, high = x.min(), x.max()
     if low <= 0.0 or high < 10.0 * low:

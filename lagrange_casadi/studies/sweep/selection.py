@@ -1,5 +1,5 @@
-"""Which values of a parameter or an axis are meant: a number that is there, a list of such numbers,
-or all within a range.
+"""Selection of values of a parameter or an axis: a number that is there, a list of such numbers, or
+all within a range.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ _NEAR = 1e-9
 
 
 def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
-    """Where values are a number, but for the rounding of a grid."""
+    """Return where values are a number, within the rounding of a grid."""
     if math.isinf(number):
         return np.asarray(values == number)
     return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
 
 
 def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.bool_]:
-    """Where values are wanted, in their ``unit``; they may be texts, as ``"30 deg"``.
+    """Return where values are wanted, in their ``unit``; they may be texts, as ``"30 deg"``.
 
     Raises :class:`DeclarationError` for what cannot be, and for what no value is.
     """

@@ -1,5 +1,5 @@
-"""What a sweep's figures are made of: designs without a result, words, and a sheet of plots with a
-title and a legend.
+"""Parts of a sweep's figures: designs without a result, words, and a sheet of plots with a title
+and a legend.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ STYLE: dict[Any, Any] = {
     "legend.fontsize": 7.5,
     "hatch.linewidth": 0.5,
 }
-"""For matplotlib's ``rc_context``: sizes that are read in a report's column, where figures stand at
+"""Settings for matplotlib's ``rc_context``: sizes for a report's column, in which figures have
 their own size.
 """
 
@@ -59,8 +59,8 @@ class Gaps:
 
     @classmethod
     def of(cls, sweep: Sweep, status: Any) -> Gaps:
-        """From the statuses of the designs that are drawn; the most frequent reasons are told
-        apart.
+        """Make them from the statuses of the designs that are drawn; the most frequent reasons have
+        marks of their own.
         """
         kinds, counts = np.unique(status[status != 0], return_counts=True)
         kinds = kinds[np.argsort(-counts, kind="stable")]
@@ -121,7 +121,7 @@ class Gaps:
             legend[text] = Line2D([], [], marker=marker, color="0.4", **style)
 
     def foot(self, rows: int = 1) -> float:
-        """What share of an axis rows of marks take."""
+        """Fraction of an axis for rows of marks."""
         return max(0.05, 1.1 * _FOOT * rows) if self.words else 0.05
 
 
@@ -161,12 +161,12 @@ class Sheet:
 
     @property
     def across(self) -> float:
-        """How wide text of a panel may be, in inches."""
+        """Width of a panel's text, in inches."""
         return 0.83 * self.width / self.columns
 
     @property
     def up(self) -> float:
-        """How long text beside a panel may be."""
+        """Height of text beside a panel, in inches."""
         return 0.8 * (_ALONE if len(self.plots) == 1 else _HEIGHT)
 
     def bar(self, axes: Any, cells: Any, scale: Scale, text: str) -> None:
@@ -178,7 +178,7 @@ class Sheet:
         bar.set_label(fitted(0.97 * self.across, text, scale.note))
 
     def tick(self, axes: Any, axis: str, values: Array) -> None:
-        """Where axis "x" or "y" of a panel has a few values, its ticks are these."""
+        """Put ticks at the values of axis "x" or "y" of a panel, if these are few."""
         there = np.unique(values[np.isfinite(values)])
         if 0 < there.size <= _TICKED:
             tick(

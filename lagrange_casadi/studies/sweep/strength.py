@@ -1,4 +1,4 @@
-"""What a sweep keeps of the strength of links: least factors of safety, lives, and masses.
+"""Strength results of a sweep: least factors of safety, lives, and masses.
 
 Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole
 histories: where stations stand still, of all designs at once (:mod:`...strength.fibres`), else of
@@ -46,8 +46,7 @@ miss less than the rest.
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose
-    ``life`` is.
+    """Links with strength results: those whose ``safety`` is wanted, and those whose ``life`` is.
 
     ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that
     lack it for some designs.
@@ -63,7 +62,7 @@ class Kept:
 
     @property
     def histories(self) -> bool:
-        """Whether whole histories must be evaluated."""
+        """True if whole histories must be evaluated."""
         return any(self._tires(link) for link in self.safety) or bool(self.life)
 
     @cached_property
@@ -200,7 +199,7 @@ class Kept:
     def _slowly(
         self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]
     ) -> tuple[float, float]:
-        """The same of one design, as of a solution."""
+        """Strength results of one design, as of a solution."""
         members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
         beam = beam_told(self.data.at(p)["bodies"][link]["beam"])
         law = Matter.of(self.data, link, self.precision).law(members, p)

@@ -1,4 +1,4 @@
-"""Who evaluates blocks: here, the threads of this process."""
+"""Evaluation of blocks by the threads of this process."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ may still end.
 
 
 class Workers(Protocol):
-    """Whoever evaluates blocks."""
+    """Executor of blocks."""
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in any order; what was begun when it is stopped is given
@@ -75,7 +75,7 @@ class Threads:
 
 
 def _last(pending: Iterable[tuple[int, int, Any]]) -> Blocks:
-    """Of blocks that were begun, those that still end; of the others none begins."""
+    """Yield the blocks that were begun and still end; no other one begins."""
     begun = [(start, stop, future) for start, stop, future in pending if not future.cancel()]
     ended = wait([future for _, _, future in begun], PATIENCE).done
     for start, stop, future in begun:

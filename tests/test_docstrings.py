@@ -1,0 +1,35 @@
+"""Docstrings begin with a verb or a noun, as PEP 257 asks."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import lagrange_casadi
+
+PACKAGE = Path(lagrange_casadi.__file__).parent
+FIRST = {"What", "Whether", "Of", "Those", "How", "Where", "Why", "Which", "Its", "Their", "Theirs"}
+FIRST |= {"From", "That", "Whatever", "Whoever"}
+"""First words of a sentence without a subject."""
+
+
+def docstrings(tree: ast.Module) -> Iterator[ast.Constant]:
+    """Docstrings of modules, classes and functions, and texts that stand below an assignment."""
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        for entry in body if isinstance(body, list) else []:
+            match entry:
+                case ast.Expr(value=ast.Constant(value=str()) as found):
+                    yield found
+
+
+@pytest.mark.quick
+def test_docstrings_begin_with_a_verb_or_a_noun():
+    begun = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for found in docstrings(ast.parse(path.read_text())):
+            words = found.value.split()
+            if words[0] in FIRST or words[:2] == ["The", "same"]:
+                begun.append(f"{path.relative_to(PACKAGE)}:{found.lineno}: {' '.join(words[:6])}")
+    assert not begun, "\n".join(begun)
